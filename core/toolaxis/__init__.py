@@ -1,0 +1,1 @@
+"""Tool orientations for multi-axis machining of sculptured surfaces."""

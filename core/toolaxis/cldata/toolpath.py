@@ -1,0 +1,82 @@
+"""The tool path as plain arrays."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+
+Array = NDArray[np.float64]
+
+
+class Motion(IntEnum):
+    """What the motion that arrives at a point is for."""
+
+    CUT = 0
+    ENTRY = 1
+    EXIT = 2
+    LINK = 3
+
+
+@dataclass(frozen=True, eq=False)
+class ToolPath:
+    """Cutter locations in the order in which they are visited; tips and axes are interpolated linearly.
+
+    Attributes
+    ----------
+    cc, cl : (n, 3) array
+        Cutter contact and cutter location (tool tip), mm; at points without contact cc repeats cl.
+    axis, normal : (n, 3) array
+        Unit tool axis (tip to spindle) and unit surface normal; at points without contact the normal is the axis.
+    kind : (n,) array of int8
+        `Motion` that arrives at each point; the first one of a path is where the tool comes from.
+    breaks : (k + 1,) array of int
+        Where each pass starts, entry included, and n at the end.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit or a number is not finite.
+    """
+
+    cc: Array
+    cl: Array
+    axis: Array
+    normal: Array
+    kind: NDArray[np.int8]
+    breaks: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        count = len(self.cl)
+        for name in ("cc", "cl", "axis", "normal"):
+            rows = np.ascontiguousarray(getattr(self, name), dtype=float)
+            object.__setattr__(self, name, rows)
+            if rows.shape != (count, 3):
+                raise InvalidInput(f"tool path {name} has shape {rows.shape}: ({count}, 3) is needed")
+            bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+            if bad.size:
+                raise InvalidInput(f"tool path {name} row {bad[0]} is {rows[bad[0]].tolist()}: it must be finite")
+        if self.kind.shape != (count,):
+            raise InvalidInput(f"tool path kind has shape {self.kind.shape}: ({count},) is needed")
+        ends = np.asarray(self.breaks)
+        if len(ends) < 1 or ends[0] != 0 or ends[-1] != count or (np.diff(ends) < 0).any():
+            raise InvalidInput(f"tool path breaks must run from 0 to {count} without decreasing")
+
+    @property
+    def passes(self) -> int:
+        """Number of passes."""
+        return len(self.breaks) - 1
+
+    def length(self, *kinds: Motion) -> float:
+        """Length of the tip's motion, mm, of the given kinds; of all when none is given.
+
+        Parameters
+        ----------
+        *kinds : Motion
+        """
+        steps = np.linalg.norm(np.diff(self.cl, axis=0), axis=1)
+        if kinds:
+            steps = steps[np.isin(self.kind[1:], kinds)]
+        return float(steps.sum())

@@ -1,0 +1,1 @@
+"""Mathematics with no word of machining."""

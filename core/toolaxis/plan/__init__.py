@@ -1,0 +1,1 @@
+"""The result as data: what planners fill and everybody else reads."""

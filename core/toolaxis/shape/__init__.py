@@ -1,0 +1,1 @@
+"""What is machined: surfaces, faces and parts."""

@@ -1,0 +1,184 @@
+"""A face: a surface, the loops that trim it, and the side on which the material lies."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.polygons import Slabs, inside, signed_area, slabs
+from toolaxis.shape.differential import Curvature, curvatures, normals
+from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.shape.surface import Derivatives
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """A trimmed piece of a surface with its sense.
+
+    Attributes
+    ----------
+    surface : NurbsSurface
+    trims : tuple of (m, 2) arrays
+        Closed loops in (u, v), the outer one first, then the holes; empty for the whole domain.
+    flip : bool
+        The normal out of the material is Su x Sv, or its opposite with flip.
+    number : int
+        Number of the face in its file, from 1.
+    label : str
+        What messages call it; its number unless it is a piece of a face ("7a").
+    kind : str
+        The CAD kernel's kind of surface: plane, cylinder, cone, sphere, torus, bspline, revolution, extrusion, ...
+    tolerance : float
+        Bound of the distance between this surface and the CAD face, mm; 0 where the conversion is exact.
+    kinks : pair of tuples of float
+        Parameters u and v along which the surface is only C0.
+
+    Raises
+    ------
+    InvalidInput
+        When a loop has fewer than three points, is not finite, or spans no area.
+    """
+
+    surface: NurbsSurface
+    trims: tuple[Array, ...] = ()
+    flip: bool = False
+    number: int = 1
+    label: str = ""
+    kind: str = "bspline"
+    tolerance: float = 0.0
+    kinks: tuple[tuple[float, ...], tuple[float, ...]] = field(default=((), ()))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "trims", tuple(np.ascontiguousarray(loop, dtype=float) for loop in self.trims))
+        if not self.label:
+            object.__setattr__(self, "label", str(self.number))
+        for index, loop in enumerate(self.trims):
+            if loop.ndim != 2 or loop.shape[1] != 2 or len(loop) < 3 or not np.isfinite(loop).all():
+                raise InvalidInput(f"trim loop {index} of face {self.label} has shape {loop.shape}: at least three "
+                                   "finite (u, v) points are needed")
+            if signed_area(loop) == 0.0:
+                raise InvalidInput(f"trim loop {index} of face {self.label} encloses no area: give a closed loop")
+
+    @classmethod
+    def from_bspline(cls, points: ArrayLike, degree: tuple[int, int] = (3, 3),
+                     knots: tuple[ArrayLike, ArrayLike] | None = None, weights: ArrayLike | None = None,
+                     trims: tuple[ArrayLike, ...] = (), flip: bool = False) -> "Face":
+        """A face from the control points of a B-spline surface.
+
+        Parameters
+        ----------
+        points : (nu, nv, 3) array_like
+            Control points, mm.
+        degree : (int, int)
+        knots : pair of array_like, optional
+            Clamped uniform on [0, 1] unless given.
+        weights : (nu, nv) array_like, optional
+        trims : tuple of (m, 2) array_like
+            Closed loops in (u, v), the outer one first.
+        flip : bool
+            The normal out of the material is Su x Sv, or its opposite with flip.
+
+        Raises
+        ------
+        InvalidInput
+            When shapes or values do not fit.
+        """
+        surface = NurbsSurface.from_points(points, degree, knots, weights)
+        return cls(surface, tuple(np.asarray(loop, dtype=float) for loop in trims), flip)
+
+    def evaluate(self, uv: ArrayLike) -> Derivatives:
+        """Position and derivatives at (n, 2) parameters."""
+        return self.surface.evaluate(np.asarray(uv, dtype=float))
+
+    def normal(self, uv: ArrayLike) -> Array:
+        """Unit normals out of the material, (n, 3), at (n, 2) parameters."""
+        return normals(self.evaluate(uv), self.flip)
+
+    def curvature(self, uv: ArrayLike) -> Curvature:
+        """Principal curvatures (positive where the face bends towards its normal) at (n, 2) parameters."""
+        d = self.evaluate(uv)
+        return curvatures(d, normals(d, self.flip))
+
+    @cached_property
+    def _slabs(self) -> Slabs:
+        return slabs(self.trims)
+
+    def contains(self, uv: ArrayLike) -> NDArray[np.bool_]:
+        """Whether (n, 2) parameters lie on the face: inside the outer loop and in no hole, (n,) bool."""
+        points = np.asarray(uv, dtype=float).reshape(-1, 2)
+        if self.trims:
+            return inside(self._slabs, points)
+        (u0, u1), (v0, v1) = self.surface.domain
+        u, v = points.T
+        return np.asarray((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Range of the face in its parameters: u0, u1, v0, v1."""
+        if not self.trims:
+            (u0, u1), (v0, v1) = self.surface.domain
+            return u0, u1, v0, v1
+        low, high = self.trims[0].min(axis=0), self.trims[0].max(axis=0)
+        return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+
+    def grid(self, nu: int, nv: int) -> Array:
+        """Centres of nu x nv equal cells of the parameter range that lie on the face, (n, 2)."""
+        u0, u1, v0, v1 = self.bounds
+        u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
+        v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
+        uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+        return uv[self.contains(uv)]
+
+    @cached_property
+    def outline(self) -> tuple[Array, ...]:
+        """The loops that bound the face in (u, v); the domain's rectangle where it is not trimmed."""
+        if self.trims:
+            return self.trims
+        u0, u1, v0, v1 = self.bounds
+        return (np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]]),)
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the face, mm^2, by the midpoint rule on 192 x 192 cells of the parameter range."""
+        u0, u1, v0, v1 = self.bounds
+        d = self.evaluate(self.grid(192, 192))
+        cell = (u1 - u0) * (v1 - v0) / 192**2
+        return float(np.linalg.norm(np.cross(d.su, d.sv), axis=1).sum() * cell)
+
+    @cached_property
+    def box(self) -> Array:
+        """Lower and upper corner of the box around sampled points of the face, (2, 3) mm."""
+        points = np.concatenate([self.evaluate(self.grid(48, 48)).point,
+                                 *(self.evaluate(loop).point for loop in self.outline)])
+        return np.stack([points.min(axis=0), points.max(axis=0)])
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the diagonal of `box`, mm."""
+        return float(np.linalg.norm(self.box[1] - self.box[0]))
+
+    def trimmed(self, trims: tuple[ArrayLike, ...], label: str | None = None) -> "Face":
+        """The same surface with other loops.
+
+        Parameters
+        ----------
+        trims : tuple of (m, 2) array_like
+        label : str, optional
+            What messages call the piece.
+        """
+        loops = tuple(np.asarray(loop, dtype=float) for loop in trims)
+        return replace(self, trims=loops, label=self.label if label is None else label)
+
+    def transformed(self, matrix: ArrayLike) -> "Face":
+        """The face moved by an affine map; a mirror also turns `flip` over, so that n stays out of the material.
+
+        Parameters
+        ----------
+        matrix : (4, 4) array_like
+        """
+        mirrored = float(np.linalg.det(np.asarray(matrix, dtype=float)[:3, :3])) < 0
+        return replace(self, surface=self.surface.transformed(matrix), flip=self.flip ^ mirrored)

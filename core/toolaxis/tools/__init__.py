@@ -1,0 +1,1 @@
+"""What cuts: cutter profiles, holders and the assembly of both."""
