@@ -1,0 +1,1 @@
+"""The independent judge: material removal from the cutter location data alone."""

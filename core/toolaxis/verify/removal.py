@@ -1,0 +1,223 @@
+"""What the cutter leaves: height of the material above each point of a face, and depth of the cut below it."""
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.tools.profile import Profile
+from toolaxis.verify.blocks import balls, curve_order
+from toolaxis.verify.motions import Motions, grouped, motions_from_cl
+from toolaxis.verify.removal_numpy import remove_numpy
+from toolaxis.verify.solids import cutter_solid, meridian, reach_of
+from toolaxis.verify.sweep import first_entry, moment, never_inside
+
+Array = NDArray[np.float64]
+Counts: TypeAlias = NDArray[np.int64]
+Pieces: TypeAlias = tuple[Array, Array, Array, Array]
+Found: TypeAlias = tuple[Array, Array, Counts, Counts]
+
+#: Bound of the rounding and root-finding errors of a height, mm.
+NUMERICAL = 1e-6
+
+_CHUNK = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Remains:
+    """What is left on each ray.
+
+    Attributes
+    ----------
+    remaining : (m,) array
+        Least height t >= 0 above the ray's foot that a cutting motion removed, mm; inf where none came within reach.
+    gouge : (m,) array
+        Greatest depth below the foot that any motion reached, mm; no more than the ray's depth, 0 where none went below.
+    cut_by, gouged_by : (m,) array of int
+        Index of the cutter location at which the motion that did it arrives; -1 where none did.
+    uncertainty : float
+        Bound of the error of a height or a depth, measured along the cutter's normal, mm.
+    """
+
+    remaining: Array
+    gouge: Array
+    cut_by: Counts
+    gouged_by: Counts
+    uncertainty: float
+
+
+@compiled
+def _meet(solid: Array, motion: Pieces, which: tuple[int, bool, int], ray: Array, out: Found, i: int) -> None:
+    """Let motion which[0] (cutting or not, arriving at which[2]) act on ray i."""
+    k, cutting, arrival = which
+    remaining, gouge, cut_by, gouged_by = out
+    level = -gouge[i]
+    if cutting and remaining[i] > 0.0:
+        level = min(remaining[i], ray[i, 7])
+    line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
+    if never_inside(solid, motion, k, line, (-ray[i, 6], level)):
+        return
+    entry = first_entry(solid, motion, k, line, (-ray[i, 6], level))
+    if -entry > gouge[i]:
+        gouge[i] = -entry
+        gouged_by[i] = arrival
+    if cutting and remaining[i] > 0.0:
+        if entry < 0.0:
+            entry = first_entry(solid, motion, k, line, (0.0, level))
+        if entry < remaining[i]:
+            remaining[i] = entry
+            cut_by[i] = arrival
+
+
+@compiled
+def _bounds(solid: Array, groups: Array, ball: Array, reach: float, bound: Array) -> None:
+    """Lower bound of the distance between a block of points and all motions of each group."""
+    for g in range(groups.shape[0]):
+        w0, w1, w2 = ball[0] - groups[g, 0], ball[1] - groups[g, 1], ball[2] - groups[g, 2]
+        z = w0 * groups[g, 4] + w1 * groups[g, 5] + w2 * groups[g, 6]
+        rho = np.sqrt(max(w0 * w0 + w1 * w1 + w2 * w2 - z * z, 0.0))
+        value, _, _ = meridian(solid, rho, z)
+        bound[g] = value - groups[g, 3] - groups[g, 7] * reach - ball[3]
+
+
+@compiled
+def _remove_block(solid: Array, motion: Pieces, tables: tuple[Array, Counts, Array, NDArray[np.bool_], Counts],
+                  ball: Array, ray: Array, rows: tuple[int, int], out: Found) -> None:
+    """Let all motions act on one block of rays, nearest groups first."""
+    groups, first, slack, cutting, arrival = tables
+    bound = np.empty(groups.shape[0])
+    _bounds(solid, groups, ball, np.sqrt(solid[5] ** 2 + max(solid[0] + solid[1], solid[6]) ** 2), bound)
+    centre = (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0)
+    for g in np.argsort(bound):
+        lever = 0.0
+        for i in range(rows[0], rows[1]):
+            lever = max(lever, ray[i, 6], min(out[0][i], ray[i, 7]))
+        if bound[g] > lever:
+            break
+        for k in range(first[g], first[g + 1]):
+            value, _, _ = moment(solid, motion, (k, 0.5), centre, 0.0)
+            if value - slack[k] <= ball[3] + lever:
+                for i in range(rows[0], rows[1]):
+                    _meet(solid, motion, (k, cutting[k], arrival[k]), ray, out, i)
+
+
+@compiled
+def _remove(solid: Array, motion: Pieces, tables: tuple[Array, Counts, Array, NDArray[np.bool_], Counts],
+            rays: tuple[Array, Array, Counts], out: Found, part: tuple[int, int]) -> None:
+    ray, ball, first = rays
+    for b in range(part[0], part[1]):
+        _remove_block(solid, motion, tables, ball[b], ray, (first[b], first[b + 1]), out)
+
+
+def _checked_rays(points: ArrayLike, normals: ArrayLike, depth: ArrayLike, height: ArrayLike) -> Array:
+    foot, direction = as_rows(points, 3, "ray point"), as_rows(normals, 3, "ray normal")
+    if len(direction) != len(foot):
+        raise InvalidInput(f"{len(foot)} ray points come with {len(direction)} normals: one of each is needed")
+    span = np.empty((len(foot), 2))
+    for column, (name, value) in enumerate((("depth", depth), ("height", height))):
+        span[:, column] = value
+        if not (np.isfinite(span[:, column]).all() and (span[:, column] > 0).all()):
+            raise InvalidInput(f"ray {name} must be finite and above zero, mm")
+    return np.ascontiguousarray(np.hstack([foot, unit(direction), span]))
+
+
+def _chunks(blocks: int) -> Iterator[tuple[int, int]]:
+    for b in range(0, blocks, _CHUNK):
+        yield b, min(b + _CHUNK, blocks)
+
+
+def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]], rays: tuple[Array, Array, Counts],
+         workers: tuple[int, Progress]) -> Found:
+    """Hand blocks of rays to the kernel, or to its twin."""
+    slack, cutting = tables
+    count, (threads, progress) = len(rays[0]), workers
+    out = (np.full(count, np.inf), np.zeros(count), np.full(count, -1, dtype=np.int64),
+           np.full(count, -1, dtype=np.int64))
+    motion = (motions.start, motions.step, motions.axis, motions.turn)
+    stage, blocks = "material removal", len(rays[1])
+    if not _compiled.available:
+        for low, high in _chunks(blocks):
+            part = (rays[0], rays[1][low:high], rays[2][low:high + 1])
+            remove_numpy(solid, motion, (slack, cutting, motions.arrival), part, out)
+            progress.report(stage, high, blocks)
+        return out
+    full = (*grouped(motions), slack, cutting, motions.arrival)
+    if threads <= 1:
+        for part_ in _chunks(blocks):
+            _remove(solid, motion, full, rays, out, part_)
+            progress.report(stage, part_[1], blocks)
+        return out
+    with ThreadPoolExecutor(threads) as pool:
+        jobs = [pool.submit(_remove, solid, motion, full, rays, out, part_) for part_ in _chunks(blocks)]
+        try:
+            for done, job in enumerate(jobs):
+                job.result()
+                progress.report(stage, done + 1, len(jobs))
+        except BaseException:
+            for job in jobs:
+                job.cancel()
+            raise
+    return out
+
+
+def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: tuple[ArrayLike, ArrayLike], *,
+            depth: ArrayLike = 1.0, height: ArrayLike = 10.0, cutting: tuple[int, ...] = (Motion.CUT,),
+            threads: int = 1, progress: Progress = NO_PROGRESS) -> Remains:
+    """Remove material with a cutter along cutter location data and measure what is left along rays.
+
+    Parameters
+    ----------
+    cl : tips (n, 3), axes (n, 3), kind (n,)
+        Tool tips, mm, tool axes, and the `Motion` that arrives at each point.  Between two points the tip moves
+        straight and the axis is interpolated linearly and normalised.
+    profile : Profile
+        Generatrix of the cutter.
+    rays : points (m, 3), normals (m, 3)
+        Feet of the rays, mm, and directions out of the material.
+    depth, height : float or (m,) array_like
+        How far to look inwards and outwards, mm.
+    cutting : tuple of int
+        Kinds of motion that count for what remains; all kinds count for gouges.
+    threads : int
+        Threads of the compiled kernel; the result does not depend on it.
+    progress : Progress
+
+    Returns
+    -------
+    Remains
+
+    Raises
+    ------
+    InvalidInput
+        When there is no cutter location, a number is not finite, or shapes do not fit.
+
+    Properties
+    ----------
+    1. On two straight passes over a plane the greatest height left is the scallop of their distance.
+    2. Rigid motions and mirrors change nothing; nor does the number of threads.
+    3. A ball's heights do not depend on its axes.
+    """
+    solid = cutter_solid(profile)
+    reach = reach_of(solid)
+    motions = motions_from_cl(*cl, reach)
+    ray = _checked_rays(*rays, depth, height)
+    if not len(ray):
+        raise InvalidInput("there is no ray: give at least one point of the face")
+    order = curve_order(ray[:, :3])
+    sorted_ray = np.ascontiguousarray(ray[order])
+    lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
+    slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
+    cuts = np.isin(motions.kind, cutting)
+    out = _run(solid[0], motions, (slack, cuts), (sorted_ray, *balls(sorted_ray[:, :3])), (threads, progress))
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    return Remains(*(column[back] for column in out), uncertainty=NUMERICAL + motions.uncertainty)

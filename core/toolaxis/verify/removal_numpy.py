@@ -1,0 +1,169 @@
+"""The plain twin of the removal kernel: pairs of rays and motions on whole arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.verify.solids import meridian_numpy
+from toolaxis.verify.sweep import LEAST, LOOK, ROOT
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Motion = tuple[Array, Array, Array, Array]
+Pairs = tuple[Array, Motion, Array]
+
+_BLOCKS = 128
+_NEAREST = 4
+
+
+def _moment(pairs: Pairs, s: Array, t: Array) -> tuple[Array, Array, Array]:
+    """`sweep.moment` for pairs (solid, motions, rays) of one row each."""
+    solid, (start, step, axis, turn), ray = pairs
+    w = ray[:, :3] + t[:, None] * ray[:, 3:6] - start - s[:, None] * step
+    lean = axis + s[:, None] * turn
+    m = 1.0 / np.linalg.norm(lean, axis=1)
+    lean = lean * m[:, None]
+    z = np.einsum("ij,ij->i", w, lean)
+    across = w - z[:, None] * lean
+    rho = np.linalg.norm(across, axis=1)
+    value, along_rho, along_z = meridian_numpy(solid, rho, z)
+    share = np.where(rho > 1e-12, along_rho / np.maximum(rho, 1e-12), 0.0)
+    gradient = share[:, None] * across + along_z[:, None] * lean
+    slope = -np.einsum("ij,ij->i", gradient, step) + m * np.einsum("ij,ij->i", across, turn) * (along_z - share * z)
+    return value, slope, np.einsum("ij,ij->i", gradient, ray[:, 3:6])
+
+
+def _rows(pairs: Pairs, which: NDArray[np.bool_]) -> Pairs:
+    solid, motion, ray = pairs
+    start, step, axis, turn = motion
+    return solid, (start[which], step[which], axis[which], turn[which]), ray[which]
+
+
+def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array]:
+    """Least of the solid's function over the motion, for each pair of a motion and a ray's point.
+
+    Parameters
+    ----------
+    pairs : solid, motions (four arrays of (n, 3)), rays (n, 6 or more)
+    t : (n,) array
+        Place on each ray, mm.
+
+    Returns
+    -------
+    value, low, along : (n,) arrays
+        As `sweep.least_over_motion` returns them.
+    """
+    count = len(t)
+    a, b = np.zeros(count), np.ones(count)
+    (va, da, ta), (vb, db, tb) = _moment(pairs, a, t), _moment(pairs, b, t)
+    at_start, at_end = da >= 0, (da < 0) & (db <= 0)
+    low, along = np.where(at_end, vb, va), np.where(at_end, tb, ta)
+    value = low.copy()
+    open_ = ~(at_start | at_end)
+    for turn in range(80):
+        if not open_.any():
+            break
+        width, gap = b - a, np.where(open_, db - da, 1.0)
+        low = np.where(open_, (va * db - vb * da + da * db * width) / gap, low)
+        along = np.where(open_, (db * ta - da * tb) / gap, along)
+        value = np.where(open_, np.minimum(va, vb), value)
+        open_ &= value - low > LEAST
+        i = np.flatnonzero(open_)
+        part = (-da[i] / gap[i] * width[i], (low[i] - va[i]) / da[i], 0.5 * width[i])[turn % 3]
+        s = a[i] + np.clip(part, 1e-3 * width[i], 0.999 * width[i])
+        v, d, slope = _moment(_rows(pairs, open_), s, t[i])
+        down, up = i[d <= 0], i[d > 0]
+        a[down], va[down], da[down], ta[down] = s[d <= 0], v[d <= 0], d[d <= 0], slope[d <= 0]
+        b[up], vb[up], db[up], tb[up] = s[d > 0], v[d > 0], d[d > 0], slope[d > 0]
+    return value, np.minimum(low, value), along
+
+
+def first_entry_numpy(pairs: Pairs, low: Array, high: Array) -> Array:
+    """`sweep.first_entry` for pairs of a motion and a ray.
+
+    Parameters
+    ----------
+    pairs : solid, motions, rays
+    low, high : (n,) array
+        Span of each ray, mm.
+
+    Returns
+    -------
+    (n,) array, inf where the ray stays outside
+    """
+    t, entry = np.array(low, dtype=float), np.full(len(low), np.inf)
+    open_ = t <= high
+    for _ in range(200):
+        i = np.flatnonzero(open_)
+        if not len(i):
+            break
+        value, least, along = least_over_motion_numpy(_rows(pairs, open_), t[i])
+        found, lost = value <= ROOT, (value > ROOT) & (along >= 0)
+        entry[i[found]] = t[i[found]]
+        ahead = np.where(along < 0, np.maximum(least, 0.5 * ROOT) / np.where(along < 0, -along, 1.0), 0.0)
+        t[i] += np.where(found, 0.0, ahead)
+        open_[i] = ~(found | lost) & (t[i] <= high[i])
+    return entry
+
+
+def _update(solid: Array, motion: Motion, pair: tuple[Index, Index], ray: Array,
+            out: tuple[Array, Array, Index, Index], kinds: tuple[NDArray[np.bool_], Index]) -> None:
+    """Meet pairs (rays, motions) and lower what remains, deepen what is gouged."""
+    i, k = pair
+    remaining, gouge, cut_by, gouged_by = out
+    cutting, arrival = kinds
+    start, step, axis, turn = motion
+    pairs = (solid, (start[k], step[k], axis[k], turn[k]), ray[i])
+    level = np.where(cutting[k] & (remaining[i] > 0), np.minimum(remaining[i], ray[i, 7]), -gouge[i])
+    value, slope, along = _moment(pairs, np.full(len(i), 0.5), level)
+    keep = value - 0.5 * np.abs(slope) - np.maximum(along, 0) * (level + ray[i, 6]) <= LOOK
+    i, k, level, pairs = i[keep], k[keep], level[keep], _rows(pairs, keep)
+    entry = first_entry_numpy(pairs, -ray[i, 6], level)
+    order = np.argsort(-entry, kind="stable")
+    deep = order[np.isfinite(entry[order]) & (-entry[order] > gouge[i[order]])]
+    gouge[i[deep]] = 0.0
+    np.maximum.at(gouge, i[deep], -entry[deep])
+    deepest = deep[-entry[deep] >= gouge[i[deep]]]
+    gouged_by[i[deepest]] = arrival[k[deepest]]
+    below = (entry < 0) & cutting[k]
+    entry[below] = first_entry_numpy(_rows(pairs, below), np.zeros(below.sum()), level[below])
+    cut = np.flatnonzero(cutting[k] & (entry >= 0) & (entry < remaining[i]))
+    np.minimum.at(remaining, i[cut], entry[cut])
+    lowest = cut[entry[cut] <= remaining[i[cut]]]
+    cut_by[i[lowest]] = arrival[k[lowest]]
+
+
+def remove_numpy(solid: Array, motion: Motion, tables: tuple[Array, NDArray[np.bool_], Index],
+                 rays: tuple[Array, Array, Index], out: tuple[Array, Array, Index, Index]) -> None:
+    """Meet every ray with every motion near it.
+
+    Parameters
+    ----------
+    solid : (7,) array
+    motion : four (n, 3) arrays
+        Start, step, axis, turn.
+    tables : slack (n,), cutting (n,), arrival (n,)
+    rays : ray (m, 8), ball (b, 4), first (b + 1,)
+    out : remaining, gouge, cut_by, gouged_by, each (m,); changed in place
+    """
+    slack, cutting, arrival = tables
+    ray, ball, first = rays
+    start, step, axis, turn = motion
+    middle, lean = start + 0.5 * step, axis + 0.5 * turn
+    lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
+    kinds = (cutting, arrival)
+    for b in range(0, len(ball), _BLOCKS):
+        part = ball[b:b + _BLOCKS]
+        w = part[:, None, :3] - middle
+        z = np.einsum("bkj,kj->bk", w, lean)
+        rho = np.linalg.norm(w - z[..., None] * lean, axis=2)
+        bound = meridian_numpy(solid, rho, z)[0] - slack - part[:, 3:]
+        near = np.zeros_like(bound, dtype=bool)
+        np.put_along_axis(near, np.argsort(bound, axis=1, kind="stable")[:, :_NEAREST], True, axis=1)
+        for chosen in (near, ~near):
+            for j in range(len(part)):
+                i = np.arange(first[b + j], first[b + j + 1])
+                lever = np.maximum(ray[i, 6], np.minimum(out[0][i], ray[i, 7])).max()
+                k = np.flatnonzero(chosen[j] & (bound[j] <= lever))
+                if len(k):
+                    pair = (np.repeat(i, len(k)), np.tile(k, len(i)))
+                    _update(solid, motion, pair, ray, out, kinds)
