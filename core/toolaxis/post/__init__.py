@@ -1,0 +1,1 @@
+"""Text out: cutter location files and, later, NC code."""

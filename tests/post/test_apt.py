@@ -1,0 +1,108 @@
+"""APT CL files: what is written is read back, and what is broken is refused with its line."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.post.apt import apt_text, cutter_statement, read_apt
+from toolaxis.tools.assembly import Tool
+
+TOOL = Tool.torus(diameter=12, corner_radius=1)
+
+
+def path_of(passes: int, points: int, seed: int) -> ToolPath:
+    rng = np.random.default_rng(seed)
+    count = passes * points
+    cl = rng.uniform(-2000, 2000, (count, 3))
+    axis = rng.normal(size=(count, 3))
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    kind = np.tile([Motion.LINK, Motion.ENTRY, *[Motion.CUT] * (points - 3), Motion.EXIT], passes).astype(np.int8)
+    return ToolPath(cl, cl, axis, axis, kind, np.arange(0, count + 1, points))
+
+
+@settings(deadline=None, max_examples=40)
+@given(passes=st.integers(1, 5), points=st.integers(4, 12), seed=st.integers(0, 2**32 - 1))
+def test_what_is_written_is_read_back(passes: int, points: int, seed: int) -> None:
+    path = path_of(passes, points, seed)
+    back = read_apt(apt_text(path, TOOL, "op01-face1", 1200.0, 8000.0))
+    assert np.abs(back.tip - path.cl).max() <= 0.5001e-6
+    assert np.abs(back.axis - path.axis).max() <= 2e-9
+    assert np.array_equal(back.kind, path.kind)
+    assert np.array_equal(back.breaks, path.breaks)
+    assert np.isinf(back.feedrate[path.kind == Motion.LINK]).all()
+    assert (back.feedrate[path.kind != Motion.LINK] == 1200.0).all()
+
+
+def test_text_of_a_small_path() -> None:
+    cl = np.array([[0, 0, 5], [0, 0, 0], [10, 0, 0], [10.25, -0.5, 0], [10.25, -0.5, 5.0]])
+    axis = np.tile([0.0, 0.6, 0.8], (5, 1))
+    kind = np.array([Motion.LINK, Motion.ENTRY, Motion.CUT, Motion.EXIT, Motion.LINK], dtype=np.int8)
+    text = apt_text(ToolPath(cl, cl, axis, axis, kind, np.array([0, 5])), TOOL, "op01-faceé$1", 800, 9000)
+    assert text.splitlines() == [
+        "PARTNO/op01-face__1", "UNITS/MM", "MULTAX/ON", "CUTTER/12,1,5,1,0,0,24", "LOADTL/1", "SPINDL/RPM,9000,CLW",
+        "PPRINT/PASS 1", "PPRINT/LINK", "RAPID",
+        "GOTO/0.000000,0.000000,5.000000,0.000000000,0.600000000,0.800000000",
+        "PPRINT/ENTRY", "FEDRAT/MMPM,800",
+        "GOTO/0.000000,0.000000,0.000000,0.000000000,0.600000000,0.800000000",
+        "PPRINT/CUT",
+        "GOTO/10.000000,0.000000,0.000000,0.000000000,0.600000000,0.800000000",
+        "PPRINT/EXIT",
+        "GOTO/10.250000,-0.500000,0.000000,0.000000000,0.600000000,0.800000000",
+        "PPRINT/LINK", "RAPID",
+        "GOTO/10.250000,-0.500000,5.000000,0.000000000,0.600000000,0.800000000",
+        "SPINDL/OFF", "FINI"]
+
+
+def test_lines_are_continued_at_72_columns() -> None:
+    text = apt_text(path_of(2, 6, 1), TOOL, "x" * 200, 800, 9000)
+    assert max(map(len, text.splitlines())) <= 72
+    assert "$\n" in text
+
+
+@pytest.mark.parametrize("tool, statement", [
+    (Tool.ball(diameter=8), "CUTTER/8,4,0,4,0,0,16"),
+    (Tool.flat(diameter=20), "CUTTER/20,0,10,0,0,0,40"),
+    (Tool.tapered(diameter=6, corner_radius=3, half_angle_deg=4), "CUTTER/6,3,0,3,0,4,12"),
+])
+def test_cutter_statement(tool: Tool, statement: str) -> None:
+    assert cutter_statement(tool) == statement
+
+
+def test_words_of_other_writers() -> None:
+    text = ("$$ made elsewhere\nPARTNO COVER\nUNITS / INCHES\nMULTAX\nTLAXIS/0,0,1\nRAPID\nGOTO / 1, 0, 0, 0, 0, 1\n"
+            "FEDRAT/ 10.0, IPM\nGOTO / 2, 0, $\n 0, 0, 0, 1 $$ on the way\nGOTO/3,0,0\nFINI\n")
+    found = read_apt(text)
+    assert np.allclose(found.tip, [[25.4, 0, 0], [50.8, 0, 0], [76.2, 0, 0]], atol=1e-12)
+    assert np.array_equal(found.axis, np.tile([0.0, 0.0, 1.0], (3, 1)))
+    assert found.kind.tolist() == [Motion.LINK, Motion.CUT, Motion.CUT]
+    assert found.feedrate.tolist() == [np.inf, 254.0, 254.0]
+
+
+def test_a_printed_link_is_no_rapid() -> None:
+    found = read_apt("PPRINT/LINK\nGOTO/0,0,0,0,0,1\nGOTO/1,0,0,0,0,1\nFINI")
+    assert found.kind.tolist() == [Motion.CUT, Motion.CUT]
+
+
+HEAD = "UNITS/MM\nMULTAX/ON\nGOTO/0,0,0,0,0,1\n"
+
+
+@pytest.mark.parametrize("text, said", [
+    ("", "without FINI"),
+    (HEAD + "GOTO/1,0,0,0,0,1\n", "ends without FINI after 2 points"),
+    (HEAD + "FINI", "at least two"),
+    (HEAD + "GOTO/1,0,x,0,0,1\nFINI", "line 4"),
+    (HEAD + "GOTO/1,0,nan,0,0,1\nFINI", "line 4"),
+    (HEAD + "GOTO/1,0,0,0,0\nFINI", "line 4: .* has 5 numbers"),
+    (HEAD + "GOTO/1,0,0,0,0,2\nFINI", "line 4: the axis .* length 2"),
+    (HEAD + "CIRCLE/1,0,0,0,0,1,5\nFINI", "line 4: CIRCLE is not understood"),
+    (HEAD + "FEDRAT/MMPM,0\nFINI", "feed rate 0"),
+    (HEAD + "FEDRAT/MMPM\nFINI", "line 4: FEDRAT/MMPM has no feed rate"),
+    ("UNITS/FEET\nFINI", "UNITS/FEET"),
+    ("MULTAX/ON\nGOTO/0,0,0\nFINI", "has 3 numbers"),
+])
+def test_broken_files_are_refused(text: str, said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        read_apt(text)
