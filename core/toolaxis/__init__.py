@@ -1,1 +1,74 @@
-"""Tool orientations for multi-axis machining of sculptured surfaces."""
+"""Tool orientations for multi-axis machining of sculptured surfaces.
+
+The public names resolve when they are first used (PEP 562), so that importing the package costs next to nothing.
+"""
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from toolaxis.cad.load import load as load
+    from toolaxis.contact.clearance import clearance as clearance
+    from toolaxis.contact.gouge import gouge as gouge
+    from toolaxis.contact.placing import place as place
+    from toolaxis.contact.strip import strip_width as strip_width
+    from toolaxis.errors import Cancelled as Cancelled
+    from toolaxis.errors import InvalidInput as InvalidInput
+    from toolaxis.errors import JobError as JobError
+    from toolaxis.errors import MissingBackend as MissingBackend
+    from toolaxis.errors import ToolAxisError as ToolAxisError
+    from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
+    from toolaxis.job.judge import verify as verify
+    from toolaxis.job.run import plan as plan
+    from toolaxis.orient.indexed import best_axis as best_axis
+    from toolaxis.path.count import count as count
+    from toolaxis.path.count import estimate as estimate
+    from toolaxis.path.isoparametric import passes as passes
+    from toolaxis.path.sampling import sample_points as sample_points
+    from toolaxis.shape.face import Face as Face
+    from toolaxis.shape.part import Part as Part
+    from toolaxis.tolerances import Tolerance as Tolerance
+    from toolaxis.tools.assembly import Tool as Tool
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
+    "load": "cad.load", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
+    "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.count",
+    "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed", "plan": "job.run",
+    "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors", "UnsupportedGeometry": "errors",
+    "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
+}
+
+__all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605
+
+
+def _resolve(name: str) -> Any:
+    return getattr(import_module(f"toolaxis.{_HOME[name]}"), name)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'toolaxis' has no attribute {name!r}")
+    value = globals()[name] = _resolve(name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOME})
+
+
+class _Package(ModuleType):
+    """The package as an object: `plan` and `verify` stay the public functions.
+
+    Subpackages have the same two names, and the import system would put them in the functions' place.
+    """
+
+    plan = property(lambda self: _resolve("plan"), lambda self, subpackage: None)
+    verify = property(lambda self: _resolve("verify"), lambda self, subpackage: None)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -1,0 +1,1 @@
+"""What moves: limits of the axes and work coordinate systems."""

@@ -1,0 +1,193 @@
+"""A plan as a JSON document, and back: the written form that every door and the judge read."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import AxisMap, Orientation
+from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.schema import NAME, VERSION, check
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Document = dict[str, Any]
+
+_SCALARS = ("feed", "passes", "count", "length", "average_strip_width", "gouge", "outcome", "evaluations", "unreached")
+
+
+def _rows(values: Array | None) -> list[Any] | None:
+    return None if values is None else np.asarray(values, dtype=float).tolist()
+
+
+def _finite(values: Array) -> list[float | None]:
+    return [float(v) if np.isfinite(v) else None for v in values]
+
+
+def tool_document(tool: Tool) -> Document:
+    """A tool as numbers: sizes in mm, the half angle in rad.
+
+    Parameters
+    ----------
+    tool : Tool
+    """
+    return {"name": tool.name, "kind": tool.kind, "radius": tool.radius, "corner_radius": tool.corner_radius,
+            "half_angle": tool.half_angle, "flute_length": tool.flute_length, "stickout": tool.stickout,
+            "shank": _rows(tool.shank), "holder": _rows(tool.holder)}
+
+
+def tool_from(document: Mapping[str, Any]) -> Tool:
+    """The tool that `tool_document` wrote.
+
+    Parameters
+    ----------
+    document : mapping
+
+    Raises
+    ------
+    InvalidInput
+        When the sizes make no tool.
+    """
+    body = {key: document[key] for key in ("flute_length", "stickout", "shank", "holder") if document[key] is not None}
+    return Tool.build(document["kind"], document["radius"], document["corner_radius"], document["half_angle"], **body)
+
+
+def _map_document(found: AxisMap | None) -> Document | None:
+    if found is None:
+        return None
+    return {"axis": _rows(found.axis), "passes": _finite(found.passes), "length": _finite(found.length),
+            "reason": found.reason.tolist(), "amount": _finite(found.amount)}
+
+
+def _map_from(document: Mapping[str, Any] | None) -> AxisMap | None:
+    if document is None:
+        return None
+
+    def numbers(name: str) -> Array:
+        return np.array([np.inf if v is None else v for v in document[name]], dtype=float)
+
+    return AxisMap(np.array(document["axis"], dtype=float).reshape(-1, 3), numbers("passes"), numbers("length"),
+                   np.array(document["reason"], dtype=np.int8), numbers("amount"))
+
+
+def orientation_document(found: Orientation) -> Document:
+    """An orientation as numbers, its lobes and its map included.
+
+    Parameters
+    ----------
+    found : Orientation
+    """
+    record: Document = {name: getattr(found, name) for name in _SCALARS}
+    for name in ("count", "length", "average_strip_width", "gouge", "unreached"):
+        record[name] = float(record[name]) if np.isfinite(record[name]) else None
+    return {**record, "passes": int(found.passes), "evaluations": int(found.evaluations), "axis": _rows(found.axis),
+            "clearance": {name: float(v) if np.isfinite(v) else None for name, v in found.clearance.items()},
+            "reasons": list(found.reasons),
+            "lobes": [orientation_document(lobe) for lobe in found.lobes], "map": _map_document(found.map)}
+
+
+def orientation_from(document: Mapping[str, Any]) -> Orientation:
+    """The orientation that `orientation_document` wrote.
+
+    Parameters
+    ----------
+    document : mapping
+    """
+    scalars = {name: np.inf if document[name] is None else document[name] for name in _SCALARS}
+    axis = document["axis"]
+    return Orientation(axis=None if axis is None else np.array(axis, dtype=float), **scalars,
+                       clearance={k: np.inf if v is None else v for k, v in document["clearance"].items()},
+                       reasons=tuple(document["reasons"]), map=_map_from(document["map"]),
+                       lobes=tuple(orientation_from(lobe) for lobe in document["lobes"]))
+
+
+def _frame_document(frame: WorkCoordinates | None) -> Document | None:
+    if frame is None:
+        return None
+    return {name: _rows(getattr(frame, name)) for name in ("origin", "x", "y", "z", "shown_at")}
+
+
+def _operation_document(op: Operation, whole: Face | None, cl_file: str | None) -> Document:
+    same = whole is not None and len(whole.trims) == len(op.face.trims) and all(
+        map(np.array_equal, whole.trims, op.face.trims))
+    path = op.path
+    return {"number": op.number, "name": op.name, "face": op.face.number, "label": op.face.label,
+            "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
+            "region": None if same else [_rows(loop) for loop in op.face.trims],
+            "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
+            "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel}
+
+
+def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
+    """A plan as a document that `json.dump` takes and `schema.check` accepts.
+
+    Parameters
+    ----------
+    plan : Plan
+    files : mapping
+        "part": {"file", "sha256"}; "obstacles": list of the same; "operations": CL file name or None per operation.
+    """
+    whole = {face.number: face for face in plan.part.faces}
+    return {
+        "schema": NAME, "version": VERSION,
+        "units": {"length": "mm", "angle": "rad", "feedrate": "mm/min", "spindle": "rev/min"},
+        "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit, "faces": len(plan.part.faces),
+                 "warnings": list(plan.part.warnings)},
+        "obstacles": list(files["obstacles"]),
+        "tool": tool_document(plan.tool),
+        "inputs": asdict(plan.inputs),
+        "datum": _rows(plan.datum),
+        "outcome": plan.outcome,
+        "not_checked": list(plan.not_checked),
+        "length": plan.length,
+        "operations": [_operation_document(op, whole.get(op.face.number), name)
+                       for op, name in zip(plan.operations, files["operations"], strict=True)],
+    }
+
+
+def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | None) -> Operation:
+    number = document["face"]
+    if not 1 <= number <= len(part.faces):
+        raise InvalidInput(f"operation {document['number']} refers to face {number}, but the part has faces 1 to "
+                           f"{len(part.faces)}: the plan and the part do not belong together")
+    face = part.faces[number - 1]
+    if document["region"] is not None:
+        face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
+    frame = document["work_coordinates"]
+    axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
+    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes)
+
+
+def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part],
+              paths: Sequence[ToolPath | None]) -> Plan:
+    """The plan that `plan_document` wrote, with the part and the paths that stand beside it.
+
+    Parameters
+    ----------
+    document : mapping
+    part : Part
+    obstacles : sequence of Part
+    paths : sequence of ToolPath or None
+        One per operation.
+
+    Raises
+    ------
+    InvalidInput
+        When the document breaks the schema or does not fit the part.
+    """
+    check(document)
+    given = dict(document["inputs"])
+    inputs = Inputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
+    operations = tuple(_operation_from(record, part, path)
+                       for record, path in zip(document["operations"], paths, strict=True))
+    return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),
+                np.array(document["datum"], dtype=float), document["outcome"])

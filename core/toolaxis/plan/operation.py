@@ -1,0 +1,48 @@
+"""One operation: a sub-surface, its orientation, its tool path and its work coordinate system."""
+
+from dataclasses import dataclass
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.plan.orientation import Orientation
+from toolaxis.shape.face import Face
+
+
+@dataclass(frozen=True, eq=False)
+class Operation:
+    """What is done to one sub-surface with one fixed axis.
+
+    Attributes
+    ----------
+    number : int
+        From 1, in the order in which operations are carried out.
+    face : Face
+        The sub-surface.
+    orientation : Orientation
+        The axis with what it costs, or the reasons why there is none.
+    path : ToolPath or None
+        Passes and links in the part's frame; None where there is no axis.
+    frame : WorkCoordinates or None
+        None where there is no axis.
+    """
+
+    number: int
+    face: Face
+    orientation: Orientation
+    path: ToolPath | None = None
+    frame: WorkCoordinates | None = None
+
+    @property
+    def done(self) -> bool:
+        """Whether there is an axis and a path."""
+        return self.path is not None
+
+    @property
+    def name(self) -> str:
+        """Name of the operation, also of its CL file."""
+        return f"op{self.number:02d}-face{self.face.label}"
+
+    @property
+    def travel(self) -> float:
+        """Length of the tip's motion off the cut (entries, exits and links), mm."""
+        return 0.0 if self.path is None else self.path.length(Motion.ENTRY, Motion.EXIT, Motion.LINK)

@@ -1,0 +1,130 @@
+"""The plan: what was asked for, and the operations that answer it."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.plan.operation import Operation
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+METHODS = ("sphere", "sectors")
+OBJECTIVES = ("length", "passes")
+DIRECTIONS = ("zigzag", "climb", "conventional")
+
+
+def _one_of(name: str, value: str, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise InvalidInput(f"{name} is {value!r}: use {', '.join(choices[:-1])} or {choices[-1]}")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What the planner was asked for; lengths in mm.
+
+    Attributes
+    ----------
+    scallop : float
+        Greatest scallop height.
+    allowance : float
+        Stock left on the faces.
+    method, objective, direction : str
+        One of `METHODS`, `OBJECTIVES`, `DIRECTIONS`.
+    limits : str
+        Limits of the axis in the short form of the command; empty for none.
+    feedrate : float
+        mm/min
+    spindle : float
+        rev/min
+    tolerance : Tolerance
+
+    Raises
+    ------
+    InvalidInput
+        When a value is out of its range.
+    """
+
+    scallop: float
+    allowance: float = 0.0
+    method: str = "sphere"
+    objective: str = "length"
+    direction: str = "zigzag"
+    limits: str = ""
+    feedrate: float = 1000.0
+    spindle: float = 10000.0
+    tolerance: Tolerance = field(default_factory=Tolerance)
+
+    def __post_init__(self) -> None:
+        for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min")):
+            value = getattr(self, name)
+            if not (isfinite(value) and value > 0):
+                raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
+        if not (isfinite(self.allowance) and self.allowance >= 0):
+            raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        _one_of("method", self.method, METHODS)
+        _one_of("objective", self.objective, OBJECTIVES)
+        _one_of("direction", self.direction, DIRECTIONS)
+
+    def check_tool(self, tool: Tool) -> None:
+        """Check that the scallop is one that this cutter can leave.
+
+        Parameters
+        ----------
+        tool : Tool
+
+        Raises
+        ------
+        InvalidInput
+            When the scallop height is not below the cutter's radius.
+        """
+        if self.scallop >= tool.radius:
+            raise InvalidInput(f"scallop is {self.scallop} mm, not below the cutter radius {tool.radius} mm: "
+                               "give a smaller scallop height")
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Operations that machine faces of a part, each with a fixed axis.
+
+    Attributes
+    ----------
+    part : Part
+    tool : Tool
+    inputs : Inputs
+    operations : tuple of Operation
+        One per sub-surface, in the order of the faces.
+    obstacles : tuple of Part
+        Further bodies that were kept clear of.
+    datum : (3,) array
+        Origin of every work coordinate system, mm.
+    outcome : str
+        "complete" (every sub-surface has an axis), "incomplete" (one or more have none) or "cancelled".
+    """
+
+    part: Part
+    tool: Tool
+    inputs: Inputs
+    operations: tuple[Operation, ...]
+    obstacles: tuple[Part, ...]
+    datum: Array
+    outcome: str
+
+    @property
+    def not_checked(self) -> tuple[str, ...]:
+        """What the collision check left out because it was not given."""
+        known = self.tool.outlines
+        missing = [name for name in ("shank", "holder") if name not in known]
+        if not self.obstacles:
+            missing.append("obstacles other than the part")
+        return (*missing, "machine")
+
+    @property
+    def length(self) -> float:
+        """Length of the cutting motion of all operations, mm."""
+        return float(sum(op.orientation.length for op in self.operations if op.done))
