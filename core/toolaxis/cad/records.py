@@ -1,0 +1,59 @@
+"""A shape as plain arrays: what leaves the CAD kernel, also across processes."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cad.arcs import ParameterMap
+from toolaxis.shape.adjacency import Border
+from toolaxis.shape.part import Body
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FaceRecord:
+    """One face.
+
+    Attributes
+    ----------
+    number : int
+        From 1, in the file's order.
+    knots_u, knots_v, control, degree
+        The surface, as `toolaxis.shape.nurbs.NurbsSurface` takes it.
+    loops : tuple of (m, 2) arrays
+        In our parameters, outer one first and anticlockwise; empty for the whole domain.
+    flip : bool
+        Su x Sv points into the material.
+    turned : bool
+        Its wires ran clockwise in the file.
+    kind : str
+    tolerance : float
+    map : ParameterMap
+        From the kernel's parameters to ours.
+    """
+
+    number: int
+    knots_u: Array
+    knots_v: Array
+    control: Array
+    degree: tuple[int, int]
+    loops: tuple[Array, ...]
+    flip: bool
+    turned: bool
+    kind: str
+    tolerance: float
+    map: ParameterMap
+
+
+@dataclass
+class ShapeRecord:
+    """A whole shape: faces, the borders they share, bodies, warnings, the declared unit, numbers of picked faces."""
+
+    faces: list[FaceRecord] = field(default_factory=list)
+    borders: list[Border] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    unit: str = "mm"
+    selected: tuple[int, ...] = ()

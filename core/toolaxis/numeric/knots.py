@@ -1,0 +1,117 @@
+"""Knot insertion: the same spline written with more knots, cut to a part of its range, or unrolled from a period."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+
+Array = NDArray[np.float64]
+
+
+def multiplicity(knots: Array, t: float) -> int:
+    """How often a knot occurs.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    t : float
+    """
+    return int(np.count_nonzero(knots == t))
+
+
+def distinct_inner(knots: Array, degree: int) -> tuple[Array, NDArray[np.int64]]:
+    """Distinct knots strictly inside the range, and how often each occurs.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    degree : int
+    """
+    values, counts = np.unique(knots, return_counts=True)
+    inner = (values > knots[degree]) & (values < knots[-degree - 1])
+    return values[inner], counts[inner].astype(np.int64)
+
+
+def insert_knot(knots: Array, control: Array, degree: int, t: float) -> tuple[Array, Array]:
+    """Insert one knot; the spline stays the same.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    control : (n, ...) array
+        Control points along the first axis, homogeneous where the spline is rational.
+    degree : int
+    t : float
+        Inside the range, its ends included.
+
+    Returns
+    -------
+    knots : (m + 1,) array
+    control : (n + 1, ...) array
+
+    **Source**: Boehm's algorithm.
+    """
+    n = len(control)
+    k = int(np.searchsorted(knots, t, side="right")) - 1
+    k = min(max(k, degree), n - 1) if t < knots[-1] else n - 1
+    i = np.arange(k - degree + 1, k + 1)
+    span = knots[i + degree] - knots[i]
+    share = np.where(span > 0, (t - knots[i]) / np.where(span > 0, span, 1.0), 0.0)
+    share = share.reshape(-1, *([1] * (control.ndim - 1)))
+    mixed = share * control[i] + (1 - share) * control[i - 1]
+    place = int(np.searchsorted(knots, t, side="right"))
+    return np.insert(knots, place, t), np.concatenate([control[:k - degree + 1], mixed, control[k:]])
+
+
+def restricted(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
+    """The piece of a spline over [low, high], with clamped ends.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    control : (n, ...) array
+    degree : int
+    low, high : float
+        Inside the range; low < high.
+
+    Raises
+    ------
+    InvalidInput
+        When the interval is empty or leaves the range.
+
+    **Properties**: 1. every point of the piece lies where it lay on the whole spline, at the same parameter.
+    """
+    if not knots[degree] <= low < high <= knots[-degree - 1]:
+        raise InvalidInput(f"interval [{low}, {high}] must be a part of the spline's range "
+                           f"[{knots[degree]}, {knots[-degree - 1]}]")
+    for t in (low, high):
+        for _ in range(degree - multiplicity(knots, t)):
+            knots, control = insert_knot(knots, control, degree, t)
+    first = int(np.searchsorted(knots, low, side="right")) - 1 - degree
+    inner = knots[(knots > low) & (knots < high)]
+    clamped = np.concatenate([np.full(degree + 1, low), inner, np.full(degree + 1, high)])
+    return clamped, np.ascontiguousarray(control[first:first + len(clamped) - degree - 1])
+
+
+def unrolled(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
+    """A periodic spline written without period over [low, high], with clamped ends.
+
+    Parameters
+    ----------
+    knots : (n + 2 degree + 2 - wrapped,) array
+        One period of the flat knot sequence with its continuation on both sides: the range runs from
+        ``knots[degree]`` to ``knots[-degree - 1]``.
+    control : (n, ...) array
+        The distinct control points of one period; the i-th basis function takes control point i modulo n.
+    degree : int
+    low, high : float
+        Any interval, also longer than the period or beyond the range.
+    """
+    n = len(control)
+    period = float(knots[-degree - 1] - knots[degree])
+    first = int(np.floor((low - knots[degree]) / period)) - 1
+    last = int(np.ceil((high - knots[degree]) / period)) + 1
+    turns = np.arange(first, last + 1)
+    flat = (knots[:n] + period * turns[:, None]).ravel()
+    net = np.concatenate([control] * len(turns))[:len(flat) - degree - 1]
+    return restricted(flat, net, degree, low, high)

@@ -1,0 +1,118 @@
+"""How faces meet: smoothly, over a convex edge, or in a concave corner."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.vectors import angle_between, dot
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+SMOOTH = radians(1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """A curve along which two faces meet.
+
+    Attributes
+    ----------
+    faces : (int, int)
+        Numbers; twice the same at a seam.
+    points : (m, 3) array
+        Along the curve, mm.
+    first, second : (m, 2) array
+        The same places in the parameters of either face.
+    left : bool
+        The first face lies left of the direction of the points, seen from the side to which its Su x Sv points.
+    """
+
+    faces: tuple[int, int]
+    points: Array
+    first: Array
+    second: Array
+    left: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """Where two faces of a part meet.
+
+    Attributes
+    ----------
+    faces : (int, int)
+        Numbers; twice the same where a closed face meets itself with a kink.
+    kind : str
+        "tangent", "convex" (the material's angle is below 180 degrees) or "concave".
+    polyline : (m, 3) array
+        Points along the edge, mm.
+    angle : float
+        Greatest angle between the two normals along the edge, rad.
+    """
+
+    faces: tuple[int, int]
+    kind: str
+    polyline: Array
+    angle: float = 0.0
+
+
+def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth: float = SMOOTH) -> tuple[Edge, ...]:
+    """Tell tangent, convex and concave edges apart by the normals along them.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+    borders : sequence of Border
+    smooth : float
+        Greatest angle between the normals of a tangent edge, rad.
+
+    Returns
+    -------
+    tuple of Edge
+        One for each border, smooth seams left out.
+
+    **Properties**: 1. exchanging the two faces changes nothing; 2. nor does turning the part round.
+    """
+    by_number = {face.number: face for face in faces}
+    sides = [(border.faces[0], border.first) for border in borders] + [(b.faces[1], b.second) for b in borders]
+    normals = _normals(by_number, sides)
+    edges = []
+    for k, border in enumerate(borders):
+        kind, angle = _kind(border, by_number[border.faces[0]], normals[k], normals[k + len(borders)], smooth)
+        if border.faces[0] != border.faces[1] or kind != "tangent":
+            edges.append(Edge(border.faces, kind, border.points, angle))
+    return tuple(edges)
+
+
+def _normals(faces: dict[int, Face], sides: list[tuple[int, Array]]) -> list[Array]:
+    """Normals of every list of parameters, with one evaluation a face."""
+    result: list[Array] = [np.empty((0, 3))] * len(sides)
+    members: dict[int, list[int]] = {}
+    for k, (number, _) in enumerate(sides):
+        members.setdefault(number, []).append(k)
+    for number, rows in members.items():
+        normals = faces[number].normal(np.concatenate([sides[k][1] for k in rows]))
+        cuts = np.cumsum([len(sides[k][1]) for k in rows])[:-1]
+        for k, part in zip(rows, np.split(normals, cuts), strict=True):
+            result[k] = part
+    return result
+
+
+def _kind(border: Border, face: Face, one: Array, other: Array, smooth: float) -> tuple[str, float]:
+    along = np.gradient(border.points, axis=0)
+    sound = (np.linalg.norm(one, axis=1) > 0.5) & (np.linalg.norm(other, axis=1) > 0.5)
+    sound &= np.linalg.norm(along, axis=1) > 0
+    if not sound.any():
+        return "tangent", 0.0
+    one, other, along = one[sound], other[sound], along[sound]
+    angle = angle_between(one, other)
+    if angle.max() <= smooth:
+        return "tangent", float(angle.max())
+    side = 1.0 if border.left ^ face.flip else -1.0
+    inward = side * np.cross(one, along)
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True).clip(1e-300)
+    return ("concave" if float(dot(inward, other).sum()) > 0 else "convex"), float(angle.max())

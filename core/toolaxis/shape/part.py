@@ -1,0 +1,202 @@
+"""A part: faces, the edges between them, and the bodies they bound."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.adjacency import Edge
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+PLAIN_KINDS = ("plane", "cylinder", "cone")
+
+
+@dataclass(frozen=True)
+class Body:
+    """Faces that belong together.
+
+    Attributes
+    ----------
+    kind : str
+        "solid", "shell" or "faces".
+    faces : tuple of int
+        Numbers.
+    closed : bool
+        Whether they bound a volume.
+    """
+
+    kind: str
+    faces: tuple[int, ...]
+    closed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What is to be machined.
+
+    Attributes
+    ----------
+    faces : tuple of Face
+        In the file's order.
+    edges : tuple of Edge
+    bodies : tuple of Body
+    source : str
+        Path of the file, or what it was made from.
+    sha256 : str
+        Of the file; empty where there is none.
+    unit : str
+        Length unit that the file declares; all numbers here are mm.
+    warnings : tuple of str
+    selected : tuple of int
+        Numbers of the faces that the caller picked; empty where nothing was picked.
+
+    Raises
+    ------
+    InvalidInput
+        Without faces, with a face number twice, or with an edge to a face that is not there.
+    """
+
+    faces: tuple[Face, ...]
+    edges: tuple[Edge, ...] = ()
+    bodies: tuple[Body, ...] = ()
+    source: str = ""
+    sha256: str = ""
+    unit: str = "mm"
+    warnings: tuple[str, ...] = ()
+    selected: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.faces:
+            raise InvalidInput("a part needs at least one face")
+        numbers = [face.number for face in self.faces]
+        twice = [number for number in numbers if numbers.count(number) > 1] if len(set(numbers)) < len(numbers) else []
+        if twice:
+            raise InvalidInput(f"face number {twice[0]} occurs twice: give every face of a part its own number")
+        named = [number for edge in self.edges for number in edge.faces]
+        named += [*self.selected, *(number for body in self.bodies for number in body.faces)]
+        missing = sorted(set(named) - set(numbers))
+        if missing:
+            raise InvalidInput(f"face {missing[0]} is named by an edge, a body or the selection but is not in the part")
+
+    @classmethod
+    def from_faces(cls, faces: Sequence[Face], edges: Sequence[Edge] = (), source: str = "") -> "Part":
+        """A part from faces alone, numbered from 1 in their order.
+
+        Parameters
+        ----------
+        faces : sequence of Face
+        edges : sequence of Edge
+            How they meet, by those new numbers.
+        source : str
+
+        Raises
+        ------
+        InvalidInput
+            Without faces.
+        """
+        numbered = tuple(_numbered(face, k + 1) for k, face in enumerate(faces))
+        body = Body("faces", tuple(face.number for face in numbered), False)
+        return cls(numbered, tuple(edges), (body,), source)
+
+    @cached_property
+    def _by_number(self) -> dict[int, Face]:
+        return {face.number: face for face in self.faces}
+
+    @cached_property
+    def _adjacent(self) -> dict[int, list[tuple[int, str]]]:
+        table: dict[int, list[tuple[int, str]]] = {}
+        for edge in self.edges:
+            a, b = edge.faces
+            if a != b:
+                table.setdefault(a, []).append((b, edge.kind))
+                table.setdefault(b, []).append((a, edge.kind))
+        return table
+
+    def face(self, number: int) -> Face:
+        """The face with a number, from 1.
+
+        Raises
+        ------
+        InvalidInput
+            When the part has no such face.
+        """
+        if number not in self._by_number:
+            raise InvalidInput(f"face {number} does not exist: the part has {len(self.faces)} faces, "
+                               f"{self.faces[0].number} to {self.faces[-1].number}")
+        return self._by_number[number]
+
+    def neighbours(self, number: int, kind: str | None = None) -> tuple[int, ...]:
+        """Numbers of the faces that share an edge with a face, of one kind of edge if given."""
+        self.face(number)
+        return tuple(sorted({other for other, how in self._adjacent.get(number, ()) if kind in (None, how)}))
+
+    def skin(self, number: int) -> tuple[Face, ...]:
+        """The face and all that continue it tangentially, directly or over others, itself first.
+
+        Parameters
+        ----------
+        number : int
+
+        Raises
+        ------
+        InvalidInput
+            When the part has no such face.
+        """
+        reached, front = [number], [number]
+        while front:
+            new = [n for n in self.neighbours(front.pop(), "tangent") if n not in reached]
+            reached += new
+            front += new
+        return tuple(self.face(n) for n in [number, *sorted(reached[1:])])
+
+    def surroundings(self, number: int) -> tuple[Face, ...]:
+        """All faces that are not in the skin of a face.
+
+        Parameters
+        ----------
+        number : int
+
+        Raises
+        ------
+        InvalidInput
+            When the part has no such face.
+        """
+        own = {face.number for face in self.skin(number)}
+        return tuple(face for face in self.faces if face.number not in own)
+
+    @property
+    def sculptured(self) -> tuple[Face, ...]:
+        """The faces that are not planes, cylinders or cones."""
+        return tuple(face for face in self.faces if face.kind not in PLAIN_KINDS)
+
+    @cached_property
+    def box(self) -> Array:
+        """Lower and upper corner of the box around sampled points of all faces, (2, 3) mm."""
+        boxes = np.array([face.box for face in self.faces])
+        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the diagonal of `box`, mm."""
+        return float(np.linalg.norm(self.box[1] - self.box[0]))
+
+    def transformed(self, matrix: ArrayLike) -> "Part":
+        """The part moved by an affine map.
+
+        Parameters
+        ----------
+        matrix : (4, 4) array_like
+        """
+        m = np.asarray(matrix, dtype=float)
+        faces = tuple(face.transformed(m) for face in self.faces)
+        edges = tuple(replace(edge, polyline=edge.polyline @ m[:3, :3].T + m[:3, 3]) for edge in self.edges)
+        return replace(self, faces=faces, edges=edges)
+
+
+def _numbered(face: Face, number: int) -> Face:
+    return replace(face, number=number, label=str(number) if face.label == str(face.number) else face.label)
