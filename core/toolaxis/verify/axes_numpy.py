@@ -1,0 +1,60 @@
+"""The plain twin of the clearance kernel."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.verify.removal_numpy import Motion, least_over_motion_numpy
+from toolaxis.verify.solids import meridian_numpy
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+_PAIRS = 200_000
+
+
+def clear_numpy(solids: Array, motion: Motion, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
+                out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float]) -> None:
+    """Distances of blocks of points from all motions, as far as they may be among the least.
+
+    Parameters
+    ----------
+    solids : (k, 7) array
+    motion : four (n, 3) arrays
+        Start, step, axis, turn.
+    tables : groups and their beginnings (not used here), slack (n,)
+    blocks : ball (b, 4), first (b + 1,)
+    out : value, by, point, counts; the first two are changed in place
+    levels : least known distance, and margin above it within which distances are wanted, mm
+    """
+    ball, first = blocks
+    value, by, point, counts = out
+    best, margin = levels
+    start, step, axis, turn = motion
+    middle, lean = start + 0.5 * step, axis + 0.5 * turn
+    lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
+    for b in range(len(ball)):
+        w = ball[b, :3] - middle
+        z = np.einsum("ij,ij->i", w, lean)
+        rho = np.linalg.norm(w - z[:, None] * lean, axis=1)
+        i = np.arange(first[b], first[b + 1])
+        for solid in solids:
+            bound = meridian_numpy(solid, rho, z)[0] - tables[2] - ball[b, 3]
+            order = np.argsort(bound, kind="stable")
+            for k in np.array_split(order, max(1, len(order) * len(i) // _PAIRS)):
+                k = k[bound[k] <= min(float(value[i].max()), best + margin)]
+                if len(k):
+                    _approach(solid, motion, (i, k), point, (value, by))
+        best = min(best, float(value[i][counts[i]].min(initial=np.inf)))
+
+
+def _approach(solid: Array, motion: Motion, pair: tuple[Index, Index], point: Array, out: tuple[Array, Index]) -> None:
+    i, k = pair
+    row, column = np.repeat(i, len(k)), np.tile(k, len(i))
+    ray = np.hstack([point[row], np.zeros((len(row), 3))])
+    start, step, axis, turn = motion
+    pairs = (solid, (start[column], step[column], axis[column], turn[column]), ray)
+    least = least_over_motion_numpy(pairs, np.zeros(len(row)))[0].reshape(len(i), len(k))
+    pick = np.argmin(least, axis=1)
+    nearest = least[np.arange(len(i)), pick]
+    better = nearest < out[0][i]
+    out[0][i[better]], out[1][i[better]] = nearest[better], k[pick[better]]

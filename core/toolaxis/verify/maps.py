@@ -1,0 +1,236 @@
+"""Maps over a face: scallop left and gouge, the worst places, the share within a limit, and zones to clean up."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.shape.face import Face
+from toolaxis.verify.rays import Rays, face_rays, patch_around
+from toolaxis.verify.removal import Remains
+
+Array = NDArray[np.float64]
+
+#: Rays around which the worst is looked for more closely, rounds of that, and how much closer each looks.
+_STARTS, _ROUNDS, _SHRINK = 24, 5, 0.4
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place on a face and the value there.
+
+    Attributes
+    ----------
+    face : str
+        Label of the face.
+    uv : (float, float)
+    point : (float, float, float)
+        mm
+    value : float
+        Height or depth, mm.
+    motion : int
+        Index of the cutter location whose motion did it; -1 where none did.
+    """
+
+    face: str
+    uv: tuple[float, float]
+    point: tuple[float, float, float]
+    value: float
+    motion: int
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A connected zone of a face that is left above the limit.
+
+    Attributes
+    ----------
+    face : str
+    area : float
+        mm^2
+    low, high : (float, float, float)
+        Box around its rays, mm.
+    largest : float
+        Greatest height left, mm; inf where a ray was never reached.
+    reason : str
+        "not reached", or "above the limit".
+    at_border : bool
+        Whether it touches the border of the face.
+    """
+
+    face: str
+    area: float
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    largest: float
+    reason: str
+    at_border: bool
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMap:
+    """What is left on one face.
+
+    Attributes
+    ----------
+    face : Face
+    uv, point, weight, border : arrays
+        As in `Rays`.
+    remaining, gouge : (m,) array
+        mm
+    cut_by, gouged_by : (m,) array of int
+        Index of the cutter location whose motion did it; -1 where none did.
+    spacing : float
+        Distance of neighbouring rays, mm.
+    worst_scallop, worst_gouge : Place or None
+        The worst found by looking more closely around the worst rays; None without a finite height or without a gouge.
+    """
+
+    face: Face
+    uv: Array
+    point: Array
+    weight: Array
+    border: NDArray[np.bool_]
+    remaining: Array
+    gouge: Array
+    cut_by: NDArray[np.int64]
+    gouged_by: NDArray[np.int64]
+    spacing: float
+    worst_scallop: Place | None
+    worst_gouge: Place | None
+
+    @property
+    def area(self) -> float:
+        """Area that the rays stand for, mm^2."""
+        return float(self.weight.sum())
+
+    def share_within(self, limit: float) -> float:
+        """Share of the area left no higher than a limit, 0 to 1.
+
+        Parameters
+        ----------
+        limit : float
+            mm
+        """
+        total = self.weight.sum()
+        return float(self.weight[self.remaining <= limit].sum() / total) if total > 0 else 0.0
+
+    def histogram(self, edges: Array) -> Array:
+        """Area left between consecutive heights, mm^2; the last entry is the area above the last of them.
+
+        Parameters
+        ----------
+        edges : (k,) array
+            Increasing heights from 0, mm.
+
+        Returns
+        -------
+        (k,) array
+        """
+        slot = np.clip(np.searchsorted(edges, self.remaining, side="left") - 1, 0, len(edges) - 1)
+        return np.bincount(slot, weights=self.weight, minlength=len(edges))
+
+    def worst(self, what: str, count: int = 10) -> tuple[Place, ...]:
+        """The worst places, no two closer than eight spacings, the worst first.
+
+        Parameters
+        ----------
+        what : str
+            "remaining" or "gouge".
+        count : int
+        """
+        value = getattr(self, what)
+        by = self.cut_by if what == "remaining" else self.gouged_by
+        refined = self.worst_scallop if what == "remaining" else self.worst_gouge
+        found: list[Place] = []
+        if refined is not None and not (what == "remaining" and np.isinf(value).any()):
+            found.append(refined)
+        for i in np.argsort(-value, kind="stable"):
+            if len(found) >= count or value[i] <= 0:
+                break
+            apart = (np.linalg.norm(np.subtract(p.point, self.point[i])) >= 8 * self.spacing for p in found)
+            if all(apart):
+                found.append(_place(self.face, self.uv[i], self.point[i], (float(value[i]), int(by[i]))))
+        return tuple(found)
+
+    def zones(self, limit: float) -> tuple[Zone, ...]:
+        """Connected zones left above a limit, the largest first.
+
+        Parameters
+        ----------
+        limit : float
+            mm
+        """
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+        from scipy.spatial import cKDTree
+
+        above = np.flatnonzero(self.remaining > limit)
+        if not len(above):
+            return ()
+        pairs = cKDTree(self.point[above]).query_pairs(2.0 * self.spacing, output_type="ndarray")
+        graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(above), len(above)))
+        number, label = connected_components(graph, directed=False)
+        zones = [self._zone(above[label == k]) for k in range(number)]
+        return tuple(sorted(zones, key=lambda zone: (-zone.area, zone.low)))
+
+    def _zone(self, rows: NDArray[np.int64]) -> Zone:
+        low, high = self.point[rows].min(axis=0), self.point[rows].max(axis=0)
+        lost = np.isinf(self.remaining[rows]).any()
+        return Zone(self.face.label, float(self.weight[rows].sum()), _triple(low), _triple(high),
+                    float(self.remaining[rows].max()), "not reached" if lost else "above the limit",
+                    bool(self.border[rows].any()))
+
+
+def _triple(row: Array) -> tuple[float, float, float]:
+    return float(row[0]), float(row[1]), float(row[2])
+
+
+def _place(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> Place:
+    return Place(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
+
+
+def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: float | None = None) -> SurfaceMap:
+    """Maps of one face.
+
+    Parameters
+    ----------
+    face : Face
+    judge : callable
+        `removal` with everything but points and normals given.
+    spacing : float, optional
+        Distance of neighbouring rays, mm.
+    """
+    rays = face_rays(face, spacing)
+    left = judge(rays.point, rays.normal)
+    finite = np.where(np.isfinite(left.remaining), left.remaining, -1.0)
+    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by))
+    worst_gouge = _sharpened(face, rays, judge, ("gouge", left.gouge, left.gouged_by))
+    return SurfaceMap(face, rays.uv, rays.point, rays.weight, rays.border, left.remaining, left.gouge, left.cut_by,
+                      left.gouged_by, rays.spacing, worst_scallop, worst_gouge)
+
+
+def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
+               coarse: tuple[str, Array, NDArray[np.int64]]) -> Place | None:
+    """The worst place, looked for in ever smaller patches around the worst rays."""
+    what, value, by = coarse
+    rows = np.argsort(-value, kind="stable")[:_STARTS]
+    if value[rows[0]] <= 0:
+        return None
+    best = _place(face, rays.uv[rows[0]], rays.point[rows[0]], (float(value[rows[0]]), int(by[rows[0]])))
+    starts, size = rays.uv[rows[value[rows] > 0]], rays.spacing
+    for _ in range(_ROUNDS):
+        uv = patch_around(face, starts, size)
+        if not len(uv):
+            break
+        point = face.evaluate(uv).point
+        left = judge(point, face.normal(uv))
+        height = np.where(np.isfinite(getattr(left, what)), getattr(left, what), -1.0)
+        index = left.cut_by if what == "remaining" else left.gouged_by
+        order = np.argsort(-height, kind="stable")
+        if height[order[0]] > best.value:
+            i = order[0]
+            best = _place(face, uv[i], point[i], (float(height[i]), int(index[i])))
+        starts, size = uv[order[:_STARTS]], size * _SHRINK
+    return best

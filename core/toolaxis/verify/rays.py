@@ -1,0 +1,169 @@
+"""Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more along the border."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+#: Greatest spacing of rays, mm, and how many a face may hold before it grows.
+SPACING, MOST_RAYS = 0.5, 400_000
+
+#: Steps of the sequence that places a ray in its cell (Roberts' R2): with it no row of rays runs along a pass.
+_R2 = (0.7548776662466927, 0.5698402909980532)
+
+_FINE = 129
+
+
+@dataclass(frozen=True, eq=False)
+class Rays:
+    """Feet and directions of rays on one face.
+
+    Attributes
+    ----------
+    uv : (m, 2) array
+    point, normal : (m, 3) array
+        mm, and unit normals out of the material.
+    weight : (m,) array
+        Area that the ray stands for, mm^2; 0 on the border, where rays only look for the worst.
+    border : (m,) array of bool
+        Whether the ray stands on a trim loop.
+    spacing : float
+        Distance of neighbouring rays, mm.
+    """
+
+    uv: Array
+    point: Array
+    normal: Array
+    weight: Array
+    border: NDArray[np.bool_]
+    spacing: float
+
+
+def default_spacing(face: Face) -> float:
+    """Spacing of rays for a face, mm: 0.5, less on small faces, more where the rays would be too many.
+
+    Parameters
+    ----------
+    face : Face
+    """
+    size = sqrt(max(face.area, 1e-12))
+    return max(min(SPACING, size / 150), size / sqrt(MOST_RAYS))
+
+
+def face_rays(face: Face, spacing: float | None = None) -> Rays:
+    """Rays over a face.
+
+    Parameters
+    ----------
+    face : Face
+    spacing : float, optional
+        Distance of neighbouring rays, mm; `default_spacing` unless given.
+
+    Raises
+    ------
+    InvalidInput
+        When the spacing is not above zero, or the face has no inside.
+
+    Properties
+    ----------
+    1. The weights add up to the area of the face.
+    2. The same face gives the same rays.
+    """
+    if spacing is None:
+        spacing = default_spacing(face)
+    if not (np.isfinite(spacing) and spacing > 0):
+        raise InvalidInput(f"ray spacing is {spacing} mm: it must be a finite number above zero")
+    uv, cell = _cells(face, spacing)
+    inside = face.contains(uv)
+    uv, cell = uv[inside], cell[inside]
+    edge = border_points(face, spacing)
+    if not len(uv) and not len(edge):
+        raise InvalidInput(f"face {face.label} has no inside at a ray spacing of {spacing} mm: use a finer one")
+    both = np.vstack([uv, edge])
+    d = face.evaluate(both)
+    normal = face.normal(both)
+    weight = np.append(np.linalg.norm(np.cross(d.su, d.sv), axis=1)[:len(uv)] * cell, np.zeros(len(edge)))
+    border = np.arange(len(both)) >= len(uv)
+    good = np.linalg.norm(normal, axis=1) > 0.5
+    return Rays(both[good], d.point[good], normal[good], weight[good], border[good], float(spacing))
+
+
+def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
+    """Parameters inside the cells of a grid of equal lengths over the face's range, and the cells' areas in (u, v)."""
+    u0, u1, v0, v1 = face.bounds
+    u, v = np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE)
+    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
+    rows = _equal_lengths(v, speed_v, spacing)
+    middle = 0.5 * (rows[:-1] + rows[1:])
+    line = np.stack(np.meshgrid(middle, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
+    speed_u = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(len(middle), _FINE)
+    columns = [_equal_lengths(u, speed, spacing) for speed in speed_u]
+    count = np.array([len(c) - 1 for c in columns])
+    low = np.concatenate([c[:-1] for c in columns])
+    wide = np.concatenate([np.diff(c) for c in columns])
+    bottom, tall = np.repeat(rows[:-1], count), np.repeat(np.diff(rows), count)
+    k = np.arange(1, len(low) + 1)
+    uv = np.column_stack([low + wide * np.mod(0.5 + k * _R2[0], 1.0), bottom + tall * np.mod(0.5 + k * _R2[1], 1.0)])
+    return uv, wide * tall
+
+
+def _equal_lengths(t: Array, speed: Array, spacing: float) -> Array:
+    """Parameters that cut a line of known speed into equal lengths of at most the spacing."""
+    floor = np.maximum(speed, 1e-9 * max(float(speed.max()), 1e-300))
+    length = np.append(0.0, np.cumsum(0.5 * (floor[1:] + floor[:-1]) * np.diff(t)))
+    parts = max(1, int(np.ceil(length[-1] / spacing - 1e-9)))
+    return np.interp(np.linspace(0.0, length[-1], parts + 1), length, t)
+
+
+def border_points(face: Face, spacing: float) -> Array:
+    """Parameters along the trim loops of a face, no further apart than the spacing, (k, 2).
+
+    Parameters
+    ----------
+    face : Face
+    spacing : float
+        mm
+    """
+    pieces = []
+    for loop in face.outline:
+        ends = np.roll(loop, -1, axis=0)
+        fine = 257 if len(loop) <= 16 else 9
+        share = np.linspace(0.0, 1.0, fine)
+        line = loop[:, None] + share[None, :, None] * (ends - loop)[:, None]
+        point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
+        length = np.linalg.norm(np.diff(point, axis=1), axis=2).sum(axis=1)
+        parts = np.maximum(1, np.ceil(length / spacing)).astype(np.int64)
+        owner = np.repeat(np.arange(len(loop)), parts)
+        step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
+        pieces.append(loop[owner] + step[:, None] * (ends - loop)[owner])
+    return np.concatenate(pieces)
+
+
+def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
+    """Parameters of small square patches around given ones, inside the face, (n, 2).
+
+    Parameters
+    ----------
+    face : Face
+    uv : (k, 2) array
+    size : float
+        Half the side of a patch, mm.
+    count : int
+        Points along a side.
+    """
+    d = face.evaluate(uv)
+    scale = np.stack([np.linalg.norm(d.su, axis=1), np.linalg.norm(d.sv, axis=1)], axis=1)
+    u0, u1, v0, v1 = face.bounds
+    way = np.minimum(size / np.maximum(scale, 1e-12), [u1 - u0, v1 - v0])
+    side = np.linspace(-1.0, 1.0, count)
+    offset = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    around = (uv[:, None] + offset * way[:, None]).reshape(-1, 2)
+    around = np.clip(around, [u0, v0], [u1, v1])
+    return around[face.contains(around)]
