@@ -5,7 +5,7 @@ import os
 import re
 import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -69,13 +69,14 @@ def load_tool(text: str, **body: Any) -> Tool:
 
 def _build(path: Path, sizes: Mapping[str, Any]) -> Tool:
     kind = sizes["kind"]
-    maker = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat, "tapered": Tool.tapered}[kind]
+    makers: dict[str, Callable[..., Tool]] = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat,
+                                              "tapered": Tool.tapered}
     missing = [name for name in _SIZES[kind] if name not in sizes]
     if missing:
         raise InvalidInput(f"tool file {path.name} has no {missing[0]}: a {kind} needs {', '.join(_SIZES[kind])}")
     try:
-        return maker(*(float(sizes[name]) for name in _SIZES[kind]),
-                     **{name: sizes[name] for name in _BODY if name in sizes})
+        return makers[kind](*(float(sizes[name]) for name in _SIZES[kind]),
+                            **{name: sizes[name] for name in _BODY if name in sizes})
     except (TypeError, ValueError) as reason:
         raise InvalidInput(f"tool file {path.name}: {reason}") from reason
 

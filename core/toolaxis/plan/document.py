@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.errors import InvalidInput
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
@@ -102,7 +101,7 @@ def orientation_from(document: Mapping[str, Any]) -> Orientation:
     ----------
     document : mapping
     """
-    scalars = {name: np.inf if document[name] is None else document[name] for name in _SCALARS}
+    scalars: dict[str, Any] = {name: np.inf if document[name] is None else document[name] for name in _SCALARS}
     axis = document["axis"]
     return Orientation(axis=None if axis is None else np.array(axis, dtype=float), **scalars,
                        clearance={k: np.inf if v is None else v for k, v in document["clearance"].items()},
@@ -155,11 +154,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
 
 
 def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | None) -> Operation:
-    number = document["face"]
-    if not 1 <= number <= len(part.faces):
-        raise InvalidInput(f"operation {document['number']} refers to face {number}, but the part has faces 1 to "
-                           f"{len(part.faces)}: the plan and the part do not belong together")
-    face = part.faces[number - 1]
+    face = part.face(document["face"])
     if document["region"] is not None:
         face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
     frame = document["work_coordinates"]
@@ -182,7 +177,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     Raises
     ------
     InvalidInput
-        When the document breaks the schema or does not fit the part.
+        When the document breaks the schema or names a face that the part does not have.
     """
     check(document)
     given = dict(document["inputs"])

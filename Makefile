@@ -1,0 +1,44 @@
+# Each target sets up what it needs; none needs more than Python 3.11 or newer, make, git and a C compiler.
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3.12 || command -v python3.13 || command -v python3.14 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+PART ?= examples/freeform.step
+OUT ?= out/demo
+
+.PHONY: setup demo test test-all lint bench docs clean
+
+setup: $(STAMP)
+
+# Running from the clone (editable), with everything that tests and examples need.
+$(STAMP): setup.cfg pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make setup PYTHON=...")'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $(STAMP)
+
+demo: setup
+	$(BIN)/toolaxis plan $(PART) --tool torus-12x1 --scallop 0.02 --out $(OUT)
+	$(BIN)/toolaxis verify $(OUT)
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: lint
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+test-all: lint
+	$(BIN)/python -m pytest -n 2 --dist loadfile --long
+
+bench: setup
+	$(BIN)/python -m benchmarks
+
+docs: setup
+	$(BIN)/python resources/manual/figures.py
+
+clean:
+	rm -rf out build core/*.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	find core tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} +

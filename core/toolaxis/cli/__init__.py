@@ -1,0 +1,1 @@
+"""The `toolaxis` command: parse, call `job`, exit code."""

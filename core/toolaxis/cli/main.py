@@ -1,0 +1,157 @@
+"""The command's parser and exit codes: 0 done, 1 the answer is no, 2 wrong input, 130 interrupted."""
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from types import FrameType
+from typing import NoReturn
+
+from toolaxis import __version__
+from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+
+DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(WRONG_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the whole command."""
+    top = _Parser(prog="toolaxis", description="Tool orientations for multi-axis machining of sculptured surfaces.",
+                  epilog="Exit codes: 0 done, 1 the answer is no (no axis found, verification failed), 2 wrong input, "
+                         "130 interrupted.")
+    top.add_argument("--version", action="version", version=f"toolaxis {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
+    _add_inspect(commands)
+    _add_plan(commands)
+    _add_verify(commands)
+    return top
+
+
+def _add_inspect(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("inspect", help="list the faces of a part",
+                              description="List faces: number, kind, area, size, curvature, normal spread.")
+    sub.add_argument("part", metavar="PART.step")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.inspect")
+
+
+def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("plan", help="find axes and passes for the faces of a part",
+                              description="Find the best fixed tool axis for each face, with its passes. "
+                                          "Lengths in mm, angles in degrees.")
+    sub.add_argument("part", metavar="PART.step")
+    sub.add_argument("--tool", required=True, metavar="TOOL",
+                     help="torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner radius x degrees), a TOML or "
+                          ".fctb file, or a name from resources/tools")
+    sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
+    sub.add_argument("--faces", metavar="LIST", help="face numbers such as 3,5-8, or all; sculptured faces by default")
+    sub.add_argument("--out", default="out", metavar="DIR", help="folder for plan.json and the rest (default: out)")
+    sub.add_argument("--holder", metavar="FILE|SPEC", help="TOML file, or radius,z rows: 10,0;10,40;25,40;25,80")
+    sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")
+    sub.add_argument("--obstacles", metavar="FILE", action="append", default=[],
+                     help="STEP file of bodies to keep clear of; may be repeated")
+    sub.add_argument("--limits", default="", metavar="SPEC",
+                     help="axes that the machine can reach: cone:I,J,K,DEG or rotary:A=LOW..HIGH,C=LOW..HIGH")
+    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors"),
+                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016")
+    sub.add_argument("--objective", default="length", choices=("length", "passes"),
+                     help="what is least: cutting length (default) or number of passes")
+    sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
+    sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
+    sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
+    sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    for name in ("machine", "regions", "orientations", "strategy"):
+        sub.add_argument(f"--{name}", help=argparse.SUPPRESS)
+    sub.set_defaults(module="toolaxis.cli.plan")
+
+
+def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("verify", help="judge a plan by material removal",
+                              description="Remove material with the tool along the CL files of a plan and compare what "
+                                          "is left with the part. Exit code 1 where it fails.")
+    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+    sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.verify")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after the command's name; those of the process unless given.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    given = parser().parse_args(arguments)
+    try:
+        with _Interrupt() as interrupt:
+            code: int = import_module(given.module).run(given, interrupt.asked)
+        sys.stdout.flush()
+        return code
+    except (KeyboardInterrupt, Cancelled):
+        print("toolaxis: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except ToolAxisError as reason:
+        print(f"toolaxis: {_sentence(reason)}", file=sys.stderr)
+        return WRONG_INPUT if _blames_input(reason) else NO
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+
+
+def _sentence(reason: BaseException) -> str:
+    return " ".join(str(reason).split())
+
+
+def _blames_input(reason: BaseException | None) -> bool:
+    if reason is None:
+        return False
+    return isinstance(reason, InvalidInput | UnsupportedGeometry | MissingBackend) or _blames_input(reason.__cause__)
+
+
+class _Interrupt:
+    """The first Ctrl-C asks the work to stop where it can be stopped; the second one ends it at once."""
+
+    def __init__(self) -> None:
+        self._asked = False
+
+    def asked(self) -> bool:
+        """Whether Ctrl-C was pressed."""
+        return self._asked
+
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
+        if self._asked:
+            raise KeyboardInterrupt
+        self._asked = True
+        print("toolaxis: stopping; Ctrl-C again ends at once", file=sys.stderr, flush=True)
+
+    def __enter__(self) -> "_Interrupt":
+        try:
+            self._before = signal.signal(signal.SIGINT, self._on_signal)
+        except ValueError:  # not the main thread: nobody can press Ctrl-C here
+            self._before = None
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

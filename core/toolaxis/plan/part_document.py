@@ -1,0 +1,79 @@
+"""A part as a JSON document, and back: the copy beside a plan where the part did not come from a file."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.adjacency import Edge
+from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.shape.part import Body, Part
+
+NAME = "toolaxis.part"
+VERSION = 1
+
+
+def _face_document(face: Face) -> dict[str, Any]:
+    surface = face.surface
+    return {"number": face.number, "label": face.label, "kind": face.kind, "flip": bool(face.flip),
+            "tolerance": face.tolerance, "degree": list(surface.degree), "knots_u": surface.knots_u.tolist(),
+            "knots_v": surface.knots_v.tolist(), "control": surface.control.tolist(),
+            "trims": [loop.tolist() for loop in face.trims], "kinks": [list(side) for side in face.kinks]}
+
+
+def part_document(part: Part) -> dict[str, Any]:
+    """A part as a document that `json.dump` takes; numbers survive exactly.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    dict
+        Control points are homogeneous (w x, w y, w z, w), mm.
+    """
+    return {"schema": NAME, "version": VERSION, "unit": "mm", "source": part.source, "declared_unit": part.unit,
+            "warnings": list(part.warnings), "selected": list(part.selected),
+            "faces": [_face_document(face) for face in part.faces],
+            "edges": [{"faces": list(edge.faces), "kind": edge.kind, "angle": edge.angle,
+                       "polyline": np.asarray(edge.polyline).tolist()} for edge in part.edges],
+            "bodies": [{"kind": body.kind, "faces": list(body.faces), "closed": body.closed} for body in part.bodies]}
+
+
+def _face_from(record: Mapping[str, Any]) -> Face:
+    surface = NurbsSurface(np.array(record["knots_u"], dtype=float), np.array(record["knots_v"], dtype=float),
+                           np.array(record["control"], dtype=float), (record["degree"][0], record["degree"][1]))
+    return Face(surface, tuple(np.array(loop, dtype=float) for loop in record["trims"]), record["flip"],
+                record["number"], record["label"], record["kind"], record["tolerance"],
+                (tuple(record["kinks"][0]), tuple(record["kinks"][1])))
+
+
+def part_from(document: Mapping[str, Any], sha256: str = "") -> Part:
+    """The part that `part_document` wrote.
+
+    Parameters
+    ----------
+    document : mapping
+    sha256 : str
+        Of the file that the document was read from.
+
+    Raises
+    ------
+    InvalidInput
+        When it is no such document, or its numbers make no part.
+    """
+    if document.get("schema") != NAME or document.get("version") != VERSION:
+        raise InvalidInput(f"part document has schema {document.get('schema')!r} version {document.get('version')!r}: "
+                           f"{NAME!r} version {VERSION} is needed")
+    try:
+        faces = tuple(_face_from(record) for record in document["faces"])
+        edges = tuple(Edge((e["faces"][0], e["faces"][1]), e["kind"], np.array(e["polyline"], dtype=float), e["angle"])
+                      for e in document["edges"])
+        bodies = tuple(Body(b["kind"], tuple(b["faces"]), b["closed"]) for b in document["bodies"])
+    except (KeyError, TypeError, IndexError) as reason:
+        raise InvalidInput(f"part document is incomplete ({reason!r}): make the plan again") from reason
+    return Part(faces, edges, bodies, document["source"], sha256, document["declared_unit"],
+                tuple(document["warnings"]), tuple(document["selected"]))
