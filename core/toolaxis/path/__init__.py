@@ -1,0 +1,1 @@
+"""Where to cut: sample points, the number of passes, and the passes themselves."""

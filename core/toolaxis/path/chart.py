@@ -1,0 +1,197 @@
+"""Two parameters to cut by: one runs along the passes, the other steps from pass to pass."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.placing import tips
+from toolaxis.contact.strip import step_widths
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.path.material import Intervals, intervals
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+#: Lines are kept this share of the range off its ends, where inside and outside cannot be told apart.
+_EDGE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """What cuts and how: the conditions that are the same for every pass over a face.
+
+    Attributes
+    ----------
+    tool : Tool
+    axis : (3,) array
+        Unit vector from tip to spindle.
+    scallop : float
+        Scallop height, mm.
+    allowance : float
+        Stock left on the surface, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When the axis is no single direction, or scallop or allowance are out of range.
+    """
+
+    tool: Tool
+    axis: Array
+    scallop: float
+    allowance: float = 0.0
+
+    def __post_init__(self) -> None:
+        rows = as_rows(self.axis, 3, "axis")
+        if len(rows) != 1:
+            raise InvalidInput(f"axis has shape {np.shape(self.axis)}: passes need one fixed axis of 3 numbers")
+        object.__setattr__(self, "axis", unit(rows[0]))
+        if not 0 < self.scallop < self.tool.radius:
+            raise InvalidInput(f"scallop height is {self.scallop} mm: it must be above zero and below the cutter "
+                               f"radius {self.tool.radius} mm")
+        if not (np.isfinite(self.allowance) and self.allowance >= 0):
+            raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+
+
+class Chart(Protocol):
+    """A parametrisation (along, step) of a face; passes run along the first at fixed values of the second."""
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Range of the face: along0, along1, step0, step1."""
+
+    @property
+    def loops(self) -> tuple[Array, ...]:
+        """Loops that bound the face, (m, 2) rows of (along, step)."""
+
+    @property
+    def breaks(self) -> tuple[Array, Array]:
+        """Inner values of along and of step across which the surface is not smooth."""
+
+    @property
+    def face(self) -> Face:
+        """The face."""
+
+    def uv(self, along: Array, step: Array) -> Array:
+        """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""
+
+    def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
+
+    def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
+        """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
+
+
+@dataclass(frozen=True, eq=False)
+class IsoChart:
+    """A face in its own parameters.
+
+    Attributes
+    ----------
+    face : Face
+    feed : str
+        "u" or "v": the parameter that varies along the passes.
+
+    Raises
+    ------
+    InvalidInput
+        When the feed is neither.
+    """
+
+    face: Face
+    feed: str = "u"
+
+    def __post_init__(self) -> None:
+        if self.feed not in ("u", "v"):
+            raise InvalidInput(f"feed is {self.feed!r}: it must be 'u' or 'v'")
+
+    @property
+    def _order(self) -> list[int]:
+        return [0, 1] if self.feed == "u" else [1, 0]
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Range of the face: along0, along1, step0, step1."""
+        u0, u1, v0, v1 = self.face.bounds
+        return (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+
+    @cached_property
+    def loops(self) -> tuple[Array, ...]:
+        """Loops that bound the face, (m, 2) rows of (along, step)."""
+        return tuple(np.ascontiguousarray(loop[:, self._order]) for loop in self.face.outline)
+
+    @cached_property
+    def breaks(self) -> tuple[Array, Array]:
+        """Inner knots along and across."""
+        surface, (a0, a1, s0, s1) = self.face.surface, self.bounds
+        knots = [np.unique(surface.knots_u), np.unique(surface.knots_v)]
+        along, step = (knots[i] for i in self._order)
+        return along[(along > a0) & (along < a1)], step[(step > s0) & (step < s1)]
+
+    def uv(self, along: Array, step: Array) -> Array:
+        """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""
+        return np.stack([along, step], axis=1)[:, self._order]
+
+    def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
+        return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
+                                      cut.allowance))
+
+    def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
+        """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2).
+
+        A point at scallop height is cut from contacts within the half width of a pass that runs across this one.
+        """
+        across = "v" if self.feed == "u" else "u"
+        return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, across,
+                                      cut.allowance))
+
+
+def rows(chart: Chart, steps: Array) -> Intervals:
+    """Where passes at given step parameters run over the face.
+
+    Parameters
+    ----------
+    chart : Chart
+    steps : (n,) array
+    """
+    _, _, s0, s1 = chart.bounds
+    edge = _EDGE * (s1 - s0)
+    return intervals(chart.loops, np.clip(steps, s0 + edge, s1 - edge), fixed=1)
+
+
+def columns(chart: Chart, along: Array) -> Intervals:
+    """Where lines across the passes run over the face.
+
+    Parameters
+    ----------
+    chart : Chart
+    along : (n,) array
+    """
+    a0, a1, _, _ = chart.bounds
+    edge = _EDGE * (a1 - a0)
+    return intervals(chart.loops, np.clip(along, a0 + edge, a1 - edge), fixed=0)
+
+
+def tip_points(chart: Chart, cut: Cut, along: ArrayLike, step: ArrayLike) -> tuple[Array, Array, Array]:
+    """Contacts, tool tips and normals at along and step.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    along, step : (n,) array_like
+
+    Returns
+    -------
+    contact, tip, normal : (n, 3) arrays, mm
+    """
+    uv = chart.uv(np.asarray(along, dtype=float), np.asarray(step, dtype=float))
+    normal = chart.face.normal(uv)
+    point = chart.face.evaluate(uv).point
+    return point, tips(point, normal, cut.axis, cut.tool, cut.allowance), normal

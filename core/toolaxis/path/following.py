@@ -1,0 +1,75 @@
+"""Points along curves, close enough that neither the contact's nor the tip's chords leave them by the tolerance."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.path.chart import Chart, Cut, tip_points
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+_FIRST_GAPS = 4
+_ROUNDS = 12
+_PROBES = np.array([0.25, 0.5, 0.75])
+
+
+def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, Array]:
+    """Values of the along parameter for each piece of a pass.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    pieces : (m, 3) array
+        along0, along1, step of each piece.
+    chord : float
+        Chord tolerance, mm, kept by the polylines through contacts and through tips.
+
+    Returns
+    -------
+    piece : (n,) array of int
+    along : (n,) array
+        Sorted by piece, then increasing; both ends included.
+    """
+    share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
+    ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
+    owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
+    low, high = ends[:, :-1].ravel(), ends[:, 1:].ravel()
+    done_owner, done_low = [np.arange(len(pieces))], [pieces[:, 1]]
+    for _ in range(_ROUNDS):
+        if not len(owner):
+            break
+        parts = np.ceil(1.05 * np.sqrt(_deviations(chart, cut, low, high, pieces[owner, 2]) / chord))
+        fine = parts <= 1.05
+        done_owner.append(owner[fine])
+        done_low.append(low[fine])
+        owner, low, high = _divide(owner[~fine], low[~fine], high[~fine], np.clip(parts[~fine], 2, 64).astype(int))
+    done_owner.append(owner)
+    done_low.append(low)
+    piece, along = np.concatenate(done_owner), np.concatenate(done_low)
+    order = np.lexsort((along, piece))
+    return piece[order], along[order]
+
+
+def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:
+    source = np.repeat(np.arange(len(owner)), parts)
+    place = np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)
+    gap = ((high - low) / parts)[source]
+    return owner[source], low[source] + place * gap, low[source] + (place + 1) * gap
+
+
+def _deviations(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
+    """Greatest distance of contacts and tips from the chords at three inner places of each gap, mm."""
+    places = np.concatenate([[0.0], _PROBES, [1.0]])
+    along = (low[:, None] + (high - low)[:, None] * places).ravel()
+    contact, tip, _ = tip_points(chart, cut, along, np.repeat(step, len(places)))
+    worst = np.zeros(len(low))
+    for curve in (contact, tip):
+        nodes = curve.reshape(len(low), len(places), 3)
+        start, line = nodes[:, :1], nodes[:, -1:] - nodes[:, :1]
+        square = np.maximum((line**2).sum(axis=2), np.finfo(float).tiny)
+        inner = nodes[:, 1:-1] - start
+        share = np.clip((inner * line).sum(axis=2) / square, 0.0, 1.0)
+        away = np.linalg.norm(inner - share[..., None] * line, axis=2)
+        worst = np.maximum(worst, away.max(axis=1))
+    return worst

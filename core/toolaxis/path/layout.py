@@ -1,0 +1,146 @@
+"""Where each pass begins and ends: over the face, past its free borders, around holes and what may not be touched."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.path.chart import Chart, Cut, columns
+from toolaxis.path.material import Intervals, filtered, joined, table
+from toolaxis.path.spacing import Spacing, along_samples, space
+from toolaxis.progress import NO_PROGRESS, Progress
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Reach = Callable[[Array], Bools]
+
+_BISECTIONS = 14
+#: Passes run out this much farther than the cutter reaches at scallop height.
+_RUN_OUT = 1.05
+_REACH_SAMPLES = 192
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Passes before they are traced.
+
+    Attributes
+    ----------
+    chart : Chart
+    cut : Cut
+    spacing : Spacing
+    pieces : (m, 3) array
+        along0, along1, step of each piece, sorted by pass, then along.
+    owner : (m,) array of int
+        Pass of each piece.
+    """
+
+    chart: Chart
+    cut: Cut
+    spacing: Spacing
+    pieces: Array
+    owner: NDArray[np.intp]
+
+    @property
+    def steps(self) -> Array:
+        """Step parameter of each pass, (k,)."""
+        return self.spacing.steps
+
+    @property
+    def used(self) -> float:
+        """Number of passes less the unused share of the last strip: comparable with the count."""
+        return len(self.spacing.steps) - self.spacing.unused
+
+
+def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progress = NO_PROGRESS) -> Layout:
+    """Place passes on a face and decide where each of them cuts.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    reach : callable, optional
+        Takes (n, 2) parameters, beyond the face too, and tells which contacts the cutter may visit, (n,) bool; what
+        it forbids is cut out of the passes and need not be covered.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When the axis leaves no strip somewhere.
+    """
+    along = along_samples(chart)
+    column = columns(chart, along)
+    if reach is not None:
+        column = _reachable(chart, along, column, reach)
+    material = table(column, len(along))
+    spacing = space(chart, cut, material, progress)
+    found = _extended(chart, cut, spacing.steps, _needed(chart, spacing, material))
+    if reach is not None:
+        found = _cut_out(chart, spacing.steps, found, reach)
+    pieces = np.column_stack([found.low, found.high, spacing.steps[found.line]])
+    return Layout(chart, cut, spacing, pieces, found.line)
+
+
+def _overlaps(material: Array, low: Array, high: Array) -> Bools:
+    """Whether bands low..high on columns (..., k, 2) hold material."""
+    return np.asarray(((material[..., 0] < high[..., None]) & (material[..., 1] > low[..., None])).any(axis=-1))
+
+
+def _needed(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
+    """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
+    low = spacing.steps[:, None] - spacing.halves[..., 0]
+    high = spacing.steps[:, None] + spacing.halves[..., 1]
+    need = _overlaps(material[None], low, high)
+    line, i = np.nonzero(need[:, 1:] != need[:, :-1])
+    inside = np.where(need[line, i], i, i + 1)
+    outside = np.where(need[line, i], i + 1, i)
+    a, b = spacing.along[inside].copy(), spacing.along[outside].copy()
+    if len(line):
+        for _ in range(_BISECTIONS):
+            middle = (a + b) / 2
+            share = (middle - spacing.along[i]) / (spacing.along[i + 1] - spacing.along[i])
+            band = [side[line, i] * (1 - share) + side[line, i + 1] * share for side in (low, high)]
+            full = _overlaps(table(columns(chart, middle), len(middle)), *band)
+            a, b = np.where(full, middle, a), np.where(full, b, middle)
+    first, last = np.flatnonzero(need[:, 0]), np.flatnonzero(need[:, -1])
+    ends = np.concatenate([np.column_stack([line, b]), np.column_stack([first, np.full(len(first), spacing.along[0])]),
+                           np.column_stack([last, np.full(len(last), spacing.along[-1])])])
+    ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
+    return Intervals(ends[::2, 0].astype(np.intp), ends[::2, 1], ends[1::2, 1])
+
+
+def _extended(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
+    """Run pieces out as far as the cutter reaches at scallop height, and join those that then meet."""
+    a0, a1, s0, s1 = chart.bounds
+    step = np.clip(steps[found.line], s0, s1)
+    ends = (found.low, found.high)
+    reach = [chart.run_outs(cut, np.clip(end, a0, a1), step)[:, side] for side, end in enumerate(ends)]
+    before, after = (_RUN_OUT * np.where(np.isfinite(r) & (r > 0), r, 0.0) for r in reach)
+    closed = _closed(chart, step)
+    before = np.where(closed & (found.low <= a0), 0.0, before)
+    after = np.where(closed & (found.high >= a1), 0.0, after)
+    return joined(Intervals(found.line, found.low - before, found.high + after))
+
+
+def _closed(chart: Chart, step: Array) -> Bools:
+    """Whether passes at these steps end where they began, so that there is nowhere to run out to."""
+    a0, a1, _, _ = chart.bounds
+    low, high = (chart.face.evaluate(chart.uv(np.full(len(step), a), step)).point for a in (a0, a1))
+    middle = chart.face.evaluate(chart.uv(np.full(len(step), (a0 + a1) / 2), step)).point
+    return np.asarray(np.linalg.norm(high - low, axis=1) < 1e-6 * np.linalg.norm(middle - low, axis=1))
+
+
+def _reachable(chart: Chart, along: Array, column: Intervals, reach: Reach) -> Intervals:
+    """What can be cut of the lines across the passes."""
+    _, _, s0, s1 = chart.bounds
+    return filtered(column, lambda line, place: reach(chart.uv(along[line], place)), (s1 - s0) / _REACH_SAMPLES)
+
+
+def _cut_out(chart: Chart, steps: Array, found: Intervals, reach: Reach) -> Intervals:
+    """What can be cut of the passes."""
+    a0, a1, _, _ = chart.bounds
+    kept = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])), (a1 - a0) / _REACH_SAMPLES)
+    long_ = kept.high - kept.low > 1e-9 * (a1 - a0)
+    return Intervals(kept.line[long_], kept.low[long_], kept.high[long_])

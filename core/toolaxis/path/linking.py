@@ -1,0 +1,137 @@
+"""From pieces of passes to one tool path: run in, cut, run out, retract along the axis, cross, come down."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.errors import InvalidInput
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """One cutting motion without interruption, in the order of cutting.
+
+    Attributes
+    ----------
+    contact, tip, normal : (n, 3) array
+        At least two points.
+    """
+
+    contact: Array
+    tip: Array
+    normal: Array
+
+
+@dataclass(frozen=True)
+class Linking:
+    """How strokes are joined.
+
+    Attributes
+    ----------
+    height : float
+        Height along the axis, mm, at which the tip crosses from stroke to stroke: above all that is in the way.
+    run_in : float
+        Length of the ramp that touches down along the feed and lifts off after it, mm; 0 for none.
+    approach : float
+        Height above the ramp from which the tool comes down at feed rate, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When a length is negative or not finite.
+    """
+
+    height: float
+    run_in: float = 1.0
+    approach: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name in ("height", "run_in", "approach"):
+            value = getattr(self, name)
+            if not np.isfinite(value) or (name != "height" and value < 0):
+                raise InvalidInput(f"{name} of the links is {value} mm: it must be finite"
+                                   + (" and zero or more" if name != "height" else ""))
+
+
+def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
+    """Join strokes by retracts along the axis.
+
+    Each stroke is entered and left on a ramp at 45 degrees between feed and axis, and by a short move along the axis;
+    between strokes the tip rises to the crossing height, goes across, and comes down.  The path begins and ends at
+    the crossing height.
+
+    Parameters
+    ----------
+    passes : list of lists of Stroke
+        Each pass with its strokes in the order of cutting.
+    axis : (3,) array
+        Unit vector from tip to spindle.
+    linking : Linking
+
+    Returns
+    -------
+    ToolPath
+
+    Notes
+    -----
+    **Properties**: (1) the first point and all CUT points are those of the strokes in their order, links in between;
+    (2) every move across happens at the crossing height or above; (3) `breaks` start at the move that comes from it.
+    """
+    tops = [float((stroke.tip @ axis).max()) for strokes in passes for stroke in strokes]
+    height = max([linking.height, *(top + linking.approach + linking.run_in for top in tops)])
+    tips: list[Array] = []
+    contacts: list[Array] = []
+    normals: list[Array] = []
+    kinds: list[NDArray[np.int8]] = []
+    breaks = [0]
+    for strokes in passes:
+        for stroke in strokes:
+            before, after = _entry(stroke, axis, linking, height), _exit(stroke, axis, linking, height)
+            tips += [before, stroke.tip, after]
+            contacts += [before, stroke.contact, after]
+            normals += [np.tile(axis, (len(before), 1)), stroke.normal, np.tile(axis, (len(after), 1))]
+            kinds.append(_kinds(len(before), len(stroke.tip), len(after)))
+        breaks.append(sum(map(len, tips)))
+    if not tips:
+        empty = np.empty((0, 3))
+        return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
+    cl = np.concatenate(tips)
+    return ToolPath(np.concatenate(contacts), cl, np.tile(axis, (len(cl), 1)), np.concatenate(normals),
+                    np.concatenate(kinds), np.array(breaks, dtype=np.int64))
+
+
+def _kinds(before: int, cutting: int, after: int) -> NDArray[np.int8]:
+    """Kinds of motion of one stroke: across and down, then in; the first cut point is still arrived at by the entry."""
+    return np.array([Motion.LINK, Motion.LINK] + [Motion.ENTRY] * (before - 2) + [Motion.ENTRY]
+                    + [Motion.CUT] * (cutting - 1) + [Motion.EXIT] * (after - 1) + [Motion.LINK], dtype=np.int8)
+
+
+def _ramp(start: Array, inner: Array, axis: Array, run_in: float) -> Array:
+    """The far end of a ramp that leaves `start` away from `inner` and upwards, mm."""
+    out = start - inner
+    size = np.linalg.norm(out)
+    if run_in == 0 or size == 0:
+        return np.empty((0, 3))
+    direction = out / size + axis
+    long = np.linalg.norm(direction)
+    return np.empty((0, 3)) if long < 1e-6 else (start + run_in * direction / long)[None]
+
+
+def _entry(stroke: Stroke, axis: Array, linking: Linking, height: float) -> Array:
+    """Points before the first cut point: at the crossing height, above the ramp, at its top."""
+    ramp = _ramp(stroke.tip[0], stroke.tip[1], axis, linking.run_in)
+    low = ramp[-1] if len(ramp) else stroke.tip[0]
+    near = low + linking.approach * axis
+    return np.concatenate([[near + max(height - float(near @ axis), 0.0) * axis, near], ramp])
+
+
+def _exit(stroke: Stroke, axis: Array, linking: Linking, height: float) -> Array:
+    """Points after the last cut point: the end of the ramp, above it, at the crossing height."""
+    ramp = _ramp(stroke.tip[-1], stroke.tip[-2], axis, linking.run_in)
+    low = ramp[-1] if len(ramp) else stroke.tip[-1]
+    near = low + linking.approach * axis
+    return np.concatenate([ramp, [near, near + max(height - float(near @ axis), 0.0) * axis]])

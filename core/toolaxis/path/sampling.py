@@ -1,0 +1,136 @@
+"""Representative points of a face: clustered binary space partition in location, normal and curvature."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.numeric.bsp import partition
+from toolaxis.shape.differential import curvatures, normals
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+_GRID = 48
+_ENOUGH = 700
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Sample points with the patches they stand for.
+
+    Attributes
+    ----------
+    uv : (n, 2) array
+        Sample points: the mean parameters of the patch's inside points, or the inside point nearest to that where it
+        falls off the face.
+    rectangles : (n, 4) array
+        u0, u1, v0, v1 of each patch; together they tile the parameter range of the face.
+    extents : (n, 4) array
+        u0, u1, v0, v1 of the part of each patch that lies on the face.
+    """
+
+    uv: Array
+    rectangles: Array
+    extents: Array
+
+    def __len__(self) -> int:
+        return len(self.uv)
+
+    def owner(self, uv: Array) -> NDArray[np.int64]:
+        """Sample whose patch holds each parameter, or the nearest patch where none does.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+
+        Returns
+        -------
+        (n,) array of int
+        """
+        low, high = self.rectangles[:, [0, 2]], self.rectangles[:, [1, 3]]
+        size = np.maximum(high.max(axis=0) - low.min(axis=0), np.finfo(float).tiny)
+        outside = np.maximum(low - uv[:, None], uv[:, None] - high) / size
+        return np.asarray(np.maximum(outside, 0.0).sum(axis=2).argmin(axis=1), dtype=np.int64)
+
+
+def sample_points(face: Face, tool: Tool, tolerance: float = 0.1,
+                  weights: tuple[float, float, float] = (1 / 3, 1 / 3, 1 / 3)) -> Samples:
+    """Sample points that stand for a face.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+        Its radius makes curvatures comparable with the other features.
+    tolerance : float
+        Greatest weighted distance in features of a grid point to the centroid of its patch.
+    weights : (float, float, float)
+        Of location / box diagonal, normal, and principal curvatures times the cutter radius.
+
+    Returns
+    -------
+    Samples
+
+    Raises
+    ------
+    InvalidInput
+        When the tolerance is not above zero or a weight is negative or all are zero.
+    UnsupportedGeometry
+        When no grid point falls on the face.
+
+    Notes
+    -----
+    **Source**: [zhu2016] Sec. 3.2; the features' normalisation, left open there, and the choice of the parameter to
+    cut in are ours.
+
+    **Properties**: (1) patches tile the parameter range; (2) every grid point is within the tolerance of its
+    centroid; (3) sample points lie on the face; (4) moving the face moves nothing in (u, v).
+    """
+    if not tolerance > 0:
+        raise InvalidInput(f"tolerance of sample points is {tolerance}: it must be above zero")
+    if len(weights) != 3 or min(weights) < 0 or not sum(weights) > 0:
+        raise InvalidInput(f"weights are {weights}: three numbers of zero or more, not all zero, are needed")
+    uv, cell = _grid(face)
+    d = face.evaluate(uv)
+    n = normals(d, face.flip)
+    k = curvatures(d, n)
+    groups = (weights[0] * d.point / face.diagonal, weights[1] * n,
+              weights[2] * tool.radius * np.column_stack([k.k1, k.k2]))
+    patches = partition(uv, groups, tolerance, np.array(face.bounds))
+    extents = np.array([_extent(uv[p.members], cell, p.rectangle) for p in patches])
+    means = np.array([uv[p.members].mean(axis=0) for p in patches])
+    for i in np.flatnonzero(~face.contains(means)):
+        inside = uv[patches[i].members]
+        means[i] = inside[np.argmin((((inside - means[i]) / cell) ** 2).sum(axis=1))]
+    return Samples(means, np.array([p.rectangle for p in patches]), extents)
+
+
+def _grid(face: Face) -> tuple[Array, Array]:
+    """Even grid of inside points, and the size of its cells."""
+    u0, u1, v0, v1 = face.bounds
+    probe = face.evaluate(face.grid(9, 9) if len(face.grid(9, 9)) else np.array([[(u0 + u1) / 2, (v0 + v1) / 2]]))
+    long_u = np.linalg.norm(probe.su, axis=1).mean() * (u1 - u0)
+    long_v = np.linalg.norm(probe.sv, axis=1).mean() * (v1 - v0)
+    aspect = np.sqrt(long_u / long_v) if long_u > 0 and long_v > 0 else 1.0
+    nu, nv = (int(np.clip(round(_GRID * a), _GRID / 4, 4 * _GRID)) for a in (aspect, 1 / aspect))
+    for _ in range(5):
+        uv = face.grid(nu, nv)
+        if len(uv) >= _ENOUGH:
+            break
+        nu, nv = 2 * nu, 2 * nv
+    if not len(uv):
+        raise UnsupportedGeometry(f"face {face.label} has no point on a {nu} x {nv} grid of its parameters: "
+                                  "its trim loops enclose next to nothing; leave it out or repair it")
+    return uv, np.array([(u1 - u0) / nu, (v1 - v0) / nv])
+
+
+def _extent(inside: Array, cell: Array, rectangle: Array) -> Array:
+    """The rectangle, drawn in to half a cell beyond the points on each side where the face does not fill it."""
+    low, high = inside.min(axis=0), inside.max(axis=0)
+    near, far = rectangle[[0, 2]], rectangle[[1, 3]]
+    low = np.where(low - near > 1.01 * cell, low - cell / 2, near)
+    high = np.where(far - high > 1.01 * cell, high + cell / 2, far)
+    return np.array([low[0], high[0], low[1], high[1]])
