@@ -1,0 +1,274 @@
+"""Curves on a surface, with the normal and its rate along them: iso-curves and plane sections.
+
+A curve is ``(kind, fixed, plane, nodes, built)``: on an iso-curve `fixed` is the parameter that does not vary; a plane
+section runs through node 0 in the plane with unit normal `plane`, and is parametrised piece by piece by the progress
+along the tangent of the nearest node on the side of the start, which is its arc length to the second order.
+"""
+
+from math import sqrt
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
+from toolaxis.numeric.compiled import compiled
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Curve: TypeAlias = tuple[int, float, Array, Array, Ints]
+Scratch: TypeAlias = tuple[Array, Array, Array, Array]
+
+# place = (u, v, du/dw, dv/dw); scratch = derivatives (6, 3), basis (6, 26), normal and its rates (3, 3), place (4,)
+ALONG_U, ALONG_V, SECTION = 0, 1, 2
+NODES = 128
+
+
+@compiled
+def normal_rates(d: Array, sign: float, rates: Array) -> None:
+    """Unit normal and its derivatives in u and v into rates (3, 3), from the six derivatives d (6, 3)."""
+    su, sv, suu, suv, svv = d[1], d[2], d[3], d[4], d[5]
+    size = 0.0
+    for c in range(3):
+        a, b = (c + 1) % 3, (c + 2) % 3
+        rates[0, c] = sign * (su[a] * sv[b] - su[b] * sv[a])
+        rates[1, c] = sign * (suu[a] * sv[b] - suu[b] * sv[a] + su[a] * suv[b] - su[b] * suv[a])
+        rates[2, c] = sign * (suv[a] * sv[b] - suv[b] * sv[a] + su[a] * svv[b] - su[b] * svv[a])
+        size += rates[0, c] ** 2
+    size = sqrt(size)
+    uu = su[0] ** 2 + su[1] ** 2 + su[2] ** 2
+    vv = sv[0] ** 2 + sv[1] ** 2 + sv[2] ** 2
+    if size <= 1e-10 * max(uu, vv):
+        _limit_normal(d, uu < vv, sign, rates)
+        return
+    along_u = along_v = 0.0
+    for c in range(3):
+        rates[0, c] /= size
+        along_u += rates[0, c] * rates[1, c]
+        along_v += rates[0, c] * rates[2, c]
+    for c in range(3):
+        rates[1, c] = (rates[1, c] - along_u * rates[0, c]) / size
+        rates[2, c] = (rates[2, c] - along_v * rates[0, c]) / size
+
+
+@compiled
+def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
+    """The normal next to a point where Su x Sv vanishes; its rates are taken as zero."""
+    p, q = (d[4], d[2]) if su_small else (d[1], d[4])
+    size = 0.0
+    for c in range(3):
+        a, b = (c + 1) % 3, (c + 2) % 3
+        rates[0, c] = sign * (p[a] * q[b] - p[b] * q[a])
+        size += rates[0, c] ** 2
+    size = sqrt(size)
+    for c in range(3):
+        rates[0, c] = rates[0, c] / size if size > 0.0 else 0.0
+        rates[1, c] = 0.0
+        rates[2, c] = 0.0
+
+
+@compiled
+def _rates_unknown(surface: SurfaceData, curve: Curve, u: float, v: float) -> bool:
+    """Whether the closed form of the normal's rate fails: on moves along a border beyond the domain."""
+    knots_u, knots_v, _, pu, pv, _ = surface
+    u_out = u < knots_u[pu] or u > knots_u[knots_u.shape[0] - pu - 1]
+    v_out = v < knots_v[pv] or v > knots_v[knots_v.shape[0] - pv - 1]
+    if curve[0] == ALONG_U:
+        return bool(v_out)
+    if curve[0] == ALONG_V:
+        return bool(u_out)
+    return bool(u_out or v_out)
+
+
+@compiled
+def _differenced_rates(surface: SurfaceData, sign: float, scratch: Scratch) -> None:
+    """Rate of the normal along the curve at `place` by central differences, into the last row of rates.
+
+    Where the surface is continued beyond its domain its second derivatives across the border are not known, so the
+    closed form does not hold for moves along the border.
+    """
+    d, basis, rates, place = scratch
+    knots_u, knots_v = surface[0], surface[1]
+    size = max(abs(place[2]) / (knots_u[-1] - knots_u[0]), abs(place[3]) / (knots_v[-1] - knots_v[0]))
+    step = 1e-5 / size
+    n0, n1, n2 = rates[0, 0], rates[0, 1], rates[0, 2]
+    surface_derivatives(surface, place[0] + step * place[2], place[1] + step * place[3], d, basis)
+    normal_rates(d, sign, rates)
+    a0, a1, a2 = rates[0, 0], rates[0, 1], rates[0, 2]
+    surface_derivatives(surface, place[0] - step * place[2], place[1] - step * place[3], d, basis)
+    normal_rates(d, sign, rates)
+    half = 0.5 / step
+    rates[2, 0] = (a0 - rates[0, 0]) * half
+    rates[2, 1] = (a1 - rates[0, 1]) * half
+    rates[2, 2] = (a2 - rates[0, 2]) * half
+    rates[0, 0], rates[0, 1], rates[0, 2] = n0, n1, n2
+
+
+@compiled
+def curve_point(surface: SurfaceData, sign: float, curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
+    """Point, tangent, normal and its rate at parameter w of a curve.
+
+    Parameters
+    ----------
+    surface : tuple
+    sign : float
+        1, or -1 where the face is flipped.
+    curve : tuple
+    w : float
+    state : (4, 3) array
+        Receives S, dS/dw, n, dn/dw.
+    scratch : tuple
+        From `new_scratch`.
+    """
+    d, basis, rates, place = scratch
+    if curve[0] == ALONG_U:
+        place[0], place[1], place[2], place[3] = w, curve[1], 1.0, 0.0
+        surface_derivatives(surface, w, curve[1], d, basis)
+    elif curve[0] == ALONG_V:
+        place[0], place[1], place[2], place[3] = curve[1], w, 0.0, 1.0
+        surface_derivatives(surface, curve[1], w, d, basis)
+    else:
+        _section_point(surface, curve, w, scratch)
+    normal_rates(d, sign, rates)
+    du, dv = place[2], place[3]
+    for c in range(3):
+        state[0, c] = d[0, c]
+        state[1, c] = du * d[1, c] + dv * d[2, c]
+        state[2, c] = rates[0, c]
+        state[3, c] = du * rates[1, c] + dv * rates[2, c]
+    if _rates_unknown(surface, curve, place[0], place[1]):
+        _differenced_rates(surface, sign, scratch)
+        for c in range(3):
+            state[3, c] = rates[2, c]
+
+
+@compiled
+def new_scratch() -> Scratch:
+    """Working memory of `curve_point`."""
+    return np.empty((6, 3)), np.empty((6, 26)), np.empty((3, 3)), np.empty(4)
+
+
+@compiled
+def iso_curve(along: int, fixed: float) -> Curve:
+    """The iso-curve along u (0) or v (1) on which the other parameter is fixed."""
+    return along, fixed, np.empty(3), np.empty((0, 10)), np.empty(2, dtype=np.int64)
+
+
+@compiled
+def plane_section(surface: SurfaceData, u: float, v: float, ahead: tuple[Array, Array, float],
+                  scratch: Scratch) -> Curve:
+    """The section of a surface by a plane through a point of it.
+
+    Parameters
+    ----------
+    surface : tuple
+    u, v : float
+        The point, w = 0.
+    ahead : (tangent, plane, spacing)
+        Unit tangent of increasing w, unit normal of the plane, and length between nodes, mm.
+    scratch : tuple
+    """
+    tangent, plane, spacing = ahead
+    curve = (SECTION, spacing, plane, np.empty((2 * NODES + 1, 10)), np.zeros(2, dtype=np.int64))
+    surface_derivatives(surface, u, v, scratch[0], scratch[1])
+    scratch[3][0] = u
+    scratch[3][1] = v
+    _point_forward(plane, tangent, scratch)
+    _store_node(curve, 0, scratch)
+    return curve
+
+
+@compiled
+def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
+    """Rates of u and v that keep in the plane and make unit progress along the tangent."""
+    d, _, _, place = scratch
+    a = b = p = q = 0.0
+    for c in range(3):
+        a += d[1, c] * tangent[c]
+        b += d[2, c] * tangent[c]
+        p += d[1, c] * plane[c]
+        q += d[2, c] * plane[c]
+    det = a * q - b * p
+    place[2] = q / det if det != 0.0 else 0.0
+    place[3] = -p / det if det != 0.0 else 0.0
+
+
+@compiled
+def _store_node(curve: Curve, index: int, scratch: Scratch) -> None:
+    d, _, _, place = scratch
+    row = curve[3][index]
+    size = 0.0
+    for c in range(3):
+        row[4 + c] = d[0, c]
+        row[7 + c] = place[2] * d[1, c] + place[3] * d[2, c]
+        size += row[7 + c] ** 2
+    size = sqrt(size)
+    for c in range(3):
+        row[7 + c] = row[7 + c] / size if size > 0.0 else 0.0
+    row[0] = place[0]
+    row[1] = place[1]
+    row[2] = place[2] / size if size > 0.0 else 0.0
+    row[3] = place[3] / size if size > 0.0 else 0.0
+
+
+@compiled
+def _section_point(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> None:
+    """Evaluate a plane section at w, laying nodes up to there first."""
+    spacing, built = curve[1], curve[4]
+    side = 1 if w >= 0.0 else -1
+    last = min(int(abs(w) / spacing), NODES)
+    slot = (1 - side) // 2
+    while built[slot] < last:
+        k = built[slot]
+        _progress(surface, curve, side * k, side * spacing, scratch)
+        _store_node(curve, side * (k + 1), scratch)
+        built[slot] = k + 1
+    _progress(surface, curve, side * last, w - side * last * spacing, scratch)
+
+
+@compiled
+def _progress(surface: SurfaceData, curve: Curve, index: int, t: float, scratch: Scratch) -> None:
+    """The point of the plane that lies t ahead of a node along its tangent, by Newton's method."""
+    plane, row = curve[2], curve[3][index]
+    d, basis, _, place = scratch
+    u, v = row[0] + t * row[2], row[1] + t * row[3]
+    for _ in range(12):
+        surface_derivatives(surface, u, v, d, basis)
+        a = b = p = q = beside = 0.0
+        off = -t
+        for c in range(3):
+            a += d[1, c] * row[7 + c]
+            b += d[2, c] * row[7 + c]
+            p += d[1, c] * plane[c]
+            q += d[2, c] * plane[c]
+            off += (d[0, c] - row[4 + c]) * row[7 + c]
+            beside += (d[0, c] - row[4 + c]) * plane[c]
+        det = a * q - b * p
+        if det == 0.0 or abs(off) + abs(beside) <= 1e-12 * curve[1]:
+            break
+        u -= (q * off - b * beside) / det
+        v -= (a * beside - p * off) / det
+    place[0], place[1] = u, v
+    _point_forward(plane, row[7:10], scratch)
+
+
+@compiled
+def curve_length(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> float:
+    """Arc length of a plane section from its start to w, mm, by three-point Gauss quadrature between nodes."""
+    spacing, d, place = curve[1], scratch[0], scratch[3]
+    side = 1.0 if w >= 0.0 else -1.0
+    whole = int(abs(w) / spacing)
+    total = 0.0
+    for k in range(whole + 1):
+        start = side * k * spacing
+        piece = side * spacing if k < whole else w - start
+        for g in range(3):
+            share, weight = 0.5, 4.0 / 9.0
+            if g != 1:
+                share, weight = 0.5 + (g - 1) * 0.3872983346207417, 5.0 / 18.0
+            _section_point(surface, curve, start + share * piece, scratch)
+            size = 0.0
+            for c in range(3):
+                size += (place[2] * d[1, c] + place[3] * d[2, c]) ** 2
+            total += weight * sqrt(size) * abs(piece)
+    return total

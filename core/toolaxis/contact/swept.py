@@ -1,0 +1,216 @@
+"""The swept cutter: signed distance to a cutter, its tip along a pass, and the least distance over the pass.
+
+A cutter is an array ``(a, r, cos beta, sin beta, top, offset)``: flat radius, corner radius, inclination of the side,
+height of the cutting edge, and offset = corner radius + allowance, which is how far the corner's centre circle stays
+away from the surface.  Distances are negative inside.
+"""
+
+from math import inf, sqrt
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.curves import Curve, Scratch, curve_point
+from toolaxis.numeric.bspline import SurfaceData
+from toolaxis.numeric.compiled import compiled
+
+Array = NDArray[np.float64]
+Setting: TypeAlias = tuple[SurfaceData, float, Array, Array]
+"""Surface, sign of its normal, cutter, unit axis."""
+Gap: TypeAlias = tuple[float, float, float, float, float, float, float, float]
+
+SIDE_NODES = 96
+UPRIGHT = 1e-12
+
+
+@compiled
+def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float, float, float]:
+    """Signed distance from a point of the meridian half plane to the cutter, its gradient, and its bend.
+
+    The distance to a convex body is the greatest of its distances to supporting planes.  Above the cutting edge's end
+    it is that to the end's plane, a lower bound.
+
+    Parameters
+    ----------
+    cutter : (6,) array
+    rho, z : float
+        Distance from the axis and height above the tip, mm.
+
+    Returns
+    -------
+    distance, d/drho, d/dz, curvature of the level line : float
+    """
+    a, r, cos_side, sin_side, top = cutter[0], cutter[1], cutter[2], cutter[3], cutter[4]
+    x, y = rho - a, z - r
+    if x >= 0.0 and y * cos_side + x * sin_side <= 0.0:
+        size = sqrt(x * x + y * y)
+        if size > 1e-300:
+            return size - r, x / size, y / size, 1.0 / size
+        return -r, cos_side, -sin_side, 0.0
+    side = x * cos_side - y * sin_side - r
+    if side >= -z and side >= z - top:
+        return side, cos_side, -sin_side, 0.0
+    if -z >= z - top:
+        return -z, 0.0, -1.0, 0.0
+    return z - top, 0.0, 1.0, 0.0
+
+
+@compiled
+def signed_distance(cutter: Array, axis: Array, x: float, y: float, z: float) -> float:
+    """Signed distance from a point, relative to the tip, to the cutter, mm."""
+    height = x * axis[0] + y * axis[1] + z * axis[2]
+    x -= height * axis[0]
+    y -= height * axis[1]
+    z -= height * axis[2]
+    return meridian_distance(cutter, sqrt(x * x + y * y + z * z), height)[0]
+
+
+@compiled
+def tip_rates(cutter: Array, axis: Array, state: Array, tip: Array) -> None:
+    """Tool tip and its derivative along a curve into tip (2, 3), from the curve's state (4, 3).
+
+    Notes
+    -----
+    **Source**: [zhu2016] Eq. (1) and its derivative; see `toolaxis.contact.placing.tips`.
+    """
+    a, r, offset = cutter[0], cutter[1], cutter[5]
+    height = state[2, 0] * axis[0] + state[2, 1] * axis[1] + state[2, 2] * axis[2]
+    rate = state[3, 0] * axis[0] + state[3, 1] * axis[1] + state[3, 2] * axis[2]
+    size = along = 0.0
+    for c in range(3):
+        tip[0, c] = state[2, c] - height * axis[c]
+        tip[1, c] = state[3, c] - rate * axis[c]
+        size += tip[0, c] ** 2
+        along += tip[0, c] * tip[1, c]
+    reach = a / sqrt(size) if size > UPRIGHT**2 else 0.0
+    turn = along / size if size > UPRIGHT**2 else 0.0
+    for c in range(3):
+        across, change = tip[0, c], tip[1, c]
+        tip[0, c] = state[0, c] + offset * state[2, c] + reach * across - r * axis[c]
+        tip[1, c] = state[1, c] + offset * state[3, c] + reach * (change - turn * across)
+
+
+@compiled
+def gap_rates(cutter: Array, axis: Array, point: Array, tip: Array) -> Gap:
+    """Distance F(s, w) of a moving point q(s) to the cutter at tip(w), and derivatives.
+
+    Parameters
+    ----------
+    cutter : (6,) array
+    axis : (3,) array
+    point, tip : (2, 3) array
+        q and dq/ds; tip and dtip/dw.
+
+    Returns
+    -------
+    F, F_s, F_w, F_ww without the tip's second derivative, F_ws, and the gradient's three components
+    """
+    x0, x1, x2 = point[0, 0] - tip[0, 0], point[0, 1] - tip[0, 1], point[0, 2] - tip[0, 2]
+    z = x0 * axis[0] + x1 * axis[1] + x2 * axis[2]
+    x0 -= z * axis[0]
+    x1 -= z * axis[1]
+    x2 -= z * axis[2]
+    rho = sqrt(x0 * x0 + x1 * x1 + x2 * x2)
+    value, g_rho, g_z, bend = meridian_distance(cutter, rho, z)
+    inverse = 1.0 / rho if rho > 1e-300 else 0.0
+    x0 *= inverse
+    x1 *= inverse
+    x2 *= inverse
+    ring = g_rho * inverse if rho > 1e-300 else bend
+    g0, g1, g2 = g_rho * x0 + g_z * axis[0], g_rho * x1 + g_z * axis[1], g_rho * x2 + g_z * axis[2]
+    tr = x0 * tip[1, 0] + x1 * tip[1, 1] + x2 * tip[1, 2]
+    tz = axis[0] * tip[1, 0] + axis[1] * tip[1, 1] + axis[2] * tip[1, 2]
+    tt = tip[1, 0] ** 2 + tip[1, 1] ** 2 + tip[1, 2] ** 2
+    pr = x0 * point[1, 0] + x1 * point[1, 1] + x2 * point[1, 2]
+    pz = axis[0] * point[1, 0] + axis[1] * point[1, 1] + axis[2] * point[1, 2]
+    tp = tip[1, 0] * point[1, 0] + tip[1, 1] * point[1, 1] + tip[1, 2] * point[1, 2]
+    t_bent, p_bent = g_rho * tz - g_z * tr, g_rho * pz - g_z * pr
+    f_ww = bend * t_bent * t_bent + ring * (tt - tr * tr - tz * tz)
+    f_ws = -bend * t_bent * p_bent - ring * (tp - tr * pr - tz * pz)
+    return value, g_rho * pr + g_z * pz, -(g_rho * tr + g_z * tz), f_ww, f_ws, g0, g1, g2
+
+
+@compiled
+def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Array, Array, Scratch]) -> None:
+    """Tip and its rate at w of a pass into memory[1]; memory = state (4, 3), tip (2, 3), point (2, 3), scratch."""
+    surface, sign, cutter, axis = setting
+    curve_point(surface, sign, curve, w, memory[0], memory[3])
+    tip_rates(cutter, axis, memory[0], memory[1])
+
+
+@compiled
+def lifted_point(setting: Setting, curve: Curve, s: float, lift: float,
+                 memory: tuple[Array, Array, Array, Scratch]) -> None:
+    """The point lift above the surface at s of a curve, and its rate, into memory[2]."""
+    curve_point(setting[0], setting[1], curve, s, memory[0], memory[3])
+    state, point = memory[0], memory[2]
+    for c in range(3):
+        point[0, c] = state[0, c] + lift * state[2, c]
+        point[1, c] = state[1, c] + lift * state[3, c]
+
+
+@compiled
+def new_memory(scratch: Scratch) -> tuple[Array, Array, Array, Scratch]:
+    """Working memory of one contact."""
+    return np.empty((4, 3)), np.empty((2, 3)), np.empty((2, 3)), scratch
+
+
+@compiled
+def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, float],
+             memory: tuple[Array, Array, Array, Scratch], table: Array) -> tuple[int, int]:
+    """Tips along a pass around a contact.
+
+    Parameters
+    ----------
+    setting, curve, memory
+    start : float
+        Parameter of the contact.
+    reach : (window, spacing)
+        Distance to which the pass is followed, and length between nodes both on the surface and of the tip's path, mm.
+    table : (2 SIDE_NODES + 1, 7) array
+        Receives rows of w, tip, dtip/dw in increasing w from row `first` to row `last`.
+
+    Returns
+    -------
+    first, last : int
+        The contact is row SIDE_NODES.
+    """
+    first = last = SIDE_NODES
+    for side in (-1, 1):
+        w, row = start, SIDE_NODES
+        while True:
+            pass_tip(setting, curve, w, memory)
+            state, tip = memory[0], memory[1]
+            far = speed = travel = 0.0
+            table[row, 0] = w
+            for c in range(3):
+                table[row, 1 + c] = tip[0, c]
+                table[row, 4 + c] = tip[1, c]
+                speed += state[1, c] ** 2
+                travel += tip[1, c] ** 2
+            for c in range(3):
+                far += (tip[0, c] - table[SIDE_NODES, 1 + c]) ** 2
+            pace = sqrt(max(speed, travel))
+            if far > reach[0] ** 2 or row in (0, 2 * SIDE_NODES) or pace <= 1e-300:
+                break
+            row += side
+            w += side * reach[1] / pace
+        if side < 0:
+            first = row
+        else:
+            last = row
+    return first, last
+
+
+@compiled
+def scan_pass(setting: Setting, table: Array, rows: tuple[int, int], point: Array, gaps: Array) -> int:
+    """Distances of a point to the cutter at all nodes of a pass into gaps; returns the nearest node."""
+    cutter, axis = setting[2], setting[3]
+    best, nearest = inf, rows[0]
+    for k in range(rows[0], rows[1] + 1):
+        gaps[k] = signed_distance(cutter, axis, point[0, 0] - table[k, 1], point[0, 1] - table[k, 2],
+                                  point[0, 2] - table[k, 3])
+        if gaps[k] < best:
+            best, nearest = gaps[k], k
+    return nearest
