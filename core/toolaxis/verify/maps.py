@@ -129,7 +129,7 @@ class SurfaceMap:
         (k,) array
         """
         slot = np.clip(np.searchsorted(edges, self.remaining, side="left") - 1, 0, len(edges) - 1)
-        return np.bincount(slot, weights=self.weight, minlength=len(edges))
+        return np.asarray(np.bincount(slot, weights=self.weight, minlength=len(edges)), dtype=np.float64)
 
     def worst(self, what: str, count: int = 10) -> tuple[Place, ...]:
         """The worst places, no two closer than eight spacings, the worst first.

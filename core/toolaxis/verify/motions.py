@@ -22,7 +22,7 @@ BOW_FACTOR = 6.0
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Motions of a tool: on piece k, for s in [0, 1], the tip is start + s step and the axis points along axis + s turn.
+    """Motions of a tool: on piece k, for s in [0, 1], the tip is start + s step and the axis is along axis + s turn.
 
     Attributes
     ----------

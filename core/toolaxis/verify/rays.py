@@ -1,4 +1,4 @@
-"""Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more along the border."""
+"""Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more on the border."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -166,4 +166,4 @@ def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
     offset = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
     around = (uv[:, None] + offset * way[:, None]).reshape(-1, 2)
     around = np.clip(around, [u0, v0], [u1, v1])
-    return around[face.contains(around)]
+    return np.asarray(around[face.contains(around)], dtype=np.float64)

@@ -41,7 +41,7 @@ class Remains:
     remaining : (m,) array
         Least height t >= 0 above the ray's foot that a cutting motion removed, mm; inf where none came within reach.
     gouge : (m,) array
-        Greatest depth below the foot that any motion reached, mm; no more than the ray's depth, 0 where none went below.
+        Greatest depth below the foot that any motion reached, mm; at most the ray's depth, 0 where none went below.
     cut_by, gouged_by : (m,) array of int
         Index of the cutter location at which the motion that did it arrives; -1 where none did.
     uncertainty : float
@@ -220,4 +220,5 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
     out = _run(solid[0], motions, (slack, cuts), (sorted_ray, *balls(sorted_ray[:, :3])), (threads, progress))
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
-    return Remains(*(column[back] for column in out), uncertainty=NUMERICAL + motions.uncertainty)
+    remaining, gouge, cut_by, gouged_by = out
+    return Remains(remaining[back], gouge[back], cut_by[back], gouged_by[back], NUMERICAL + motions.uncertainty)

@@ -1,5 +1,6 @@
 """Convex solids of revolution about the tool axis, as rows of seven numbers: a cutter, or one frustum of a holder."""
 
+from itertools import pairwise
 from math import cos, hypot, sin, tan
 
 import numpy as np
@@ -57,13 +58,14 @@ def frustum_solids(outline: ArrayLike, name: str) -> Array:
     """
     line = np.asarray(outline, dtype=float)
     if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all() or (line[:, 0] < 0).any():
-        raise InvalidInput(f"{name} outline of shape {line.shape}: at least two finite rows (radius >= 0, z) are needed")
+        raise InvalidInput(f"{name} outline of shape {line.shape}: at least two finite rows (radius, z) are needed, "
+                           "no radius below zero")
     rise = np.diff(line[:, 1])
     if (rise < 0).any():
         i = int(np.argmax(rise < 0)) + 1
         raise InvalidInput(f"{name} z {i} is {line[i, 1]} mm, below the one before: z must not decrease")
     rows = []
-    for (r0, z0), (r1, z1) in zip(line[:-1], line[1:], strict=True):
+    for (r0, z0), (r1, z1) in pairwise(line):
         slant = hypot(r1 - r0, z1 - z0)
         if z1 - z0 > 1e-9:
             rows.append([r0, 0.0, (z1 - z0) / slant, (r1 - r0) / slant, z0, z1, r1])

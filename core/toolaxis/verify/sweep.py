@@ -1,4 +1,4 @@
-"""A solid of revolution swept along one motion, exactly: the least of a convex function over the motion, and along a ray.
+"""A solid of revolution swept along one motion, exactly: the least of a convex function over it, and along a ray.
 
 The solid's function at a point fixed in the part, seen while the tool moves with its axis fixed, is convex in the share
 s of the motion and in the place t on a ray; turning motions come cut so short that they are convex to a stated bow.
@@ -21,6 +21,9 @@ ROOT = 1e-9
 
 #: How closely the least over a motion is bracketed, mm.
 LEAST = 1e-10
+
+#: A look at the middle of a motion rejects only what lies this far outside, mm: more than a turning motion's bow.
+LOOK = 1e-4
 
 
 @compiled
@@ -121,6 +124,3 @@ def never_inside(solid: Array, motion: Motion, k: int, ray: Ray, span: tuple[flo
         rest -= along * (span[1] - span[0])
     return rest > LOOK
 
-
-#: A look at the middle of a motion rejects only what lies this far outside, mm: more than a turning motion's bow.
-LOOK = 1e-4

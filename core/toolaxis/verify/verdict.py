@@ -1,0 +1,301 @@
+"""The verdict: per operation what was measured, against what is allowed, and in sentences why it fails."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.profile import Profile
+from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.maps import Place, SurfaceMap, Zone, surface_map
+from toolaxis.verify.removal import Remains, removal
+from toolaxis.verify.solids import cutter_solid, frustum_solids
+
+Array = NDArray[np.float64]
+
+#: An operation passes when this share of the area is left no higher than this multiple of the scallop limit.
+SHARE, FACTOR = 0.999, 1.02
+
+NOT_CHECKED = "not checked"
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is to be judged: one operation, as data.
+
+    Attributes
+    ----------
+    name : str
+    tips, axes : (n, 3) array
+        Cutter locations, mm, and unit tool axes.
+    kind : (n,) array of int
+        `Motion` that arrives at each point.
+    profile : Profile
+        Generatrix of the cutter.
+    targets : tuple of Face
+        What the operation machines: judged for scallop and gouge.
+    scallop : float
+        Limit of the scallop height, mm.
+    allowance : float
+        Stock to be left on the targets and the skin, mm.
+    skin : tuple of Face
+        Faces next to the targets that the cutter may touch but not cut: judged for gouge.
+    surroundings : tuple of Face
+        Everything else, further bodies included: judged for the clearance of all components.
+    outlines : dict of str to (k, 2) array
+        Shank and holder as polylines (radius, z from the tip); one that is absent is reported as not checked.
+    tolerance : Tolerance
+    clean_up : float
+        Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
+    depth : float
+        How far below a face a gouge is followed, mm; less than the thickness of the part.
+    """
+
+    name: str
+    tips: Array
+    axes: Array
+    kind: NDArray[np.int8]
+    profile: Profile
+    targets: tuple[Face, ...]
+    scallop: float
+    allowance: float = 0.0
+    skin: tuple[Face, ...] = ()
+    surroundings: tuple[Face, ...] = ()
+    outlines: dict[str, Array] = field(default_factory=dict)
+    tolerance: Tolerance = field(default_factory=Tolerance)
+    clean_up: float = 0.0
+    depth: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (isfinite(self.scallop) and self.scallop > 0):
+            raise InvalidInput(f"scallop limit of operation {self.name} is {self.scallop} mm: it must be above zero")
+        if not isfinite(self.allowance):
+            raise InvalidInput(f"allowance of operation {self.name} is {self.allowance} mm: it must be finite")
+        if not 0 <= self.clean_up <= 1:
+            raise InvalidInput(f"clean-up share of operation {self.name} is {self.clean_up}: it must be 0 to 1")
+        if not self.targets:
+            raise InvalidInput(f"operation {self.name} machines no face: give at least one target")
+
+
+@dataclass(frozen=True, eq=False)
+class OperationVerdict:
+    """What was measured on one operation.
+
+    Attributes
+    ----------
+    name : str
+    faces : tuple of str
+        Labels of the faces machined.
+    scallop_limit, allowance : float
+        mm
+    scallop_max : float
+        Greatest height left where the cutter came, mm; inf where it came nowhere.
+    share_within : float
+        Share of the area left no higher than `FACTOR` times the limit, 0 to 1.
+    gouge_max, gouge_allowed : float
+        mm; the greatest is no more than the depth to which gouges are followed.
+    clearance : dict of str to Clearance or "not checked"
+        For "cutter", "shank" and "holder".
+    worst_scallop, worst_gouge : tuple of Place
+        The worst first; the gouge's only where it exceeds the judge's uncertainty.
+    zones : tuple of Zone
+        Connected zones left above the limit, the largest first.
+    area : float
+        mm^2
+    rays : int
+    spacing : float
+        Greatest distance of neighbouring rays, mm.
+    uncertainty : float
+        Bound of the error of a height or depth at a ray, mm, approximated faces included.
+    passed : bool
+    reasons : tuple of str
+        Sentences: why it failed; what was not checked.
+    maps : tuple of SurfaceMap
+        Of the targets, then of the skin.
+    """
+
+    name: str
+    faces: tuple[str, ...]
+    scallop_limit: float
+    allowance: float
+    scallop_max: float
+    share_within: float
+    gouge_max: float
+    gouge_allowed: float
+    clearance: dict[str, Clearance | str]
+    worst_scallop: tuple[Place, ...]
+    worst_gouge: tuple[Place, ...]
+    zones: tuple[Zone, ...]
+    area: float
+    rays: int
+    spacing: float
+    uncertainty: float
+    passed: bool
+    reasons: tuple[str, ...]
+    maps: tuple[SurfaceMap, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """The verdict on a plan.
+
+    Attributes
+    ----------
+    operations : tuple of OperationVerdict
+    """
+
+    operations: tuple[OperationVerdict, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether there is an operation, and every one passed."""
+        return bool(self.operations) and all(op.passed for op in self.operations)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Sentences of all operations, each led by its name."""
+        return tuple(f"{op.name}: {reason}" for op in self.operations for reason in op.reasons)
+
+
+def verify(tasks: Sequence[Task], *, spacing: float | None = None, threads: int = 1,
+           progress: Progress = NO_PROGRESS) -> Verdict:
+    """Judge operations by removing material with the cutter along their cutter location data.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    spacing : float, optional
+        Distance of neighbouring rays, mm; by the size of each face unless given.
+    threads : int
+        Threads of the compiled kernels; the verdict does not depend on it.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When cutter location data is empty or not finite, or sizes make no tool.
+    Cancelled
+        When the progress object asks to stop.
+    """
+    judged = []
+    for index, task in enumerate(tasks):
+        progress.report("verify", index, len(tasks))
+        judged.append(judge(task, spacing, threads, progress))
+    return Verdict(tuple(judged))
+
+
+def judge(task: Task, spacing: float | None = None, threads: int = 1,
+          progress: Progress = NO_PROGRESS) -> OperationVerdict:
+    """Judge one operation.
+
+    Parameters
+    ----------
+    task : Task
+    spacing, threads, progress
+        As for `verify`.
+    """
+    cl = (task.tips, task.axes, task.kind)
+    seen: list[float] = []
+
+    def measure(point: Array, normal: Array) -> Remains:
+        left = cut((point + task.allowance * normal, normal))
+        seen.append(left.uncertainty)
+        return left
+
+    cut = partial(removal, cl, task.profile, depth=task.depth, height=max(1.0, 20 * task.scallop), threads=threads,
+                  progress=progress)
+    targets = tuple(surface_map(face, measure, spacing) for face in task.targets)
+    skin = tuple(surface_map(face, measure, spacing) for face in task.skin)
+    rooms = _rooms(task, progress)
+    uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
+    return _summed(task, targets, skin, (rooms, uncertainty))
+
+
+def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
+    """Clearance of every component: the cutter from the surroundings, shank and holder from all faces."""
+    cl = (task.tips, task.axes, task.kind)
+    everything = (*task.targets, *task.skin, *task.surroundings)
+    rooms: dict[str, Clearance | str] = {"cutter": NOT_CHECKED, "shank": NOT_CHECKED, "holder": NOT_CHECKED}
+    if task.surroundings:
+        rooms["cutter"] = clearance(cl, ("cutter", cutter_solid(task.profile)), task.surroundings, progress)
+    for name, outline in task.outlines.items():
+        rooms[name] = clearance(cl, (name, frustum_solids(outline, name)), everything, progress)
+    return rooms
+
+
+def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[Place, ...]:
+    places = [place for one in maps for place in one.worst(what) if place.value > least]
+    return tuple(sorted(places, key=lambda place: -place.value)[:10])
+
+
+def _summed(task: Task, targets: tuple[SurfaceMap, ...], skin: tuple[SurfaceMap, ...],
+            found: tuple[dict[str, Clearance | str], float]) -> OperationVerdict:
+    rooms, uncertainty = found
+    limit, maps = FACTOR * task.scallop, (*targets, *skin)
+    area = sum(one.area for one in targets)
+    share = sum(one.share_within(limit) * one.area for one in targets) / area if area > 0 else 0.0
+    reached = [one.worst_scallop.value for one in targets if one.worst_scallop is not None]
+    touched = any((one.remaining == 0).any() for one in targets)
+    gouges = _worst(maps, "gouge", uncertainty)
+    zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
+    gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
+    failures = [*_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
+                *_room_reasons(task, rooms)]
+    notes = [f"{name} not checked" for name, room in rooms.items() if room == NOT_CHECKED]
+    return OperationVerdict(
+        task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
+        max(reached, default=0.0 if touched else float("inf")), share, gouge, task.tolerance.gouge, rooms,
+        _worst(targets, "remaining", 0.0), gouges, zones, area, sum(len(one.uv) for one in maps),
+        max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes), maps)
+
+
+def _at(point: tuple[float, float, float]) -> str:
+    return f"({point[0]:.3f}, {point[1]:.3f}, {point[2]:.3f})"
+
+
+def _motion(task: Task, index: int) -> str:
+    """What the motion that arrives at a point is, for a sentence."""
+    return f"{Motion(int(task.kind[index])).name.lower()} motion to point {index + 1}" if index >= 0 else "no motion"
+
+
+def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
+    if share >= SHARE - task.clean_up:
+        return []
+    text = (f"{100 * share:.2f} % of the area is within {FACTOR} times the scallop limit {task.scallop} mm, "
+            f"{100 * (SHARE - task.clean_up):.2f} % must be")
+    if zones:
+        zone = zones[0]
+        left = "never reached" if zone.reason == "not reached" else f"up to {zone.largest:.4f} mm high"
+        text += (f"; the largest of {len(zones)} zones beyond it is on face {zone.face} from {_at(zone.low)} to "
+                 f"{_at(zone.high)}, {zone.area:.2f} mm^2 of {area:.2f}, {left}")
+    return [text]
+
+
+def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[str]:
+    if gouge <= task.tolerance.gouge:
+        return []
+    worst = places[0]
+    deep = f"{gouge:.4f} mm" if gouge < task.depth else f"{gouge:.3f} mm or more"
+    return [f"gouge {deep} at face {worst.face} {_at(worst.point)}, allowed {task.tolerance.gouge} mm, by the "
+            f"{_motion(task, worst.motion)}"]
+
+
+def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
+    reasons = []
+    needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance,
+              "holder": task.tolerance.holder_clearance}
+    for name, room in rooms.items():
+        need = needed.get(name, task.tolerance.holder_clearance)
+        if isinstance(room, Clearance) and room.distance < min(need, FAR):
+            verb = f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
+            reasons.append(f"{name} {verb} face {room.face} at {_at(room.point)}, needed {need} mm, on the "
+                           f"{_motion(task, room.motion)}")
+    return reasons
