@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in, compiled, fused
 
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]
@@ -20,57 +20,63 @@ MAX_DEGREE = 25
 WORK_SHAPE = (6, MAX_DEGREE + 1)
 
 
-@compiled
+@built_in
 def find_span(knots: Array, degree: int, t: float) -> int:
-    """Index i with knots[i] <= t < knots[i + 1], the last non-empty span at the upper end."""
+    """Index i with knots[i] <= t < knots[i + 1], the last non-empty span at the upper end.
+
+    Halves the range without branching on the outcome, which random parameters would make unpredictable.
+    """
     low = degree
-    high = knots.shape[0] - degree - 1
-    if t >= knots[high]:
-        while knots[high - 1] >= knots[high]:
-            high -= 1
-        return high - 1
-    if t <= knots[low]:
-        while knots[low + 1] <= knots[low]:
-            low += 1
-        return low
-    while high - low > 1:
-        middle = (low + high) // 2
-        if t < knots[middle]:
-            high = middle
-        else:
-            low = middle
+    size: int = knots.shape[0] - 2 * degree - 1
+    while size > 1:
+        half = size >> 1
+        low = low + half if knots[low + half] <= t else low
+        size -= half
+    while low > degree and knots[low] >= knots[low + 1]:
+        low -= 1
     return low
 
 
-@compiled
+@fused
 def basis_derivatives(knots: Array, degree: int, span: int, t: float, rows: Array) -> None:
     """Basis functions and their first two derivatives at t into rows[0:3, 0:degree+1].
 
     **Source**: Cox and de Boor's recursion; derivatives from the bases of degree - 1 and degree - 2.
     """
+    _basis(knots, (degree, span), t, rows, 0)
+
+
+@built_in
+def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int) -> None:
+    """The same into rows[at:at+3]; a slice there would count references in the hot loop."""
+    degree, span = place
+    if degree == 3:
+        _cubic(knots, span, t, rows, at)
+        return
     for k in range(degree + 1):
-        rows[1, k] = 0.0
-        rows[2, k] = 0.0
-    rows[0, 0] = 1.0
+        rows[at + 1, k] = 0.0
+        rows[at + 2, k] = 0.0
+    rows[at, 0] = 1.0
     for d in range(1, degree + 1):
         if d == degree:
-            _differentiate(knots, d, span, rows, 0, 1)
+            _differentiate(knots, (d, span), rows, at, at + 1)
             if degree > 1:
-                _differentiate(knots, d, span, rows, 2, 2)
+                _differentiate(knots, (d, span), rows, at + 2, at + 2)
         elif d == degree - 1:
-            _differentiate(knots, d, span, rows, 0, 2)
+            _differentiate(knots, (d, span), rows, at, at + 2)
         saved = 0.0
         for r in range(d):
             upper = knots[span + 1 + r]
             lower = knots[span + 1 + r - d]
-            share = rows[0, r] / (upper - lower)
-            rows[0, r] = saved + (upper - t) * share
+            share = rows[at, r] / (upper - lower)
+            rows[at, r] = saved + (upper - t) * share
             saved = (t - lower) * share
-        rows[0, d] = saved
+        rows[at, d] = saved
 
 
-@compiled
-def _differentiate(knots: Array, d: int, span: int, rows: Array, source: int, target: int) -> None:
+@built_in
+def _differentiate(knots: Array, place: tuple[int, int], rows: Array, source: int, target: int) -> None:
+    d, span = place
     previous = 0.0
     for k in range(d + 1):
         value = 0.0
@@ -78,6 +84,25 @@ def _differentiate(knots: Array, d: int, span: int, rows: Array, source: int, ta
             value = rows[source, k] / (knots[span + 1 + k] - knots[span + 1 + k - d])
         rows[target, k] = d * (previous - value)
         previous = value
+
+
+@built_in
+def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
+    """The recursion of `basis_derivatives` written out for degree 3, with six divisions."""
+    a, b, c = knots[span - 2], knots[span - 1], knots[span]
+    d, e, f = knots[span + 1], knots[span + 2], knots[span + 3]
+    over_c, over_b, over_a = t - c, t - b, t - a
+    under_d, under_e, under_f = d - t, e - t, f - t
+    line = 1.0 / (d - c)
+    low, high = line / (d - b), line / (e - c)
+    left, middle, right = 1.0 / (d - a), 1.0 / (e - b), 1.0 / (f - c)
+    p, q = under_d * low, over_c * high
+    x, y, z = under_d * p * left, (over_b * p + under_e * q) * middle, over_c * q * right
+    rows[at, 0], rows[at, 3] = under_d * x, over_c * z
+    rows[at, 1], rows[at, 2] = over_a * x + under_e * y, over_b * y + under_f * z
+    rows[at + 1, 0], rows[at + 1, 1], rows[at + 1, 2], rows[at + 1, 3] = -3.0 * x, 3.0 * (x - y), 3.0 * (y - z), 3.0 * z
+    x, y, z = -6.0 * p * left, 6.0 * (p - q) * middle, 6.0 * q * right
+    rows[at + 2, 0], rows[at + 2, 1], rows[at + 2, 2], rows[at + 2, 3] = -x, x - y, y - z, z
 
 
 @compiled
@@ -89,93 +114,138 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
     data : tuple
         The surface.
     u, v : float
-        Parameters; outside the domain the surface goes on linearly (second derivatives there are those of the
-        border, zero in the crossed parameter).
+        Parameters; outside the domain the surface goes on linearly in the parameter that was crossed, and the six
+        vectors are the exact derivatives of that continuation: C1 across the border, with no second derivative in
+        the crossed parameter.
     out : (6, 3) array
         Receives the six vectors.
     work : (6, 26) array
         Scratch.
     """
     knots_u, knots_v, control, pu, pv, rational = data
-    uc = min(max(u, knots_u[pu]), knots_u[knots_u.shape[0] - pu - 1])
-    vc = min(max(v, knots_v[pv]), knots_v[knots_v.shape[0] - pv - 1])
+    uc = _clamped(knots_u, pu, u)
+    vc = _clamped(knots_v, pv, v)
     span_u = find_span(knots_u, pu, uc)
     span_v = find_span(knots_v, pv, vc)
-    bu = work[0:3]
-    bv = work[3:6]
-    basis_derivatives(knots_u, pu, span_u, uc, bu)
-    basis_derivatives(knots_v, pv, span_v, vc, bv)
-    for c in range(3):
-        _contract(control, span_u - pu, span_v - pv, pu, pv, bu, bv, c, out)
+    _basis(knots_u, (pu, span_u), uc, work, 0)
+    _basis(knots_v, (pv, span_v), vc, work, 3)
+    _patch(control, (span_u - pu, span_v - pv), (pu, pv), work, out)
     if rational:
-        _divide(control, span_u - pu, span_v - pv, pu, pv, bu, bv, out)
+        _divide(_weights(control, (span_u - pu, span_v - pv), (pu, pv), work), out)
     if u != uc or v != vc:
-        _extend(u - uc, v - vc, out)
+        _extend(data, (span_u - pu, span_v - pv), (u - uc, v - vc), work, out)
 
 
-@compiled
-def _contract(control: Array, i0: int, j0: int, pu: int, pv: int, bu: Array, bv: Array, c: int, out: Array) -> None:
-    s = su = sv = suu = suv = svv = 0.0
-    for j in range(pv + 1):
-        a0 = a1 = a2 = 0.0
-        for i in range(pu + 1):
-            x = control[i0 + i, j0 + j, c]
-            a0 += bu[0, i] * x
-            a1 += bu[1, i] * x
-            a2 += bu[2, i] * x
-        s += bv[0, j] * a0
-        su += bv[0, j] * a1
-        sv += bv[1, j] * a0
-        suu += bv[0, j] * a2
-        suv += bv[1, j] * a1
-        svv += bv[2, j] * a0
-    out[0, c] = s
-    out[1, c] = su
-    out[2, c] = sv
-    out[3, c] = suu
-    out[4, c] = suv
-    out[5, c] = svv
+@built_in
+def _clamped(knots: Array, degree: int, t: float) -> float:
+    """The nearest parameter in the domain; NaN stays NaN."""
+    if t < knots[degree]:
+        return float(knots[degree])
+    if t > knots[knots.shape[0] - degree - 1]:
+        return float(knots[knots.shape[0] - degree - 1])
+    return t
 
 
-@compiled
-def _divide(control: Array, i0: int, j0: int, pu: int, pv: int, bu: Array, bv: Array, out: Array) -> None:
+@built_in
+def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array, out: Array) -> None:
+    """Contract the first three homogeneous coordinates; every sum is kept in a register."""
+    (i0, j0), (pu, pv) = first, degree
+    s0 = s1 = s2 = su0 = su1 = su2 = sv0 = sv1 = sv2 = 0.0
+    suu0 = suu1 = suu2 = suv0 = suv1 = suv2 = svv0 = svv1 = svv2 = 0.0
+    for i in range(pu + 1):
+        a0 = a1 = a2 = b0 = b1 = b2 = c0 = c1 = c2 = 0.0
+        for j in range(pv + 1):
+            x, y, z = control[i0 + i, j0 + j, 0], control[i0 + i, j0 + j, 1], control[i0 + i, j0 + j, 2]
+            p, q, r = work[3, j], work[4, j], work[5, j]
+            a0, a1, a2 = a0 + p * x, a1 + p * y, a2 + p * z
+            b0, b1, b2 = b0 + q * x, b1 + q * y, b2 + q * z
+            c0, c1, c2 = c0 + r * x, c1 + r * y, c2 + r * z
+        p, q, r = work[0, i], work[1, i], work[2, i]
+        s0, s1, s2 = s0 + p * a0, s1 + p * a1, s2 + p * a2
+        su0, su1, su2 = su0 + q * a0, su1 + q * a1, su2 + q * a2
+        sv0, sv1, sv2 = sv0 + p * b0, sv1 + p * b1, sv2 + p * b2
+        suu0, suu1, suu2 = suu0 + r * a0, suu1 + r * a1, suu2 + r * a2
+        suv0, suv1, suv2 = suv0 + q * b0, suv1 + q * b1, suv2 + q * b2
+        svv0, svv1, svv2 = svv0 + p * c0, svv1 + p * c1, svv2 + p * c2
+    out[0, 0], out[0, 1], out[0, 2] = s0, s1, s2
+    out[1, 0], out[1, 1], out[1, 2] = su0, su1, su2
+    out[2, 0], out[2, 1], out[2, 2] = sv0, sv1, sv2
+    out[3, 0], out[3, 1], out[3, 2] = suu0, suu1, suu2
+    out[4, 0], out[4, 1], out[4, 2] = suv0, suv1, suv2
+    out[5, 0], out[5, 1], out[5, 2] = svv0, svv1, svv2
+
+
+@built_in
+def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int],
+             work: Array) -> tuple[float, float, float, float, float, float]:
+    """The weight and its five derivatives."""
+    (i0, j0), (pu, pv) = first, degree
     w = wu = wv = wuu = wuv = wvv = 0.0
-    for j in range(pv + 1):
-        a0 = a1 = a2 = 0.0
-        for i in range(pu + 1):
+    for i in range(pu + 1):
+        a = b = c = 0.0
+        for j in range(pv + 1):
             x = control[i0 + i, j0 + j, 3]
-            a0 += bu[0, i] * x
-            a1 += bu[1, i] * x
-            a2 += bu[2, i] * x
-        w += bv[0, j] * a0
-        wu += bv[0, j] * a1
-        wv += bv[1, j] * a0
-        wuu += bv[0, j] * a2
-        wuv += bv[1, j] * a1
-        wvv += bv[2, j] * a0
+            a, b, c = a + work[3, j] * x, b + work[4, j] * x, c + work[5, j] * x
+        p, q, r = work[0, i], work[1, i], work[2, i]
+        w, wu, wv = w + p * a, wu + q * a, wv + p * b
+        wuu, wuv, wvv = wuu + r * a, wuv + q * b, wvv + p * c
+    return w, wu, wv, wuu, wuv, wvv
+
+
+@built_in
+def _divide(weights: tuple[float, float, float, float, float, float], out: Array) -> None:
+    w, wu, wv, wuu, wuv, wvv = weights
+    share = 1.0 / w
     for c in range(3):
-        s = out[0, c] / w
-        su = (out[1, c] - wu * s) / w
-        sv = (out[2, c] - wv * s) / w
-        out[3, c] = (out[3, c] - 2.0 * wu * su - wuu * s) / w
-        out[4, c] = (out[4, c] - wu * sv - wv * su - wuv * s) / w
-        out[5, c] = (out[5, c] - 2.0 * wv * sv - wvv * s) / w
+        s = out[0, c] * share
+        su = (out[1, c] - wu * s) * share
+        sv = (out[2, c] - wv * s) * share
+        out[3, c] = (out[3, c] - 2.0 * wu * su - wuu * s) * share
+        out[4, c] = (out[4, c] - wu * sv - wv * su - wuv * s) * share
+        out[5, c] = (out[5, c] - 2.0 * wv * sv - wvv * s) * share
         out[0, c] = s
         out[1, c] = su
         out[2, c] = sv
 
 
-@compiled
-def _extend(du: float, dv: float, out: Array) -> None:
+@built_in
+def _sum(data: SurfaceData, first: tuple[int, int], work: Array, rows: tuple[int, int], c: int) -> float:
+    """Contract one homogeneous coordinate with one row of the basis in u and one in v."""
+    total = 0.0
+    for i in range(data[3] + 1):
+        for j in range(data[4] + 1):
+            total += work[rows[0], i] * work[3 + rows[1], j] * data[2][first[0] + i, first[1] + j, c]
+    return total
+
+
+@built_in
+def _mixed_third(data: SurfaceData, first: tuple[int, int], work: Array, out: Array, which: tuple[bool, int]) -> float:
+    """Suvv (with True, or else Suuv) of one coordinate, from the six vectors."""
+    second, c = which
+    rows = (1, 2) if second else (2, 1)
+    value = _sum(data, first, work, rows, c)
+    if data[5]:
+        w, wu, wv, wuu, wuv, wvv = _weights(data[2], first, (data[3], data[4]), work)
+        along, across, twice = (wu, wv, wvv) if second else (wv, wu, wuu)
+        s_along, s_across, s_twice = (out[1, c], out[2, c], out[5, c]) if second else (out[2, c], out[1, c], out[3, c])
+        value -= along * s_twice + 2.0 * (across * out[4, c] + wuv * s_across) + twice * s_along
+        value = (value - _sum(data, first, work, rows, 3) * out[0, c]) / w
+    return value
+
+
+@built_in
+def _extend(data: SurfaceData, first: tuple[int, int], beyond: tuple[float, float], work: Array, out: Array) -> None:
+    """Carry the six vectors of the border on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
+    du, dv = beyond
     for c in range(3):
+        suuv = _mixed_third(data, first, work, out, (False, c)) if du == 0.0 else 0.0
+        suvv = _mixed_third(data, first, work, out, (True, c)) if dv == 0.0 else 0.0
         su, sv, suv = out[1, c], out[2, c], out[4, c]
         out[0, c] += du * su + dv * sv + du * dv * suv
         out[1, c] = su + dv * suv
         out[2, c] = sv + du * suv
-        if du != 0.0:
-            out[3, c] = 0.0
-        if dv != 0.0:
-            out[5, c] = 0.0
+        out[3, c] = out[3, c] + dv * suuv if du == 0.0 else 0.0
+        out[5, c] = out[5, c] + du * suvv if dv == 0.0 else 0.0
 
 
 @compiled
@@ -183,6 +253,27 @@ def _many(data: SurfaceData, uv: Array, out: Array) -> None:
     work = np.empty((6, 26))
     for k in range(uv.shape[0]):
         surface_derivatives(data, uv[k, 0], uv[k, 1], out[k], work)
+
+
+@compiled
+def _many_cubic(data: SurfaceData, uv: Array, out: Array) -> bool:
+    """The six vectors at the nearest parameters of the domain of a bicubic surface; whether all were inside.
+
+    With degrees known to the compiler and no continuation beyond the border the loop runs a third faster.
+    """
+    knots_u, knots_v, control, _, _, rational = data
+    work = np.empty((6, 26))
+    inside = True
+    for k in range(uv.shape[0]):
+        u, v = _clamped(knots_u, 3, uv[k, 0]), _clamped(knots_v, 3, uv[k, 1])
+        inside = inside and u == uv[k, 0] and v == uv[k, 1]
+        span_u, span_v = find_span(knots_u, 3, u), find_span(knots_v, 3, v)
+        _cubic(knots_u, span_u, u, work, 0)
+        _cubic(knots_v, span_v, v, work, 3)
+        _patch(control, (span_u - 3, span_v - 3), (3, 3), work, out[k])
+        if rational:
+            _divide(_weights(control, (span_u - 3, span_v - 3), (3, 3), work), out[k])
+    return inside
 
 
 def surface_derivatives_many(data: SurfaceData, uv: Array) -> Array:
@@ -201,8 +292,11 @@ def surface_derivatives_many(data: SurfaceData, uv: Array) -> Array:
     """
     if not _compiled.available:
         return surface_derivatives_many_numpy(data, uv)
+    uv = np.ascontiguousarray(uv, dtype=float)
     out = np.empty((len(uv), 6, 3))
-    _many(data, np.ascontiguousarray(uv, dtype=float), out)
+    if data[3] == data[4] == 3 and _many_cubic(data, uv, out):
+        return out
+    _many(data, uv, out)
     return out
 
 
@@ -263,27 +357,27 @@ def surface_derivatives_many_numpy(data: SurfaceData, uv: Array) -> Array:
     bv, iv = basis_derivatives_numpy(knots_v, pv, inside[:, 1])
     net = control[(iu[:, None] + np.arange(pu + 1))[:, :, None], (iv[:, None] + np.arange(pv + 1))[:, None, :]]
     h = np.einsum("nai,nbj,nijc->nabc", bu, bv, net)
-    out = _quotient(h)
-    return _extend_numpy(out, uv - inside)
+    return _extend_numpy(*_quotient(h), uv - inside)
 
 
-def _quotient(h: NDArray[Any]) -> Array:
-    w = h[..., 3:]
-    s = h[:, 0, 0, :3] / w[:, 0, 0]
-    su = (h[:, 1, 0, :3] - w[:, 1, 0] * s) / w[:, 0, 0]
-    sv = (h[:, 0, 1, :3] - w[:, 0, 1] * s) / w[:, 0, 0]
-    suu = (h[:, 2, 0, :3] - 2 * w[:, 1, 0] * su - w[:, 2, 0] * s) / w[:, 0, 0]
-    suv = (h[:, 1, 1, :3] - w[:, 1, 0] * sv - w[:, 0, 1] * su - w[:, 1, 1] * s) / w[:, 0, 0]
-    svv = (h[:, 0, 2, :3] - 2 * w[:, 0, 1] * sv - w[:, 0, 2] * s) / w[:, 0, 0]
-    return np.stack([s, su, sv, suu, suv, svv], axis=1)
+def _quotient(h: NDArray[Any]) -> tuple[Array, Array, Array]:
+    """The six vectors, Suuv and Suvv of a quotient, from the table h[n, a, b, xyzw] of its parts' derivatives."""
+    w = h[..., 3:] / h[:, :1, :1, 3:]
+    part = h[..., :3] / h[:, :1, :1, 3:]
+    wu, wv, wuu, wuv, wvv = w[:, 1, 0], w[:, 0, 1], w[:, 2, 0], w[:, 1, 1], w[:, 0, 2]
+    s = part[:, 0, 0]
+    su = part[:, 1, 0] - wu * s
+    sv = part[:, 0, 1] - wv * s
+    suu = part[:, 2, 0] - 2 * wu * su - wuu * s
+    suv = part[:, 1, 1] - wu * sv - wv * su - wuv * s
+    svv = part[:, 0, 2] - 2 * wv * sv - wvv * s
+    suuv = part[:, 2, 1] - wv * suu - 2 * (wu * suv + wuv * su) - wuu * sv - w[:, 2, 1] * s
+    suvv = part[:, 1, 2] - wu * svv - 2 * (wv * suv + wuv * sv) - wvv * su - w[:, 1, 2] * s
+    return np.stack([s, su, sv, suu, suv, svv], axis=1), suuv, suvv
 
 
-def _extend_numpy(out: Array, beyond: Array) -> Array:
+def _extend_numpy(out: Array, suuv: Array, suvv: Array, beyond: Array) -> Array:
     du, dv = beyond[:, :1], beyond[:, 1:]
-    su, sv, suv = out[:, 1].copy(), out[:, 2].copy(), out[:, 4]
-    out[:, 0] += du * su + dv * sv + du * dv * suv
-    out[:, 1] = su + dv * suv
-    out[:, 2] = sv + du * suv
-    out[:, 3] = np.where(du != 0, 0.0, out[:, 3])
-    out[:, 5] = np.where(dv != 0, 0.0, out[:, 5])
-    return out
+    s, su, sv, suu, suv, svv = (out[:, k] for k in range(6))
+    return np.stack([s + du * su + dv * sv + du * dv * suv, su + dv * suv, sv + du * suv,
+                     np.where(du != 0, 0.0, suu + dv * suuv), suv, np.where(dv != 0, 0.0, svv + du * suvv)], axis=1)

@@ -37,7 +37,55 @@ def compiled(function: _Function) -> _Function:
     function : callable
         A function on arrays and numbers that numba can compile.
     """
+    return _compile(function, False)
+
+
+def fused(function: _Function) -> _Function:
+    """Compile a kernel as `compiled` does, with a * b + c rounded once where the processor can.
+
+    For long sums of products; not where a difference of products must vanish exactly.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"})
+
+
+def built_in(function: _Function) -> _Function:
+    """Compile a small kernel as `fused` does, and build it into the code of whatever calls it.
+
+    Calls that are left cost a reference count for each array that is passed, more than a short sum of products.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, True)
+
+
+def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool = False) -> _Function:
     if _numba is None:
         return function
-    result: _Function = _numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    options = {"fastmath": fastmath, "forceinline": forceinline}
+    kernel = _numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
+    if kernel is not function:  # numba hands the function back when NUMBA_DISABLE_JIT is set
+        _stamp(kernel, repr(options))
+    result: _Function = kernel
     return result
+
+
+def _stamp(kernel: Any, options: str) -> None:
+    """Let code kept on disk expire with the file of every kernel it calls, not with its own file alone.
+
+    numba compares the file of the kernel itself only, although the kernels it calls are built into it.
+    """
+    store: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    own = getattr(store, "_source_stamp", None)
+    called = {value.source_stamp for value in kernel.py_func.__globals__.values()
+              if type(value) is type(kernel) and hasattr(value, "source_stamp")}
+    kernel.source_stamp = repr((own, options, sorted(called)))
+    if own is not None:
+        store._source_stamp = kernel.source_stamp
