@@ -1,0 +1,191 @@
+"""How far cutter, shank and holder stay from everything else: a lower bound that holds between all points."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.distances import bounded, judged, motions, segment_motions
+from toolaxis.contact.placing import place
+from toolaxis.contact.surroundings import IGNORED, Surroundings
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+from toolaxis.tools.solid import COMPONENTS
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+RESOLUTION = 0.001
+CUTOFF = 10.0
+
+
+class PartLike(Protocol):
+    """What `clearance` asks of a part."""
+
+    @property
+    def faces(self) -> Sequence[Face]:
+        """All faces."""
+
+    def skin(self, number: int) -> Sequence[Face]:
+        """The face of that number with its tangent-continuous neighbours."""
+
+
+class Clearances(NamedTuple):
+    """Lower bounds for n positions or motions, by component.
+
+    distance : (n, 3) signed distance of cutter, shank and holder, mm; negative where they collide, and there at least
+    as deep as the deepest point lies in one convex piece of the tool; the cutoff where nothing is nearer or where the
+    component is not known;
+    face : (n, 3) index of the nearest face in the surroundings, -1 where nothing is nearer than the cutoff;
+    place : (n, 3, 3) a point near the nearest place of that face, mm;
+    checked : names of the components that are known and that some face asks for.
+    """
+
+    distance: Array
+    face: Indices
+    place: Array
+    checked: tuple[str, ...]
+
+
+class Verdicts(NamedTuple):
+    """Whether n positions or motions keep all required distances.
+
+    safe : (n,) True is proven;
+    component : (n,) which of cutter (0), shank (1) and holder (2) was found or feared to be too near, -1 where safe;
+    face : (n,) index of the face that it was too near to, -1 where safe or not known.
+    """
+
+    safe: NDArray[np.bool_]
+    component: Indices
+    face: Indices
+
+
+def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles: PartLike | Sequence[Face], *,
+              allowance: float = 0.0) -> Array:
+    """Lower bound of the distance between the whole tool and obstacles, for contacts of a face.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    uv : (n, 2) array_like
+        Parameters of the contacts.
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    obstacles : Part or sequence of Face
+        The machined face itself (of a part: its whole skin) is left out for the cutter, not for shank and holder.
+    allowance : float
+        Stock left on the face, mm.
+
+    Returns
+    -------
+    (n,) array, mm: negative in collision; `CUTOFF` where nothing is nearer.  At most `RESOLUTION` (and the faces'
+    tolerance) below the true distance.
+
+    Notes
+    -----
+    **Properties**: 1. never above the distance of any point of an obstacle; 2. moves with the part; 3. more obstacles
+    never enlarge it.
+    """
+    if isinstance(obstacles, Sequence):
+        faces, skin = tuple(obstacles), (face,)
+    else:
+        faces, skin = tuple(obstacles.faces), (face, *obstacles.skin(face.number))
+    around = Surroundings.of(faces, skin=skin)
+    return clearances(tool, place(face, tool, uv, axis, allowance), axis, around).distance.min(axis=1)
+
+
+def clearances(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings, cutoff: float = CUTOFF,
+               *, resolution: float = RESOLUTION) -> Clearances:
+    """Lower bounds of the distances of cutter, shank and holder, for tool tips.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    around : Surroundings
+        Of its required distances only -inf counts here: these pairs are left out.
+    cutoff : float
+        Greater distances are answered with this, mm.
+    resolution : float
+        How far a bound may lie below the true distance, mm.
+    """
+    return _distances(tool, motions(tips, axis), around, (cutoff, resolution))
+
+
+def segment_clearances(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings, cutoff: float = CUTOFF,
+                       *, resolution: float = RESOLUTION) -> Clearances:
+    """Lower bounds of the distances on the straight motions from each tip to the next, n - 1 rows.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit tool axis.
+    around : Surroundings
+        Of its required distances only -inf counts here: these pairs are left out.
+    cutoff : float
+        Greater distances are answered with this, mm.
+    resolution : float
+        How far a bound may lie below the true distance, mm.
+    """
+    return _distances(tool, segment_motions(tips, axis), around, (cutoff, resolution))
+
+
+def clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> Verdicts:
+    """Whether every component keeps its required distance from every face, for tool tips.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    around : Surroundings
+    """
+    return _verdicts(tool, motions(tips, axis), around)
+
+
+def segment_clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> Verdicts:
+    """Whether every component keeps its required distance on the motions from each tip to the next, n - 1 rows.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit tool axis.
+    around : Surroundings
+    """
+    return _verdicts(tool, segment_motions(tips, axis), around)
+
+
+def _known(tool: Tool) -> tuple[str, ...]:
+    return tuple(name for name in COMPONENTS if name == "cutter" or name in tool.outlines)
+
+
+def _distances(tool: Tool, moves: Array, around: Surroundings, how: tuple[float, float]) -> Clearances:
+    n, (cutoff, resolution) = len(moves), how
+    asked = (around.required > IGNORED).any(axis=0)
+    checked = tuple(name for name in _known(tool) if asked[COMPONENTS.index(name)])
+    if not around.faces or not n:
+        return Clearances(np.full((n, 3), cutoff), np.full((n, 3), -1), np.zeros((n, 3, 3)), checked)
+    found = bounded(around.cells, tool, moves, cutoff, resolution, around.required)
+    return Clearances(found.lower, found.face, found.point, checked)
+
+
+def _verdicts(tool: Tool, moves: Array, around: Surroundings) -> Verdicts:
+    if not around.faces or not len(moves):
+        return Verdicts(np.ones(len(moves), dtype=bool), np.full(len(moves), -1), np.full(len(moves), -1))
+    found = judged(around.cells, tool, moves, around.required)
+    safe = found.blocked < 0
+    face = np.where(safe, -1, np.take_along_axis(found.face, np.maximum(found.blocked, 0)[:, None], axis=1)[:, 0])
+    return Verdicts(safe, found.blocked, face)

@@ -1,0 +1,146 @@
+"""Distances and verdicts for many tool positions or motions at once, by the kernel or by its plain twin."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.descent import descend_many
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import as_rows
+from toolaxis.shape.cells import Cells
+from toolaxis.tools.assembly import Tool
+from toolaxis.tools.solid import solid_pieces
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_PIECES_AT_ONCE = 60
+
+
+class Found(NamedTuple):
+    """Answers for n positions or motions.
+
+    lower : (n, 3) lower bounds of the signed distance of cutter, shank and holder, mm;
+    face : (n, 3) index of the nearest face, -1 where nothing is nearer than the cutoff;
+    point : (n, 3, 3) a point of a cell near the nearest place, by component;
+    blocked : (n,) component that was not proven to keep its limits, -1 where all do (only when deciding);
+    looked : (n,) number of cells looked at.
+    """
+
+    lower: Array
+    face: Indices
+    point: Array
+    blocked: Indices
+    looked: Indices
+
+
+def motions(tips: ArrayLike, axis: ArrayLike) -> Array:
+    """Standing tools as motions of no length, (n, 3, 3): tip, zero, axis.
+
+    Parameters
+    ----------
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit vectors, tip to spindle.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, numbers are not finite, or an axis is not a unit vector.
+    """
+    rows = as_rows(tips, 3, "tool tips")
+    return np.stack([rows, np.zeros_like(rows), _axes(axis, len(rows))], axis=1)
+
+
+def segment_motions(tips: ArrayLike, axis: ArrayLike) -> Array:
+    """Straight motions from each tip to the next, (n - 1, 3, 3): middle, half of the way, axis.
+
+    Parameters
+    ----------
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit vectors; the axis does not turn within a motion.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, numbers are not finite, or an axis is not a unit vector.
+    """
+    rows = as_rows(tips, 3, "tool tips")
+    return np.stack([(rows[1:] + rows[:-1]) / 2, (rows[1:] - rows[:-1]) / 2, _axes(axis, len(rows) - 1)], axis=1)
+
+
+def _axes(axis: ArrayLike, count: int) -> Array:
+    rows = as_rows(axis, 3, "axis")
+    if len(rows) not in (1, count):
+        raise InvalidInput(f"{len(rows)} axes are given for {count} positions: give one, or one for each")
+    off = np.abs(np.einsum("ij,ij->i", rows, rows) - 1)
+    if off.size and off.max() > 1e-9:
+        i = int(np.argmax(off))
+        raise InvalidInput(f"axis {i} is {rows[i].tolist()}: it must have length 1")
+    return np.broadcast_to(rows, (count, 3))
+
+
+def bounded(cells: Cells, tool: Tool, moves: Array, cutoff: ArrayLike, resolution: float,
+            required: Array | None = None) -> Found:
+    """Lower bounds of the distances, at most ``resolution`` (and the faces' tolerance) below the true ones.
+
+    Parameters
+    ----------
+    cells : Cells
+    tool : Tool
+    moves : (n, 3, 3) array
+        From `motions` or `segment_motions`.
+    cutoff : float or (3,) array_like
+        Greater distances are answered with this, mm.
+    resolution : float
+        mm
+    required : (faces, 3) array, optional
+        Only which pairs are left out (-inf) counts here.
+    """
+    limits = np.zeros((len(cells.faces), 3)) if required is None else np.where(np.isneginf(required), -np.inf, 0.0)
+    return _run(cells, tool, moves, (limits, np.broadcast_to(np.asarray(cutoff, dtype=float), 3), resolution))
+
+
+def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
+    """Whether every component is proven to keep its limits: ``blocked`` is -1 there.
+
+    Parameters
+    ----------
+    cells : Cells
+    tool : Tool
+    moves : (n, 3, 3) array
+        From `motions` or `segment_motions`.
+    required : (faces, 3) array
+        Least signed distances, mm; -inf leaves a pair out.
+    """
+    return _run(cells, tool, moves, (np.ascontiguousarray(required), np.full(3, np.inf), -1.0))
+
+
+def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> Found:
+    limits, cutoff, resolution = ask
+    pieces = solid_pieces(tool.profile, tool.outlines)
+    asked = (limits > -np.inf).any(axis=0)
+    pieces = pieces[asked[pieces[:, 7].astype(int)]]
+    n = len(moves)
+    total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))
+    for first in range(0, len(pieces), _PIECES_AT_ONCE):
+        some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
+        found = Found(np.empty((n, 3)), np.empty((n, 3), dtype=np.int64), np.empty((n, 3, 3)),
+                      *np.empty((2, n), dtype=np.int64))
+        verdict = np.empty((n, 2), dtype=np.int64)
+        shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
+        descend_many(cells.data, (some, limits, limits.max(axis=0), shape), np.ascontiguousarray(moves),
+                     np.ascontiguousarray(cutoff), (found.lower, found.face, found.point, verdict))
+        total = _merged(total, found._replace(blocked=verdict[:, 0], looked=verdict[:, 1]))
+    return total
+
+
+def _merged(one: Found, other: Found) -> Found:
+    nearer = (other.lower < one.lower) | (one.face < 0)
+    return Found(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
+                 np.where(nearer[..., None], other.point, one.point),
+                 np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)

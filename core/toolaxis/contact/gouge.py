@@ -1,0 +1,158 @@
+"""How deep the cutter reaches below the machined skin: an upper bound that holds between all points."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.distances import bounded, judged, motions, segment_motions
+from toolaxis.contact.placing import place
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.cells import Cells, forest
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+RESOLUTION = 0.0003
+
+
+def skin_cells(skin: Cells | Sequence[Face]) -> Cells:
+    """Cells of a skin, made once and used for any tool and axis.
+
+    Parameters
+    ----------
+    skin : Cells or sequence of Face
+        The machined face and its tangent-continuous neighbours.
+    """
+    return skin if isinstance(skin, Cells) else forest(skin)
+
+
+def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face] | None = None, *,
+          allowance: float = 0.0) -> Array:
+    """Upper bound of the depth to which the cutter reaches below the skin, for contacts of a face.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    uv : (n, 2) array_like
+        Parameters of the contacts.
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    skin : Cells or sequence of Face, optional
+        The face (the default) with its tangent-continuous neighbours.
+    allowance : float
+        Stock left on the skin, mm: the depth is counted from there.
+
+    Returns
+    -------
+    (n,) array, mm: never below the true depth, and at most `RESOLUTION` (and the faces' tolerance) above it.
+
+    Notes
+    -----
+    **Properties**: 1. zero (within the resolution) where the cutter only touches; 2. moves with the part; 3. does not
+    see the shank and the holder.
+    """
+    tips = place(face, tool, uv, axis, allowance)
+    return penetration(tool, tips, axis, (face,) if skin is None else skin, allowance=allowance)
+
+
+def penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], *,
+                allowance: float = 0.0) -> Array:
+    """Upper bound of the depth below the skin, for tool tips.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    skin : Cells or sequence of Face
+    allowance : float
+        Stock left on the skin, mm.
+
+    Returns
+    -------
+    (n,) array, mm, zero or more
+    """
+    return _depth(tool, motions(tips, axis), skin, allowance)
+
+
+def segment_penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], *,
+                        allowance: float = 0.0) -> Array:
+    """Upper bound of the depth below the skin on the straight motions from each tip to the next, (n - 1,) mm.
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit tool axis.
+    skin : Cells or sequence of Face
+    allowance : float
+        Stock left on the skin, mm.
+    """
+    return _depth(tool, segment_motions(tips, axis), skin, allowance)
+
+
+def gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], limit: float) -> Flags:
+    """Whether the cutter may reach below the skin deeper than a limit: False is proven, (n,).
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit tool axis, tip to spindle.
+    skin : Cells or sequence of Face
+    limit : float
+        mm, above zero; less the allowance where stock is left.
+
+    Raises
+    ------
+    InvalidInput
+        When the limit is not a finite number.
+    """
+    return _exceeds(tool, motions(tips, axis), skin, limit)
+
+
+def segment_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face],
+                   limit: float) -> Flags:
+    """Whether the cutter may reach deeper than a limit on the motions from each tip to the next, (n - 1,).
+
+    Parameters
+    ----------
+    tool : Tool
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit tool axis.
+    skin : Cells or sequence of Face
+    limit : float
+        mm, above zero; less the allowance where stock is left.
+
+    Raises
+    ------
+    InvalidInput
+        When the limit is not a finite number.
+    """
+    return _exceeds(tool, segment_motions(tips, axis), skin, limit)
+
+
+def _depth(tool: Tool, moves: Array, skin: Cells | Sequence[Face], allowance: float) -> Array:
+    cells = skin_cells(skin)
+    only = np.tile([0.0, -np.inf, -np.inf], (len(cells.faces), 1))
+    found = bounded(cells, tool, moves, allowance, RESOLUTION, only)
+    return np.maximum(allowance - found.lower[:, 0], 0.0)
+
+
+def _exceeds(tool: Tool, moves: Array, skin: Cells | Sequence[Face], limit: float) -> Flags:
+    if not np.isfinite(limit):
+        raise InvalidInput(f"gouge limit is {limit} mm: it must be a finite number")
+    cells = skin_cells(skin)
+    return judged(cells, tool, moves, np.tile([-limit, -np.inf, -np.inf], (len(cells.faces), 1))).blocked >= 0

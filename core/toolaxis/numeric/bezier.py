@@ -1,0 +1,124 @@
+"""Pieces of a B-spline surface as Bezier nets, and what their control points prove about second derivatives.
+
+A Bezier patch lies in the hull of its control points; so do its derivatives in the hull of the difference nets.  The
+greatest norm of a difference net is therefore a bound that holds between all parameters.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.bspline import SurfaceData
+
+Array = NDArray[np.float64]
+
+
+def bezier_rows(knots: Array, degree: int, low: Array, high: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Weights that turn B-spline control points into Bezier points on intervals inside single knot spans.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    degree : int
+    low, high : (n,) array
+        Ends of the intervals; no knot may lie strictly between them.
+
+    Returns
+    -------
+    rows : (n, degree + 1, degree + 1) array
+        Bezier point j = rows[:, j] @ the active control points.
+    first : (n,) array of int
+        Index of the first active control point.
+
+    Notes
+    -----
+    **Source**: Ramshaw's blossom: Bezier point j is the polar form at (degree - j) times low and j times high.
+    """
+    last = np.flatnonzero(knots < knots[len(knots) - degree - 1])[-1]
+    span = np.clip(np.searchsorted(knots, (low + high) / 2, side="right") - 1, degree, last)
+    rows = np.empty((len(low), degree + 1, degree + 1))
+    for j in range(degree + 1):
+        table = np.broadcast_to(np.eye(degree + 1), (len(low), degree + 1, degree + 1))
+        for d in range(1, degree + 1):
+            t = low if d <= degree - j else high
+            lower = knots[span[:, None] - degree + d + np.arange(degree + 1 - d)]
+            upper = knots[span[:, None] + 1 + np.arange(degree + 1 - d)]
+            share = ((t[:, None] - lower) / (upper - lower))[:, :, None]
+            table = (1 - share) * table[:, :-1] + share * table[:, 1:]
+        rows[:, j] = table[:, 0]
+    return rows, span - degree
+
+
+def bezier_nets(data: SurfaceData, breaks_u: Array, breaks_v: Array) -> Array:
+    """Homogeneous Bezier nets of a surface over a grid of cells.
+
+    Parameters
+    ----------
+    data : tuple
+        The surface.
+    breaks_u, breaks_v : (nu + 1,), (nv + 1,) array
+        Grid lines; every knot between the first and the last must be one of them.
+
+    Returns
+    -------
+    (nu, nv, pu + 1, pv + 1, 4) array
+    """
+    knots_u, knots_v, control, pu, pv, _ = data
+    rows_u, first_u = bezier_rows(knots_u, pu, breaks_u[:-1], breaks_u[1:])
+    rows_v, first_v = bezier_rows(knots_v, pv, breaks_v[:-1], breaks_v[1:])
+    half = np.einsum("iab,ibjc->iajc", rows_u, control[first_u[:, None] + np.arange(pu + 1)])
+    net = half[:, :, first_v[:, None] + np.arange(pv + 1)]
+    return np.einsum("jab,icjbd->ijcad", rows_v, net)
+
+
+def _peak(net: Array) -> Array:
+    """Greatest norm of the control vectors of each net."""
+    if 0 in net.shape[2:4]:
+        return np.zeros(net.shape[:2])
+    size = np.sqrt(np.einsum("ijabc,ijabc->ijab", net, net))
+    return np.asarray(size.max(axis=(2, 3)))
+
+
+def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Array:
+    """Bounds of |Suu|, |Suv| and |Svv| over Bezier patches.
+
+    Parameters
+    ----------
+    nets : (nu, nv, pu + 1, pv + 1, 4) array
+        Homogeneous nets.
+    width_u, width_v : (nu,), (nv,) array
+        Parameter widths of the patches.
+
+    Returns
+    -------
+    (nu, nv, 3) array
+
+    Notes
+    -----
+    With S = c + A / w and c inside the patch, w Suu = Auu - 2 wu Su - wuu (S - c); each factor is bounded by its net.
+    """
+    pu, pv = nets.shape[2] - 1, nets.shape[3] - 1
+    w = nets[..., 3:]
+    middle = (nets[..., :3] / w).mean(axis=(2, 3), keepdims=True)
+    a = nets[..., :3] - w * middle
+    hu, hv = width_u[:, None], width_v[None, :]
+    least = w.min(axis=(2, 3, 4))
+    reach = _peak(a / w)
+
+    def u(net: Array) -> Array:
+        return np.diff(net, axis=2) * (pu / hu)[..., None, None, None]
+
+    def v(net: Array) -> Array:
+        return np.diff(net, axis=3) * (pv / hv)[..., None, None, None]
+
+    def uu(net: Array) -> Array:
+        return np.diff(net, 2, axis=2) * (pu * (pu - 1) / hu**2)[..., None, None, None]
+
+    def vv(net: Array) -> Array:
+        return np.diff(net, 2, axis=3) * (pv * (pv - 1) / hv**2)[..., None, None, None]
+
+    wu, wv = _peak(u(w)), _peak(v(w))
+    su, sv = (_peak(u(a)) + wu * reach) / least, (_peak(v(a)) + wv * reach) / least
+    suu = (_peak(uu(a)) + 2 * wu * su + _peak(uu(w)) * reach) / least
+    suv = (_peak(v(u(a))) + wu * sv + wv * su + _peak(v(u(w))) * reach) / least
+    svv = (_peak(vv(a)) + 2 * wv * sv + _peak(vv(w)) * reach) / least
+    return np.stack([suu, suv, svv], axis=-1)

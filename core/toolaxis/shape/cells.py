@@ -1,0 +1,168 @@
+"""Faces as trees of cells that enclose them: each cell is a parallelogram with a proven distance around it.
+
+Every point of the face inside a cell is q + s a + t b + d with s and t in [-1, 1] and d no longer than e, and lies
+within a radius R of q.  Leaves take e from bounds of the second derivatives, parents from their children.  What a trim
+cuts away is left out: cells outside the loops are dropped, cells across a loop shrink to what is inside.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeAlias
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.face import Face
+from toolaxis.shape.subdivision import subdivided
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+FINENESS = 0.001
+
+ForestData: TypeAlias = tuple[Array, Indices, Array, Indices, Array, Array, Array, Indices]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The tree of one face, or the trees of several under one root; node 0 is the root.
+
+    Attributes
+    ----------
+    faces : tuple of Face
+    shape : (n, 11) array
+        q, a, b (three numbers each), e and R of every node, mm.
+    link : (n, 5) array of int
+        Left and right child (-1 for none), face (index in `faces`, -1 above them), leaf (-1 above leaves), and
+        whether q is a point of the face (1 or 0).
+    leaf : (m, 11) array
+        Centre u, v and half widths of the leaf's rectangle; bounds of |Suu|, |Suv|, |Svv| over it; what is added to
+        Taylor's remainder, mm; a reference point u, v and whether that is inside the loops (1 or 0).
+    edge_start : (m + 1,) array of int
+        Trim edges that run through leaf k are ``edges[edge_start[k]:edge_start[k + 1]]``.
+    edges : (k, 4) array
+        u, v of both ends.
+    """
+
+    faces: tuple[Face, ...]
+    shape: Array
+    link: Indices
+    leaf: Array
+    edge_start: Indices
+    edges: Array
+
+    @cached_property
+    def data(self) -> ForestData:
+        """The tuple that kernels take: the trees, then knots, control points and layout of all surfaces."""
+        knots: list[Array] = []
+        control: list[Array] = []
+        layout = []
+        at_knot = at_number = 0
+        for face in self.faces:
+            ku, kv, net, pu, pv, rational = face.surface.data
+            layout.append([at_knot, len(ku), len(kv), at_number, net.shape[0], net.shape[1], pu, pv, int(rational)])
+            knots += [ku, kv]
+            control.append(net.reshape(-1))
+            at_knot, at_number = at_knot + len(ku) + len(kv), at_number + net.size
+        return (self.shape, self.link, self.leaf, self.edge_start, self.edges, np.concatenate(knots),
+                np.concatenate(control), np.array(layout, dtype=np.int64))
+
+
+_known: "WeakKeyDictionary[Face, dict[float, Cells]]" = WeakKeyDictionary()
+
+
+def cells(face: Face, fineness: float = FINENESS) -> Cells:
+    """The tree of one face; made once for each face and kept while the face lives.
+
+    Parameters
+    ----------
+    face : Face
+    fineness : float
+        Distance e at which cells are fine enough, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When the loops enclose nothing of the surface.
+    """
+    found = _known.setdefault(face, {})
+    if fineness not in found:
+        tree = subdivided(face, fineness)
+        found[fineness] = Cells((), *tree)
+    return replace(found[fineness], faces=(face,))
+
+
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Several trees under one root.
+
+    Parameters
+    ----------
+    parts : sequence of Cells
+
+    Raises
+    ------
+    InvalidInput
+        When there is none.
+    """
+    if not parts:
+        raise InvalidInput("no faces are given: at least one is needed")
+    if len(parts) == 1:
+        return parts[0]
+    faces = np.cumsum([0, *(len(p.faces) for p in parts)])
+    leaves = np.cumsum([0, *(len(p.leaf) for p in parts)])
+    edges = np.cumsum([0, *(len(p.edges) for p in parts)])
+    nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
+    top_shape, top_link = _branches(np.stack([p.shape[0] for p in parts]), nodes[:-1])
+    links = [_shifted(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
+    start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
+    return Cells(tuple(f for p in parts for f in p.faces), np.vstack([top_shape, *(p.shape for p in parts)]),
+                 np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
+                 np.vstack([p.edges for p in parts]))
+
+
+def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
+    """The trees of several faces under one root.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+    fineness : float
+        Distance e at which cells are fine enough, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When there is no face, or the loops of one enclose nothing of its surface.
+    """
+    return joined([cells(face, fineness) for face in faces])
+
+
+def _shifted(link: Indices, node: int, face: int, leaf: int) -> Indices:
+    moved = link.copy()
+    for column, by in ((0, node), (1, node), (2, face), (3, leaf)):
+        moved[:, column] = np.where(link[:, column] >= 0, link[:, column] + by, -1)
+    return moved
+
+
+def _branches(roots: Array, number: Indices) -> tuple[Array, Indices]:
+    """Nodes above the roots: balls halved at the median of their longest direction, the root first."""
+    shape, link = np.zeros((len(roots) - 1, 11)), np.full((len(roots) - 1, 5), -1, dtype=np.int64)
+    link[:, 4] = 0
+    free = iter(range(len(shape)))
+
+    def grow(rows: Indices) -> int:
+        if len(rows) == 1:
+            return int(number[rows[0]])
+        own, centres = next(free), roots[rows, :3]
+        middle = (centres.min(axis=0) + centres.max(axis=0)) / 2
+        order = rows[np.argsort(centres[:, int(np.argmax(np.ptp(centres, axis=0)))], kind="stable")]
+        shape[own, :3] = middle
+        shape[own, 9:] = (np.linalg.norm(centres - middle, axis=1) + roots[rows, 10]).max()
+        link[own, 0], link[own, 1] = grow(order[:len(order) // 2]), grow(order[len(order) // 2:])
+        return own
+
+    grow(np.arange(len(roots)))
+    return shape, link

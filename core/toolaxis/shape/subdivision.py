@@ -1,0 +1,334 @@
+"""Splitting a trimmed face into cells from the top down, and enclosing them from the leaves up."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+_COARSEST, _FINEST = 16, 128
+_DEEPEST = 48
+_ROUNDING = 1e-12
+_MARGIN = 1e-9
+_REFERENCE = np.array([0.4876237, 0.5312345])
+
+
+class Tree(NamedTuple):
+    """The arrays of `toolaxis.shape.cells.Cells`, for one face."""
+
+    shape: Array
+    link: Indices
+    leaf: Array
+    edge_start: Indices
+    edges: Array
+
+
+class _Level(NamedTuple):
+    """Nodes of one depth: base cells i0, i1, j0, j1; rectangle u0, u1, v0, v1; parent; trim edges with their node."""
+
+    base: Indices
+    rect: Array
+    parent: Indices
+    owner: Indices
+    edge: Indices
+
+    @property
+    def single(self) -> Flags:
+        """Whether a node lies in one base cell."""
+        return np.asarray((self.base[:, 1::2] - self.base[:, 0::2] == 1).all(axis=1))
+
+    @property
+    def middle(self) -> Array:
+        """Centres of the rectangles."""
+        return np.asarray((self.rect[:, 0::2] + self.rect[:, 1::2]) / 2)
+
+    @property
+    def half(self) -> Array:
+        """Half widths of the rectangles."""
+        return np.asarray((self.rect[:, 1::2] - self.rect[:, 0::2]) / 2)
+
+    def chosen(self, kept: Flags, rect: Array) -> "_Level":
+        """Some of the nodes, with other rectangles."""
+        place = np.where(kept, np.cumsum(kept) - 1, -1)[self.owner]
+        return _Level(self.base[kept], rect[kept], self.parent[kept], place[place >= 0], self.edge[place >= 0])
+
+
+def grid_lines(knots: Array, degree: int, low: float, high: float) -> Array:
+    """Lines of the base cells: the knots, and spans of curved directions divided until there are 8 or more.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    degree : int
+    low, high : float
+        Range to be covered.
+    """
+    ends = np.unique(np.concatenate([[low], knots[(knots > low) & (knots < high)], [high]]))
+    parts = np.maximum(1, np.ceil(np.diff(ends) / (high - low) * (1 if degree == 1 else 8) - 1e-9)).astype(int)
+    pieces = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], parts, strict=True)]
+    return np.concatenate([*pieces, [high]])
+
+
+def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
+    """Whether edges run through the inner part of rectangles, and what is left of them.
+
+    Parameters
+    ----------
+    rect : (k, 4) array
+        u0, u1, v0, v1.
+    edges : (k, 4) array
+        u, v of both ends.
+
+    Returns
+    -------
+    through : (k,) array of bool
+    ends : (k, 2, 2) array
+        Meaningless where the edge stays outside.
+    """
+    start, along = edges[:, :2], edges[:, 2:] - edges[:, :2]
+    middle, half = (rect[:, 0::2] + rect[:, 1::2]) / 2, (rect[:, 1::2] - rect[:, 0::2]) / 2 * (1 - _MARGIN)
+    still = along == 0
+    step = np.where(still, 1.0, along)
+    first, second = (middle - half - start) / step, (middle + half - start) / step
+    outside = (still & (np.abs(start - middle) >= half)).any(axis=1)
+    enter = np.where(still, -np.inf, np.minimum(first, second)).max(axis=1).clip(0.0)
+    leave = np.where(still, np.inf, np.maximum(first, second)).min(axis=1).clip(None, 1.0)
+    ends = start[:, None] + np.stack([enter, leave], axis=1)[:, :, None] * along[:, None]
+    return ~outside & (enter < leave), ends
+
+
+def _halved(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array]) -> _Level:
+    """Both halves of some nodes, cut across their longer side at a base line or, in one base cell, in the middle."""
+    count = level.base[rows, 1::2] - level.base[rows, 0::2]
+    several = (count > 1).any(axis=1)
+    across = np.argmax(np.where(several[:, None] & (count == 1), -1.0, size[rows]), axis=1)
+    k = np.arange(len(rows))
+    at = (level.base[rows, 2 * across] + level.base[rows, 2 * across + 1]) // 2
+    line = np.where(across == 0, lines[0][np.minimum(at, len(lines[0]) - 1)],
+                    lines[1][np.minimum(at, len(lines[1]) - 1)])
+    base = np.stack([level.base[rows], level.base[rows]])
+    base[0, k[several], 2 * across[several] + 1] = at[several]
+    base[1, k[several], 2 * across[several]] = at[several]
+    rect = np.stack([level.rect[rows], level.rect[rows]])
+    cut = np.where(several, np.clip(line, rect[0, k, 2 * across], rect[0, k, 2 * across + 1]),
+                   level.middle[rows, across])
+    rect[0, k, 2 * across + 1] = cut
+    rect[1, k, 2 * across] = cut
+    place = np.full(len(level.rect), -1)
+    place[rows] = k
+    owner, edge = place[level.owner], level.edge
+    owner, edge = owner[owner >= 0], edge[owner >= 0]
+    both = _Level(base.reshape(-1, 4), rect.reshape(-1, 4), np.concatenate([rows, rows]),
+                  np.concatenate([owner, owner + len(rows)]), np.concatenate([edge, edge]))
+    return both.chosen((both.half > 0).all(axis=1), both.rect)
+
+
+class _Builder:
+    """One face, its base cells with their bounds, and the levels made so far."""
+
+    def __init__(self, face: Face, fineness: float) -> None:
+        self.face, self.fineness = face, fineness
+        (d0, d1), (e0, e1) = face.surface.domain
+        u0, u1, v0, v1 = face.bounds
+        self.rect = np.array([[max(u0, d0), min(u1, d1), max(v0, e0), min(v1, e1)]])
+        if not (self.rect[:, 0::2] < self.rect[:, 1::2]).all():
+            raise InvalidInput(f"face {face.label} has loops around u {u0:g} to {u1:g}, v {v0:g} to {v1:g}, outside "
+                               f"its surface's domain {d0:g} to {d1:g}, {e0:g} to {e1:g}: trim it inside")
+        ku, kv, _, pu, pv, _ = face.surface.data
+        self.lines = (grid_lines(ku, pu, *self.rect[0, :2]), grid_lines(kv, pv, *self.rect[0, 2:]))
+        self.bounds = self._second_derivatives()
+        self.edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in face.trims]
+                                    or [np.empty((0, 4))])
+        self.extra = face.tolerance + _ROUNDING * (1 + float(np.abs(face.surface.control[..., :3]).max()))
+        self.levels: list[_Level] = []
+        self.centres: list[Array] = []
+        self.ready: list[Flags] = []
+
+    def _second_derivatives(self) -> Array:
+        bu, bv = self.lines
+        step = max(1, 400_000 // (len(bv) * 4 * (self.face.surface.degree[0] + 1) * (self.face.surface.degree[1] + 1)))
+        rows = [second_derivative_bounds(bezier_nets(self.face.surface.data, bu[i:i + step + 1], bv),
+                                         np.diff(bu[i:i + step + 1]), np.diff(bv))
+                for i in range(0, len(bu) - 1, step)]
+        return np.concatenate(rows)
+
+    def trimmed(self, level: _Level) -> _Level:
+        """Nodes that have something inside the loops, shrunk to the box around it."""
+        if not len(self.edges):
+            return level
+        through, ends = clipped(level.rect[level.owner], self.edges[level.edge])
+        owner, edge, ends = level.owner[through], level.edge[through], ends[through]
+        crossed = np.zeros(len(level.rect), dtype=bool)
+        crossed[owner] = True
+        kept = crossed.copy()
+        kept[~crossed] = self.face.contains(level.middle[~crossed])
+        low, high = np.full((len(kept), 2), np.inf), np.full((len(kept), 2), -np.inf)
+        np.minimum.at(low, owner, ends.min(axis=1))
+        np.maximum.at(high, owner, ends.max(axis=1))
+        for corner in ((0, 2), (0, 3), (1, 2), (1, 3)):
+            point = level.rect[:, corner]
+            within = crossed.copy()
+            within[crossed] = self.face.contains(point[crossed])
+            low[within], high[within] = np.minimum(low, point)[within], np.maximum(high, point)[within]
+        margin = _MARGIN * 2 * level.half
+        box = np.stack([np.maximum(low - margin, level.rect[:, 0::2]), np.minimum(high + margin, level.rect[:, 1::2])],
+                       axis=2).reshape(-1, 4)
+        return level._replace(owner=owner, edge=edge).chosen(kept, np.where(crossed[:, None], box, level.rect))
+
+    def centred(self, level: _Level) -> tuple[Array, Flags]:
+        """q, a, b and e of every node (e only counts in single base cells), and which of them need no splitting."""
+        half = level.half
+        d = self.face.evaluate(level.middle)
+        a, b = d.su * half[:, :1], d.sv * half[:, 1:]
+        e = remainder(self.bounds[level.base[:, 0], level.base[:, 2]], half) + self.extra
+        longest = 2 * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) + 2 * e
+        fine = (e <= self.fineness + self.extra) & (longest <= self.face.diagonal / _COARSEST)
+        done = fine | (longest <= self.face.diagonal / _FINEST) | (len(self.levels) >= _DEEPEST)
+        return np.column_stack([d.point, a, b, e]), level.single & done
+
+    def split(self) -> None:
+        """All levels, the root first."""
+        base = np.array([[0, len(self.lines[0]) - 1, 0, len(self.lines[1]) - 1]])
+        none = np.zeros(len(self.edges), dtype=np.int64)
+        level = self.trimmed(_Level(base, self.rect, np.array([-1]), none, np.arange(len(self.edges))))
+        if not len(level.rect):
+            raise InvalidInput(f"face {self.face.label} has nothing inside its loops: give loops that enclose a part "
+                               "of the surface")
+        while len(level.rect):
+            centre, ready = self.centred(level)
+            self.levels.append(level)
+            self.centres.append(centre)
+            self.ready.append(ready)
+            size = np.stack([np.linalg.norm(centre[:, 3:6], axis=1), np.linalg.norm(centre[:, 6:9], axis=1)], axis=1)
+            level = self.trimmed(_halved(level, np.flatnonzero(~ready), size, self.lines))
+
+    def tree(self) -> Tree:
+        """Enclosures from the leaves up, numbered from the root down."""
+        alive, radius = enclosed(self.levels, self.centres, self.ready)
+        counts = np.array([a.sum() for a in alive])
+        offset = np.concatenate([[0], np.cumsum(counts)])
+        number = [np.where(a, np.cumsum(a) - 1 + o, -1) for a, o in zip(alive, offset[:-1], strict=True)]
+        shape = np.vstack([np.column_stack([c, r])[a]
+                           for c, r, a in zip(self.centres, radius, alive, strict=True)])
+        link = np.full((len(shape), 5), -1, dtype=np.int64)
+        for depth in range(1, len(self.levels)):
+            rows = number[depth][alive[depth]]
+            above = number[depth - 1][self.levels[depth].parent[alive[depth]]]
+            order = np.argsort(above, kind="stable")
+            first = np.concatenate([[True], np.diff(above[order]) > 0])
+            link[above[order][first], 0] = rows[order][first]
+            link[above[order][~first], 1] = rows[order][~first]
+        link[:, 2] = 0
+        ready = np.concatenate([r[a] for r, a in zip(self.ready, alive, strict=True)])
+        link[ready, 3] = np.arange(ready.sum())
+        middle = np.vstack([level.middle[a] for level, a in zip(self.levels, alive, strict=True)])
+        link[:, 4] = self.face.contains(middle)
+        return Tree(shape, link, *self._leaves())
+
+    def _leaves(self) -> tuple[Array, Indices, Array]:
+        rows, edges, counts = [], [], []
+        for level, ready in zip(self.levels, self.ready, strict=True):
+            reference = level.rect[:, 0::2] + 2 * level.half * _REFERENCE
+            m = self.bounds[level.base[:, 0], level.base[:, 2]]
+            rows.append(np.column_stack([level.middle, level.half, m, np.full(len(m), self.extra), reference,
+                                         self.face.contains(reference)])[ready])
+            kept = ready[level.owner]
+            order = np.argsort(level.owner[kept], kind="stable")
+            edges.append(self.edges[level.edge[kept][order]])
+            counts.append(np.bincount(level.owner[kept], minlength=len(ready))[ready])
+        start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+        return np.vstack(rows), start, np.vstack(edges)
+
+
+def remainder(bounds: Array, half: Array) -> Array:
+    """Greatest distance of a surface from its tangent parallelogram, by Taylor's formula.
+
+    Parameters
+    ----------
+    bounds : (n, 3) array
+        Bounds of |Suu|, |Suv| and |Svv|.
+    half : (n, 2) array
+        Half widths of the cells.
+    """
+    du, dv = half[:, 0], half[:, 1]
+    return np.asarray(bounds[:, 0] * du**2 / 2 + bounds[:, 1] * du * dv + bounds[:, 2] * dv**2 / 2)
+
+
+def enclosed(levels: list[_Level], centres: list[Array], ready: list[Flags]) -> tuple[list[Flags], list[Array]]:
+    """Write e of the parents into ``centres``; which nodes hold something, and the radius of each around its q.
+
+    Parameters
+    ----------
+    levels : list of levels, the root first
+    centres : list of (n, 10) arrays
+        q, a, b, e.
+    ready : list of (n,) bool arrays
+        Which nodes are leaves.
+
+    Notes
+    -----
+    A child's point is q' + s a' + t b' + d', the parent's own is q + S a + T b at the same parameters; what differs
+    is q' - q - S0 a - T0 b, and a' and b' less their shares of a and b.
+    """
+    alive = [np.zeros(len(c), dtype=bool) for c in centres]
+    radius = [np.zeros(len(c)) for c in centres]
+    for depth in range(len(levels) - 1, -1, -1):
+        c, leaf = centres[depth], ready[depth]
+        alive[depth] |= leaf
+        tall = ~leaf
+        c[tall, 9] = 0.0
+        around = np.full(len(c), 0.0)
+        if depth + 1 < len(levels):
+            _add_children(levels, centres, depth, (alive[depth + 1], radius[depth + 1], around))
+        corner = np.maximum(np.linalg.norm(c[:, 3:6] + c[:, 6:9], axis=1),
+                            np.linalg.norm(c[:, 3:6] - c[:, 6:9], axis=1)) + c[:, 9]
+        radius[depth] = np.where(tall, np.minimum(around, corner), corner)
+        if depth:
+            alive[depth - 1][levels[depth].parent[alive[depth]]] = True
+    return alive, radius
+
+
+def _add_children(levels: list[_Level], centres: list[Array], depth: int,
+                  below: tuple[Flags, Array, Array]) -> None:
+    alive, radius, around = below
+    up, down = levels[depth], levels[depth + 1]
+    k = np.flatnonzero(alive)
+    p = down.parent[k]
+    half = np.where(up.half[p] > 0, up.half[p], 1.0)
+    place, share = (down.middle[k] - up.middle[p]) / half, down.half[k] / half
+    c, own = centres[depth + 1][k], centres[depth][p]
+    gap = c[:, :3] - own[:, :3]
+    off = (np.linalg.norm(gap - place[:, :1] * own[:, 3:6] - place[:, 1:] * own[:, 6:9], axis=1)
+           + np.linalg.norm(c[:, 3:6] - share[:, :1] * own[:, 3:6], axis=1)
+           + np.linalg.norm(c[:, 6:9] - share[:, 1:] * own[:, 6:9], axis=1) + c[:, 9])
+    worst = centres[depth][:, 9]
+    np.maximum.at(worst, p, off)
+    centres[depth][:, 9] = worst
+    np.maximum.at(around, p, np.linalg.norm(gap, axis=1) + radius[k])
+
+
+def subdivided(face: Face, fineness: float) -> Tree:
+    """The tree of cells that encloses a face.
+
+    Parameters
+    ----------
+    face : Face
+    fineness : float
+        Distance e at which cells of at most 1/16 of the face's diagonal are left as they are, mm; cells below 1/128
+        of the diagonal are never split.
+
+    Raises
+    ------
+    InvalidInput
+        When the loops enclose nothing of the surface.
+    """
+    builder = _Builder(face, fineness)
+    builder.split()
+    return builder.tree()
