@@ -1,4 +1,7 @@
-"""Points in polygons with holes: even-odd crossing counts over edges sorted into horizontal slabs."""
+"""Points in polygons with holes: even-odd crossing counts over edges sorted into horizontal slabs.
+
+The border counts as inside, holes' borders too, within `BORDER` of the polygon's size.
+"""
 
 from dataclasses import dataclass
 
@@ -9,6 +12,9 @@ from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.compiled import compiled
 
 Array = NDArray[np.float64]
+
+#: Half width of the border, as a share of the polygon's greatest coordinate: rounding of a crossing, and no more.
+BORDER = 1e-14
 
 
 def signed_area(loop: Array) -> float:
@@ -35,6 +41,8 @@ class Slabs:
         Edges that touch slab k are ``member[start[k]:start[k + 1]]``.
     low, height : float
         Lower end of the first slab and height of each.
+    border : float
+        Distance along x within which a point is on an edge.
     """
 
     edges: Array
@@ -42,6 +50,7 @@ class Slabs:
     member: NDArray[np.int64]
     low: float
     height: float
+    border: float
 
 
 def slabs(loops: tuple[Array, ...]) -> Slabs:
@@ -53,11 +62,12 @@ def slabs(loops: tuple[Array, ...]) -> Slabs:
         Closed loops; the closing edge is added where the last vertex does not repeat the first.
     """
     edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in loops])
-    edges = edges[edges[:, 1] != edges[:, 3]]
+    edges = edges[(edges[:, 0] != edges[:, 2]) | (edges[:, 1] != edges[:, 3])]
     lower, upper = edges[:, [1, 3]].min(axis=1), edges[:, [1, 3]].max(axis=1)
     low, high = (float(lower.min()), float(upper.max())) if len(edges) else (0.0, 1.0)
     count = max(1, min(4096, 2 * len(edges)))
     height = max((high - low) / count, np.finfo(float).tiny)
+    border = BORDER * float(np.abs(edges).max(initial=0.0))
     first = np.clip(((lower - low) / height).astype(np.int64), 0, count - 1)
     last = np.clip(((upper - low) / height).astype(np.int64), 0, count - 1)
     width = last - first + 1
@@ -65,24 +75,35 @@ def slabs(loops: tuple[Array, ...]) -> Slabs:
     slab = np.repeat(first, width) + np.arange(len(owner)) - np.repeat(np.cumsum(width) - width, width)
     order = np.argsort(slab, kind="stable")
     start = np.concatenate([[0], np.cumsum(np.bincount(slab, minlength=count))]).astype(np.int64)
-    return Slabs(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height)
+    return Slabs(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height, border)
 
 
 @compiled
-def _inside(edges: Array, start: NDArray[np.int64], member: NDArray[np.int64], low: float, height: float,
+def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]], grid: tuple[float, float, float],
             points: Array, out: NDArray[np.bool_]) -> None:
+    start, member = table
+    low, height, border = grid
     count = start.shape[0] - 1
     for k in range(points.shape[0]):
         x, y = points[k, 0], points[k, 1]
         position = (y - low) / height
         odd = False
-        if position >= 0.0 and position <= count:
+        if position >= 0.0 and y <= low + (count + 1) * height:
             slab = min(int(position), count - 1)
             for m in range(start[slab], start[slab + 1]):
                 e = member[m]
-                y0, y1 = edges[e, 1], edges[e, 3]
-                if (y0 > y) != (y1 > y) and x < edges[e, 0] + (edges[e, 2] - edges[e, 0]) * (y - y0) / (y1 - y0):
-                    odd = not odd
+                x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
+                if y0 == y1:
+                    if y == y0 and min(x0, x1) <= x <= max(x0, x1):
+                        odd = True
+                        break
+                elif min(y0, y1) <= y <= max(y0, y1):
+                    beyond = x0 + (x1 - x0) * (y - y0) / (y1 - y0) - x
+                    if abs(beyond) <= border:
+                        odd = True
+                        break
+                    if beyond > 0.0 and (y0 > y) != (y1 > y):
+                        odd = not odd
         out[k] = odd
 
 
@@ -102,7 +123,7 @@ def inside(table: Slabs, points: Array) -> NDArray[np.bool_]:
     if not _compiled.available:
         return inside_numpy(table, points)
     out = np.empty(len(points), dtype=np.bool_)
-    _inside(table.edges, table.start, table.member, table.low, table.height, points, out)
+    _inside(table.edges, (table.start, table.member), (table.low, table.height, table.border), points, out)
     return out
 
 
@@ -111,8 +132,36 @@ def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
 
     Parameters and result as there.
     """
-    odd = np.zeros(len(points), dtype=bool)
+    odd, on = np.zeros((2, len(points)), dtype=bool)
+    x, y = np.asarray(points, dtype=float).T
     for x0, y0, x1, y1 in table.edges:
-        crosses = (y0 > points[:, 1]) != (y1 > points[:, 1])
-        odd ^= crosses & (points[:, 0] < x0 + (x1 - x0) * (points[:, 1] - y0) / (y1 - y0))
-    return odd
+        touched = (y >= min(y0, y1)) & (y <= max(y0, y1))
+        if y0 == y1:
+            on |= touched & (x >= min(x0, x1)) & (x <= max(x0, x1))
+            continue
+        beyond = x0 + (x1 - x0) * (y - y0) / (y1 - y0) - x
+        on |= touched & (np.abs(beyond) <= table.border)
+        odd ^= (beyond > 0) & ((y0 > y) != (y1 > y))
+    return odd | on
+
+
+def chords(loops: tuple[Array, ...], y: float) -> Array:
+    """The stretches of a horizontal line inside closed loops.
+
+    Parameters
+    ----------
+    loops : tuple of (m, 2) arrays
+    y : float
+        Height of the line; loops are met as if it lay a little above any vertex it passes through.
+
+    Returns
+    -------
+    (k, 2) array of the ends of each stretch along x, in order
+    """
+    found = []
+    for loop in loops:
+        x0, y0 = loop[:, 0], loop[:, 1]
+        x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
+        met = (y0 > y) != (y1 > y)
+        found.append(x0[met] + (x1 - x0)[met] * (y - y0[met]) / (y1 - y0)[met])
+    return np.sort(np.concatenate(found)).reshape(-1, 2)
