@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placing import tips
+from toolaxis.contact.second_order import second_order_many_axes
 from toolaxis.contact.strip import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, unit
@@ -83,6 +84,9 @@ class Chart(Protocol):
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
 
+    def screen(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Both half widths together to the second order, (n,), in the step parameter; 0 where the cutter gouges."""
+
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
 
@@ -141,6 +145,12 @@ class IsoChart:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
         return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
                                       cut.allowance))
+
+    def screen(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Both half widths together to the second order, (n,), in the step parameter; 0 where the cutter gouges."""
+        uv = self.uv(along, step)
+        half = second_order_many_axes(self.face, cut.tool, uv, cut.axis[None], cut.scallop, self.feed)
+        return np.asarray(2 * half[0])
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2).

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.path.chart import Chart, Cut, columns
 from toolaxis.path.material import Intervals, filtered, joined, table
-from toolaxis.path.spacing import Spacing, along_samples, space
+from toolaxis.path.spacing import Spacing, lines, space
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
@@ -70,12 +70,12 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
     InvalidInput
         When the axis leaves no strip somewhere.
     """
-    along = along_samples(chart)
-    column = columns(chart, along)
+    across = lines(chart)
+    column = columns(chart, across.along)
     if reach is not None:
-        column = _reachable(chart, along, column, reach)
-    material = table(column, len(along))
-    spacing = space(chart, cut, material, progress)
+        column = _reachable(chart, across.along, column, reach)
+    material = table(column, len(across.along))
+    spacing = space(chart, cut, across, material, progress)
     found = _extended(chart, cut, spacing.steps, _needed(chart, spacing, material))
     if reach is not None:
         found = _cut_out(chart, spacing.steps, found, reach)
@@ -90,23 +90,22 @@ def _overlaps(material: Array, low: Array, high: Array) -> Bools:
 
 def _needed(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
     """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
-    low = spacing.steps[:, None] - spacing.halves[..., 0]
-    high = spacing.steps[:, None] + spacing.halves[..., 1]
+    along = spacing.lines.along
+    halves = np.stack([spacing.lines.spread(h) for h in spacing.halves])
+    low, high = spacing.steps[:, None] - halves[..., 0], spacing.steps[:, None] + halves[..., 1]
     need = _overlaps(material[None], low, high)
     line, i = np.nonzero(need[:, 1:] != need[:, :-1])
-    inside = np.where(need[line, i], i, i + 1)
-    outside = np.where(need[line, i], i + 1, i)
-    a, b = spacing.along[inside].copy(), spacing.along[outside].copy()
+    a, b = along[np.where(need[line, i], i, i + 1)], along[np.where(need[line, i], i + 1, i)]
     if len(line):
         for _ in range(_BISECTIONS):
             middle = (a + b) / 2
-            share = (middle - spacing.along[i]) / (spacing.along[i + 1] - spacing.along[i])
+            share = (middle - along[i]) / (along[i + 1] - along[i])
             band = [side[line, i] * (1 - share) + side[line, i + 1] * share for side in (low, high)]
             full = _overlaps(table(columns(chart, middle), len(middle)), *band)
             a, b = np.where(full, middle, a), np.where(full, b, middle)
     first, last = np.flatnonzero(need[:, 0]), np.flatnonzero(need[:, -1])
-    ends = np.concatenate([np.column_stack([line, b]), np.column_stack([first, np.full(len(first), spacing.along[0])]),
-                           np.column_stack([last, np.full(len(last), spacing.along[-1])])])
+    ends = np.concatenate([np.column_stack([line, b]), np.column_stack([first, np.full(len(first), along[0])]),
+                           np.column_stack([last, np.full(len(last), along[-1])])])
     ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
     return Intervals(ends[::2, 0].astype(np.intp), ends[::2, 1], ends[1::2, 1])
 
