@@ -34,6 +34,10 @@ ENDLESS = 1e50
 NATURAL = 1e-9
 
 
+class EndlessFace(UnsupportedGeometry):
+    """A face of endless extent without trim loops: in a file, one that lost them."""
+
+
 def face_map(shape: Any) -> TopTools_IndexedMapOfShape:
     """The faces of a shape in the kernel's own order, each once; indices begin at 1."""
     faces = TopTools_IndexedMapOfShape()
@@ -69,11 +73,14 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
     for number in range(1, faces.Extent() + 1):
         try:
             converted, warnings = face_record(TopoDS.Face_s(faces.FindKey(number)), number, share)
+        except EndlessFace as reason:
+            record.endless += 1
+            record.warnings.append(f"face {number} was left out: {reason}")
         except UnsupportedGeometry as reason:
             record.warnings.append(f"face {number} was left out: {reason}")
-            continue
-        record.faces.append(converted)
-        record.warnings += [f"face {number}: {text}" for text in warnings]
+        else:
+            record.faces.append(converted)
+            record.warnings += [f"face {number}: {text}" for text in warnings]
     if not record.faces:
         raise UnsupportedGeometry(f"none of the part's {faces.Extent()} faces can be used; {record.warnings[0]}")
     _add_bodies(record, shape, faces)
@@ -119,7 +126,7 @@ def _kernel_loops(face: Any, surface: Any, share: float) -> tuple[Loops, Box]:
     if not wires:
         box = (adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter())
         if max(abs(value) for value in box) > ENDLESS:
-            raise UnsupportedGeometry("it is endless: trim the face in the CAD system")
+            raise EndlessFace("it has no borders and no end: trim the face in the CAD system")
         u0, u1, v0, v1 = box
         return Loops([np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]])]), box
     box = coarse_box(wires)
@@ -184,8 +191,8 @@ def _add_bodies(record: ShapeRecord, shape: Any, faces: TopTools_IndexedMapOfSha
         closed = bool(BRep_Tool.IsClosed_s(shell))
         record.bodies.append(Body("shell", own, closed))
         if not closed and own:
-            record.warnings.append(f"faces {own[0]} to {own[-1]} form an open shell: which side the material is on "
-                                   "was taken from the file")
+            which = f"faces {own[0]} to {own[-1]} form" if len(own) > 1 else f"face {own[0]} forms"
+            record.warnings.append(f"{which} an open shell: which side the material is on was taken from the file")
     loose = numbers(_explored(shape, TopAbs_FACE, TopAbs_SHELL))
     if loose:
         record.bodies.append(Body("faces", loose, False))

@@ -49,7 +49,7 @@ class FaceRecord:
 
 @dataclass
 class ShapeRecord:
-    """A whole shape: faces, the borders they share, bodies, warnings, the declared unit, numbers of picked faces."""
+    """A whole shape: faces, the borders they share, bodies, warnings, the declared unit, picked faces, endless ones."""
 
     faces: list[FaceRecord] = field(default_factory=list)
     borders: list[Border] = field(default_factory=list)
@@ -57,3 +57,4 @@ class ShapeRecord:
     warnings: list[str] = field(default_factory=list)
     unit: str = "mm"
     selected: tuple[int, ...] = ()
+    endless: int = 0

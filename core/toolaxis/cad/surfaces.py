@@ -1,6 +1,7 @@
 """Kernel surfaces as exact rational B-splines over the range that a face uses."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -53,7 +54,7 @@ class PlainSurface:
     control: Array
     degree: tuple[int, int]
     kind: str
-    map: ParameterMap = ParameterMap()
+    map: ParameterMap = field(default_factory=ParameterMap)
     tolerance: float = 0.0
 
 
@@ -146,14 +147,16 @@ def _torus(adaptor: Any) -> tuple[Any, Array, float]:
     return shape.Position(), np.array([shape.MajorRadius(), 0.0, 0.0]), shape.MinorRadius()
 
 
-_MERIDIANS = {Kind.GeomAbs_Cylinder: _cylinder, Kind.GeomAbs_Cone: _cone,
-              Kind.GeomAbs_Sphere: _sphere, Kind.GeomAbs_Torus: _torus}
+_MERIDIANS: dict[Any, Callable[[Any], tuple[Any, Array, Any]]] = {
+    Kind.GeomAbs_Cylinder: _cylinder, Kind.GeomAbs_Cone: _cone,
+    Kind.GeomAbs_Sphere: _sphere, Kind.GeomAbs_Torus: _torus,
+}
 
 
 def _elementary(adaptor: Any, kind: Any, box: Box) -> PlainSurface:
     """Cylinder, cone, sphere and torus: a meridian in the local x-z plane, turned about z."""
     position, start, course = _MERIDIANS[kind](adaptor)
-    if isinstance(course, np.ndarray):
+    if not isinstance(course, float):
         profile = line(start, course, box[2], box[3])
     else:
         upright = np.eye(4)[:, [0, 2, 1, 3]]
@@ -231,7 +234,8 @@ def _bezier(surface: Any) -> PlainSurface:
 def _approximation(surface: Any, box: Box) -> PlainSurface:
     """What has no exact form: the kernel's approximation, which keeps the parameters, and its measured error."""
     piece = Geom_RectangularTrimmedSurface(surface, *box)
-    corners = np.array([point_row(piece.Value(u, v)) for u in np.linspace(*box[:2], 5) for v in np.linspace(*box[2:], 5)])
+    grid = ((u, v) for u in np.linspace(*box[:2], 5) for v in np.linspace(*box[2:], 5))
+    corners = np.array([point_row(piece.Value(u, v)) for u, v in grid])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     smooth = GeomAbs_Shape.GeomAbs_C2
     fit = GeomConvert_ApproxSurface(piece, max(APPROXIMATION * size, 1e-7), smooth, smooth, 9, 9, 200, 1)

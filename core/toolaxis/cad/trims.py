@@ -17,6 +17,7 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_Orientation, TopAbs_WIRE
 from OCP.TopoDS import TopoDS, TopoDS_Iterator
 
 from toolaxis.errors import UnsupportedGeometry
+from toolaxis.numeric.polygons import signed_area
 
 Array = NDArray[np.float64]
 
@@ -204,7 +205,7 @@ def arranged(polygons: list[Array], periods: tuple[float, float], warnings: list
     periods : (float, float)
     warnings : list of str
     """
-    areas = [_area(p) if len(p) > 2 else 0.0 for p in polygons]
+    areas = [signed_area(p) if len(p) > 2 else 0.0 for p in polygons]
     order = sorted(range(len(polygons)), key=lambda k: -abs(areas[k]))
     if not order or areas[order[0]] == 0.0:
         raise UnsupportedGeometry("its trim loops enclose no area: repair the face in the CAD system")
@@ -221,8 +222,3 @@ def arranged(polygons: list[Array], periods: tuple[float, float], warnings: list
         away = np.where((middle < low) | (middle > high), 0.5 * (low + high) - middle, 0.0)
         result.append(hole + _turns(away, periods))
     return Loops(result, areas[order[0]] < 0, warnings)
-
-
-def _area(loop: Array) -> float:
-    x, y = (loop - loop[0]).T
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

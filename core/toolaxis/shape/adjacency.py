@@ -1,6 +1,6 @@
 """How faces meet: smoothly, over a convex edge, or in a concave corner."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import radians
 
@@ -78,8 +78,7 @@ def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth:
     **Properties**: 1. exchanging the two faces changes nothing; 2. nor does turning the part round.
     """
     by_number = {face.number: face for face in faces}
-    sides = [(border.faces[0], border.first) for border in borders] + [(b.faces[1], b.second) for b in borders]
-    normals = _normals(by_number, sides)
+    normals = _on_both_sides(by_number, borders, Face.normal)
     edges = []
     for k, border in enumerate(borders):
         kind, angle = _kind(border, by_number[border.faces[0]], normals[k], normals[k + len(borders)], smooth)
@@ -88,16 +87,39 @@ def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth:
     return tuple(edges)
 
 
-def _normals(faces: dict[int, Face], sides: list[tuple[int, Array]]) -> list[Array]:
-    """Normals of every list of parameters, with one evaluation a face."""
+def gaps(faces: Sequence[Face], borders: Sequence[Border]) -> Array:
+    """How far the curves lie beside the same places on their faces at worst, mm, (n,) for n borders.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+    borders : sequence of Border
+    """
+    points = _on_both_sides({face.number: face for face in faces}, borders, lambda face, uv: face.evaluate(uv).point)
+    off = [_beside(side - border.points, border.points)
+           for side, border in zip(points, [*borders, *borders], strict=True)]
+    return np.array(off).reshape(2, -1).max(axis=0)
+
+
+def _beside(away: Array, curve: Array) -> float:
+    """Greatest length of vectors at the points of a curve, without their share along it."""
+    along = np.gradient(curve, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True).clip(1e-300)
+    return float(np.linalg.norm(away - dot(away, along)[:, None] * along, axis=1).max())
+
+
+def _on_both_sides(faces: dict[int, Face], borders: Sequence[Border],
+                   what: Callable[[Face, Array], Array]) -> list[Array]:
+    """Something (k, 3) along all borders in their first faces, then in their second, with one evaluation a face."""
+    sides = [(border.faces[0], border.first) for border in borders] + [(b.faces[1], b.second) for b in borders]
     result: list[Array] = [np.empty((0, 3))] * len(sides)
     members: dict[int, list[int]] = {}
     for k, (number, _) in enumerate(sides):
         members.setdefault(number, []).append(k)
     for number, rows in members.items():
-        normals = faces[number].normal(np.concatenate([sides[k][1] for k in rows]))
+        values = what(faces[number], np.concatenate([sides[k][1] for k in rows]))
         cuts = np.cumsum([len(sides[k][1]) for k in rows])[:-1]
-        for k, part in zip(rows, np.split(normals, cuts), strict=True):
+        for k, part in zip(rows, np.split(values, cuts), strict=True):
             result[k] = part
     return result
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.clipping import clipped, grouped
 from toolaxis.numeric.knots import distinct_inner, restricted
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
@@ -59,3 +60,57 @@ def with_kinks(face: Face) -> Face:
     """
     kinks = kinks_of(face)
     return replace(face, kinks=kinks) if kinks != ((), ()) else face
+
+
+def split_at_kinks(face: Face) -> tuple[Face, ...]:
+    """The smooth pieces of a face between its kinks, each on its own piece of the surface.
+
+    Parameters
+    ----------
+    face : Face
+
+    Returns
+    -------
+    tuple of Face
+        The face itself where it has no kinks; else pieces labelled "7a", "7b", … with the number of the face.
+
+    **Properties**: 1. areas add up; 2. no piece has kinks.
+    """
+    if face.kinks == ((), ()):
+        return (face,)
+    (u0, u1), (v0, v1) = face.surface.domain
+    pieces: list[Face] = []
+    for strip_u in zip((u0, *face.kinks[0]), (*face.kinks[0], u1), strict=True):
+        column = _within(face.outline, 0, strip_u)
+        for strip_v in zip((v0, *face.kinks[1]), (*face.kinks[1], v1), strict=True):
+            loops = _within(column, 1, strip_v)
+            pieces += [_piece(face, strip_u, strip_v, own) for own in grouped(loops)]
+    return tuple(replace(piece, label=face.label + letters(k)) for k, piece in enumerate(pieces))
+
+
+def _within(loops: tuple[Array, ...], axis: int, strip: tuple[float, float]) -> tuple[Array, ...]:
+    return clipped(clipped(loops, axis, strip[0], True), axis, strip[1], False)
+
+
+def _piece(face: Face, strip_u: tuple[float, float], strip_v: tuple[float, float], loops: tuple[Array, ...]) -> Face:
+    surface = face.surface
+    knots_u, net = restricted(surface.knots_u, surface.control, surface.degree[0], *strip_u)
+    knots_v, net = restricted(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *strip_v)
+    own = NurbsSurface(knots_u, knots_v, net.swapaxes(0, 1), surface.degree)
+    whole = len(loops) == 1 and len(loops[0]) == 4 and np.isin(loops[0][:, 0], strip_u).all() \
+        and np.isin(loops[0][:, 1], strip_v).all()
+    return replace(face, surface=own, trims=() if whole else loops, kinks=((), ()))
+
+
+def letters(index: int) -> str:
+    """a, b, …, z, aa, ab, … for 0, 1, …
+
+    Parameters
+    ----------
+    index : int
+    """
+    text = ""
+    while index >= 0:
+        text = chr(ord("a") + index % 26) + text
+        index = index // 26 - 1
+    return text

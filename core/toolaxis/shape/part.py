@@ -185,6 +185,10 @@ class Part:
         """Length of the diagonal of `box`, mm."""
         return float(np.linalg.norm(self.box[1] - self.box[0]))
 
+    def with_warnings(self, *warnings: str) -> "Part":
+        """The part with further warnings."""
+        return replace(self, warnings=(*self.warnings, *warnings))
+
     def transformed(self, matrix: ArrayLike) -> "Part":
         """The part moved by an affine map.
 

@@ -1,0 +1,93 @@
+"""The child process that lets the kernel read a STEP file: ``python -m toolaxis.cad.transfer IN OUT``.
+
+The outcome goes to OUT as a pickle: ("done", ShapeRecord, distinct faces transferred) or ("failed", kind, message).
+"""
+
+import pickle
+import sys
+from pathlib import Path
+from typing import Any
+
+from toolaxis.errors import InvalidInput, ToolAxisError, UnsupportedGeometry
+
+
+def read_shape(path: str) -> tuple[Any, str]:
+    """Let the kernel read a file.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    shape : TopoDS_Shape
+        In mm.
+    unit : str
+        The length unit that the file declares.
+
+    Raises
+    ------
+    InvalidInput
+        When the kernel refuses the file or makes nothing of it.
+    """
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.STEPControl import STEPControl_Reader
+    from OCP.TColStd import TColStd_SequenceOfAsciiString
+
+    reader = STEPControl_Reader()
+    if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise InvalidInput("the CAD kernel cannot parse its text: export the part again")
+    length, angle, solid = (TColStd_SequenceOfAsciiString() for _ in range(3))
+    reader.FileUnits(length, angle, solid)
+    units = dict.fromkeys(length.Value(i + 1).ToCString().lower() for i in range(length.Length()))
+    reader.TransferRoots()
+    shape = reader.OneShape()
+    if shape is None or shape.IsNull():
+        raise InvalidInput("the CAD kernel made no shape of it: export the part again")
+    return shape, ", ".join(units) or "not declared"
+
+
+def distinct_faces(shape: Any) -> int:
+    """How many different faces a shape has, copies in several places counted once."""
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopTools import TopTools_MapOfShape
+
+    from toolaxis.cad.ocp import face_map
+
+    faces, distinct = face_map(shape), TopTools_MapOfShape()
+    for k in range(1, faces.Extent() + 1):
+        distinct.Add(faces.FindKey(k).Located(TopLoc_Location()))
+    return int(distinct.Extent())
+
+
+def convert(path: str) -> tuple[Any, ...]:
+    """The outcome for one file, ready to be pickled.
+
+    Parameters
+    ----------
+    path : str
+    """
+    from toolaxis.cad.ocp import shape_record
+
+    try:
+        shape, unit = read_shape(path)
+        record = shape_record(shape)
+        record.unit = unit
+        return "done", record, distinct_faces(shape) - record.endless
+    except InvalidInput as reason:
+        return "failed", InvalidInput, str(reason)
+    except UnsupportedGeometry as reason:
+        return "failed", UnsupportedGeometry, str(reason)
+    except ToolAxisError as reason:
+        return "failed", ToolAxisError, str(reason)
+
+
+def main(arguments: list[str]) -> int:
+    """Read arguments[0], write the outcome to arguments[1]."""
+    outcome = convert(arguments[0])
+    Path(arguments[1]).write_bytes(pickle.dumps(outcome, protocol=pickle.HIGHEST_PROTOCOL))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
