@@ -95,31 +95,45 @@ def face_rays(face: Face, spacing: float | None = None) -> Rays:
 
 
 def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
-    """Parameters inside the cells of a grid of equal lengths over the face's range, and the cells' areas in (u, v)."""
+    """One place in each cell of a grid of equal lengths over the face's range, and the cell's area in (u, v) there."""
     u0, u1, v0, v1 = face.bounds
     u, v = np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE)
     grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
-    rows = _equal_lengths(v, speed_v, spacing)
-    middle = 0.5 * (rows[:-1] + rows[1:])
+    length = _lengths(v, speed_v)
+    rows = _parts(length, spacing)
+    middle = np.interp((np.arange(rows) + 0.5) / rows, length / length[-1], v)
     line = np.stack(np.meshgrid(middle, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
-    speed_u = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(len(middle), _FINE)
-    columns = [_equal_lengths(u, speed, spacing) for speed in speed_u]
-    count = np.array([len(c) - 1 for c in columns])
-    low = np.concatenate([c[:-1] for c in columns])
-    wide = np.concatenate([np.diff(c) for c in columns])
-    bottom, tall = np.repeat(rows[:-1], count), np.repeat(np.diff(rows), count)
-    k = np.arange(1, len(low) + 1)
-    uv = np.column_stack([low + wide * np.mod(0.5 + k * _R2[0], 1.0), bottom + tall * np.mod(0.5 + k * _R2[1], 1.0)])
-    return uv, wide * tall
+    speed_u = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(rows, _FINE)
+    uv, area, done = [], [], 0
+    for row in range(rows):
+        across = _lengths(u, speed_u[row])
+        count = _parts(across, spacing)
+        k = np.arange(done + 1, done + count + 1)
+        at_u, step_u = _placed(u, across, (np.arange(count) + np.mod(0.5 + k * _R2[0], 1.0)) / count)
+        at_v, step_v = _placed(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
+        uv.append(np.column_stack([at_u, at_v]))
+        area.append(step_u * step_v / (count * rows))
+        done += count
+    return np.concatenate(uv), np.concatenate(area)
 
 
-def _equal_lengths(t: Array, speed: Array, spacing: float) -> Array:
-    """Parameters that cut a line of known speed into equal lengths of at most the spacing."""
+def _lengths(t: Array, speed: Array) -> Array:
+    """Length along a line of known speed, strictly increasing from 0."""
     floor = np.maximum(speed, 1e-9 * max(float(speed.max()), 1e-300))
-    length = np.append(0.0, np.cumsum(0.5 * (floor[1:] + floor[:-1]) * np.diff(t)))
-    parts = max(1, int(np.ceil(length[-1] / spacing - 1e-9)))
-    return np.interp(np.linspace(0.0, length[-1], parts + 1), length, t)
+    return np.append(0.0, np.cumsum(0.5 * (floor[1:] + floor[:-1]) * np.diff(t)))
+
+
+def _parts(length: Array, spacing: float) -> int:
+    return max(1, int(np.ceil(length[-1] / spacing - 1e-9)))
+
+
+def _placed(t: Array, length: Array, share: Array) -> tuple[Array, Array]:
+    """Parameters at shares of a line's length, and their rate of change with the share."""
+    mark = length / length[-1]
+    piece = np.clip(np.searchsorted(mark, share, side="right") - 1, 0, len(t) - 2)
+    rate = (t[piece + 1] - t[piece]) / (mark[piece + 1] - mark[piece])
+    return t[piece] + (share - mark[piece]) * rate, rate
 
 
 def border_points(face: Face, spacing: float) -> Array:
@@ -138,8 +152,8 @@ def border_points(face: Face, spacing: float) -> Array:
         share = np.linspace(0.0, 1.0, fine)
         line = loop[:, None] + share[None, :, None] * (ends - loop)[:, None]
         point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
-        length = np.linalg.norm(np.diff(point, axis=1), axis=2).sum(axis=1)
-        parts = np.maximum(1, np.ceil(length / spacing)).astype(np.int64)
+        longest = (fine - 1) * np.linalg.norm(np.diff(point, axis=1), axis=2).max(axis=1)
+        parts = np.maximum(1, np.ceil(longest / spacing)).astype(np.int64)
         owner = np.repeat(np.arange(len(loop)), parts)
         step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
         pieces.append(loop[owner] + step[:, None] * (ends - loop)[owner])

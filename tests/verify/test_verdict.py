@@ -1,0 +1,157 @@
+"""The verdict on operations that are known to be good or bad."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.progress import Progress
+from toolaxis.shape.face import Face
+from toolaxis.tools.profile import Profile
+from toolaxis.verify.axes import Clearance
+from toolaxis.verify.verdict import NOT_CHECKED, Task, judge, verify
+
+WIDTH = 2.171571  # R6 r1, lead 10 deg, h = 0.02
+HOLDER = {"holder": np.array([[12.0, 40.0], [12.0, 80.0]])}
+
+
+def rectangle(corner, one, two, number=1):
+    corner, one, two = (np.asarray(x, dtype=float) for x in (corner, one, two))
+    face = Face.from_bspline(np.array([[corner + s * one + t * two for t in (0, 1)] for s in (0, 1)]), degree=(1, 1))
+    return replace(face, number=number, label=str(number))
+
+
+FLOOR = rectangle([-8, -8, 0], [16, 0, 0], [0, 16, 0], 7)
+
+
+def task(plane_passes, width=0.999 * WIDTH, **change):
+    offsets = -8 + width * (np.arange(int(np.ceil(16 / width)) + 1) - 0.25)
+    tips, axes, kind = plane_passes((6, 1), np.radians(10), offsets, span=(-10.0, 10.0))
+    return replace(Task("floor", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER), **change)
+
+
+def test_good_passes_pass_and_every_figure_stands(plane_passes):
+    found = judge(task(plane_passes), spacing=0.3)
+    assert found.passed
+    assert found.share_within == 1.0
+    assert found.scallop_max == pytest.approx(0.02 * 0.999**2, rel=1e-3)
+    assert found.gouge_max < 1e-6
+    assert found.worst_gouge == ()
+    assert found.zones == ()
+    assert found.area == pytest.approx(256, rel=1e-9)
+    assert found.faces == ("7",)
+    assert found.rays > 2500
+    assert found.uncertainty < 1e-5
+    assert found.clearance["cutter"] == found.clearance["shank"] == NOT_CHECKED
+    assert set(found.reasons) == {"cutter not checked", "shank not checked"}
+    # The holder's rim is 40 cos - 12 sin above the tip, which lies 1 - cos + 5 sin below its height over the contact.
+    assert isinstance(found.clearance["holder"], Clearance)
+    assert found.clearance["holder"].distance > 30
+
+
+def test_passes_too_far_apart_fail_by_the_share_they_leave(plane_passes):
+    found = judge(task(plane_passes, 1.1 * WIDTH), spacing=0.3)
+    assert not found.passed
+    assert found.scallop_max == pytest.approx(0.02 * 1.1**2, rel=0.01)
+    # The section is a parabola in good measure: it is above 1.02 h beyond sqrt(1.02) / 1.1 of the half distance.
+    assert found.share_within == pytest.approx(np.sqrt(1.02) / 1.1, abs=0.02)
+    assert "of the area is within 1.02 times the scallop limit 0.02 mm, 99.90 % must be" in found.reasons[0]
+
+
+def test_allowance_moves_the_target(plane_passes):
+    raised = task(plane_passes)
+    raised = replace(raised, tips=raised.tips + np.array([0, 0, 0.3]))
+    assert judge(replace(raised, allowance=0.3), spacing=0.5).passed
+    assert judge(raised, spacing=0.5).share_within == 0.0
+    thin = judge(replace(raised, allowance=0.31), spacing=0.5)
+    assert thin.gouge_max == pytest.approx(0.01, abs=1e-4)
+
+
+def test_missing_pass_is_a_zone_not_reached(plane_passes):
+    whole = task(plane_passes)
+    lost = (np.abs(whole.tips[:, 1] - 0.58 * WIDTH) > 1.2 * WIDTH) | (whole.kind == 3)
+    holed = replace(whole, tips=whole.tips[lost], axes=whole.axes[lost], kind=whole.kind[lost])
+    found = judge(holed, spacing=0.3)
+    assert not found.passed
+    assert len(found.zones) >= 1
+    assert "the largest of" in found.reasons[0]
+    assert "on face 7" in found.reasons[0]
+
+
+def test_declared_clean_up_is_allowed_for(plane_passes):
+    most = task(plane_passes, targets=(rectangle([-8, -8, 0], [16, 0, 0], [0, 32, 0], 7),), clean_up=0.45)
+    found = judge(most, spacing=0.5)
+    assert found.passed
+    assert found.share_within == pytest.approx(0.55, abs=0.05)
+    assert found.zones[0].reason == "not reached"
+
+
+def test_planted_gouge_is_named_with_face_place_and_motion(plane_passes):
+    bad = task(plane_passes)
+    at = int(np.argmin(np.linalg.norm(bad.tips[:, :2] - [-8, 2.0], axis=1) + 9 * (bad.kind == 3)))
+    bad.tips[at, 2] -= 0.005
+    found = judge(bad, spacing=0.3)
+    assert not found.passed
+    assert found.gouge_max == pytest.approx(0.005, abs=1e-4)
+    reason = next(r for r in found.reasons if r.startswith("gouge"))
+    assert reason.startswith("gouge 0.005")
+    assert "at face 7 (" in reason
+    assert "allowed 0.002 mm" in reason
+    assert f"point {at + 1}" in reason or f"point {at + 2}" in reason
+
+
+def test_gouge_into_the_skin_counts(plane_passes):
+    # The neighbour continues the floor beyond its border but rises by 0.02 mm: the run-out cuts it.
+    skin = rectangle([8, -8, 0.02], [3, 0, 0], [0, 16, 0], 9)
+    found = judge(task(plane_passes, skin=(skin,)), spacing=0.4)
+    assert not found.passed
+    assert found.gouge_max == pytest.approx(0.02, abs=1e-3)
+    assert found.worst_gouge[0].face == "9"
+    assert found.share_within == 1.0
+
+
+def test_holder_touch_and_cutter_too_near_are_named(plane_passes):
+    good = task(plane_passes)
+    wall = rectangle([-30, 18.0, 0], [60, 0, 0], [0, 0, 60], 3)
+    nearest = good.tips[:, 1].max() + 12
+    touch = rectangle([-30, nearest - 0.005, 0], [60, 0, 0], [0, 0, 60], 3)
+    free = judge(replace(good, surroundings=(wall,)), spacing=0.8)
+    assert isinstance(free.clearance["cutter"], Clearance)
+    assert free.clearance["cutter"].distance == pytest.approx(18 - good.tips[:, 1].max() - 6, abs=1e-3)
+    found = judge(replace(good, surroundings=(touch,)), spacing=0.8)
+    assert not found.passed
+    assert found.clearance["holder"].distance == pytest.approx(-0.005, abs=1e-3)
+    assert any(r.startswith("holder is 0.005") and "inside face 3" in r and "needed 1.0 mm" in r for r in found.reasons)
+
+
+def test_verdict_of_many_and_its_sentences(plane_passes):
+    good, bad = task(plane_passes), replace(task(plane_passes, 1.2 * WIDTH), name="second")
+    both = verify([good, bad], spacing=0.8)
+    assert not both.passed
+    assert verify([good], spacing=0.8).passed
+    assert any(r.startswith("second: ") for r in both.reasons)
+    assert not verify([]).passed
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    ({"scallop": 0.0}, "scallop limit"), ({"targets": ()}, "machines no face"), ({"clean_up": 1.5}, "clean-up share"),
+    ({"allowance": np.nan}, "allowance")])
+def test_bad_tasks_are_named(plane_passes, change, message):
+    with pytest.raises(InvalidInput, match=message):
+        task(plane_passes, **change)
+
+
+def test_empty_and_broken_cutter_locations_are_named(plane_passes):
+    good = task(plane_passes)
+    empty = replace(good, tips=np.empty((0, 3)), axes=np.empty((0, 3)), kind=np.empty(0, dtype=np.int8))
+    with pytest.raises(InvalidInput, match="holds no point"):
+        verify([empty])
+    good.tips[5, 1] = np.nan
+    with pytest.raises(InvalidInput, match="tool tip row 5"):
+        verify([good])
+
+
+def test_stops_when_asked(plane_passes):
+    with pytest.raises(Cancelled):
+        verify([task(plane_passes)], progress=Progress(cancelled=lambda: True))
