@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from toolaxis.cad.load import load as load
+    from toolaxis.cad.loading import load as load
     from toolaxis.contact.clearance import clearance as clearance
     from toolaxis.contact.gouge import gouge as gouge
     from toolaxis.contact.placing import place as place
@@ -36,7 +36,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
-    "load": "cad.load", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
+    "load": "cad.loading", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
     "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.count",
     "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed", "plan": "job.run",
     "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors", "UnsupportedGeometry": "errors",

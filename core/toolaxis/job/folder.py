@@ -1,0 +1,232 @@
+"""The written form of a plan: plan.json, the part's copy and the CL files, whole or not at all."""
+
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from toolaxis.cad.loading import load
+from toolaxis.errors import InvalidInput
+from toolaxis.plan.document import plan_document, plan_from
+from toolaxis.plan.part_document import part_document, part_from
+from toolaxis.plan.plan import Plan
+from toolaxis.plan.schema import check
+from toolaxis.post.apt import apt_text, read_apt
+from toolaxis.shape.part import Part
+
+PLAN = "plan.json"
+#: What a folder may hold of an earlier plan; the rest in it is the user's and stays.
+_OURS = (PLAN, "verdict.json", "part.*", "obstacle-*.*", "op*.apt", "*.png")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A folder in the making.
+
+    Attributes
+    ----------
+    folder : Path
+        Temporary, beside the place where its files will stand.
+    target : Path
+        That place.
+    """
+
+    folder: Path
+    target: Path
+
+    def publish(self, clear: bool = True) -> None:
+        """Move every file to its place, plan.json last, so that a plan.json is never without its files.
+
+        Parameters
+        ----------
+        clear : bool
+            Remove an earlier plan's files first.
+        """
+        if not self.target.exists():
+            os.replace(self.folder, self.target)
+            return
+        if clear:
+            for pattern in _OURS:
+                for path in self.target.glob(pattern):
+                    path.unlink()
+        names = sorted((path.name for path in self.folder.iterdir()), key=lambda name: (name == PLAN, name))
+        for name in names:
+            os.replace(self.folder / name, self.target / name)
+
+
+@contextmanager
+def staged(target: Path) -> Iterator[Stage]:
+    """A stage for a folder; what was not published when the block ends disappears.
+
+    Parameters
+    ----------
+    target : Path
+        Made when the stage is published, with the folders above it.
+
+    Raises
+    ------
+    InvalidInput
+        When the folder cannot be written, before any work is done.
+    """
+    above = target if target.exists() else target.absolute().parent
+    if target.exists() and not target.is_dir():
+        raise InvalidInput(f"output folder {target} is a file: give another name with --out")
+    made: list[Path] = []
+    try:
+        made = _made(above)
+        folder = Path(tempfile.mkdtemp(prefix=f".{target.name or 'plan'}-", dir=above))
+        folder.chmod(0o755)
+    except OSError as reason:
+        _removed(made)
+        raise InvalidInput(f"output folder {target} cannot be written ({reason.strerror}): give another with "
+                           "--out") from reason
+    try:
+        yield Stage(folder, target)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        _removed(made)
+
+
+def _made(folder: Path) -> list[Path]:
+    """Make a folder and those above it; the ones that were made, the innermost first."""
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    return missing
+
+
+def _removed(folders: list[Path]) -> None:
+    """Remove folders that stayed empty."""
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of a file's bytes, as hexadecimal digits.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def write_plan(plan: Plan, folder: Path) -> None:
+    """Write a plan's files into a folder.
+
+    Parameters
+    ----------
+    plan : Plan
+    folder : Path
+        Of a `Stage`.
+    """
+    part = _written_part(plan.part, folder, "part")
+    obstacles = [_written_part(body, folder, f"obstacle-{k}") for k, body in enumerate(plan.obstacles, 1)]
+    names: list[str | None] = []
+    for op in plan.operations:
+        names.append(None if op.path is None else f"{op.name}.apt")
+        if op.path is not None:
+            text = apt_text(op.path, plan.tool, op.name, plan.inputs.feedrate, plan.inputs.spindle)
+            (folder / f"{op.name}.apt").write_text(text, encoding="ascii")
+    document = plan_document(plan, {"part": part, "obstacles": obstacles, "operations": names})
+    check(document)
+    write_json(document, folder / PLAN)
+
+
+def write_json(document: Any, path: Path) -> None:
+    """Write a document as strict JSON (no NaN, no infinity).
+
+    Parameters
+    ----------
+    document : object
+    path : Path
+    """
+    path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _written_part(part: Part, folder: Path, stem: str) -> dict[str, str]:
+    """Copy the file that a part came from, or write its faces where there is none (any more)."""
+    source = Path(part.source) if part.source and part.sha256 else None
+    if source is not None and source.is_file() and sha256_of(source) == part.sha256:
+        path = folder / f"{stem}{source.suffix.lower()}"
+        shutil.copyfile(source, path)
+    else:
+        path = folder / f"{stem}.json"
+        write_json(part_document(part), path)
+    return {"file": path.name, "sha256": sha256_of(path)}
+
+
+def read_json(path: Path) -> Any:
+    """Read a JSON file.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    InvalidInput
+        When it is missing, cannot be read, or is not JSON.
+    """
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InvalidInput(f"{path} does not exist: give a folder that toolaxis plan wrote") from None
+    except (OSError, UnicodeDecodeError) as reason:
+        raise InvalidInput(f"{path} cannot be read: {reason}") from reason
+    except json.JSONDecodeError as reason:
+        raise InvalidInput(f"{path} is not JSON, or was cut short: {reason}; make the plan again") from reason
+
+
+def read_plan(folder: Path) -> Plan:
+    """Read a plan back from its folder: the tool paths are those of the CL files.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    InvalidInput
+        When a file is missing, broken, or not the one that was planned with.
+    """
+    document = read_json(folder / PLAN)
+    check(document)
+    part = _read_part(folder, document["part"])
+    obstacles = [_read_part(folder, record) for record in document["obstacles"]]
+    paths = [None if op["cl_file"] is None else _read_path(folder, op["cl_file"]) for op in document["operations"]]
+    return plan_from(document, part, obstacles, paths)
+
+
+def _inside(folder: Path, name: str) -> Path:
+    path = folder / name
+    if Path(name).name != name:
+        raise InvalidInput(f"{PLAN} names the file {name!r}: a plain name in the same folder is needed")
+    if not path.is_file():
+        raise InvalidInput(f"{path} does not exist: the plan's folder is incomplete; make the plan again")
+    return path
+
+
+def _read_part(folder: Path, record: dict[str, str]) -> Part:
+    path = _inside(folder, record["file"])
+    found = sha256_of(path)
+    if found != record["sha256"]:
+        raise InvalidInput(f"{path} has changed since the plan was made (SHA-256 {found[:12]}..., planned with "
+                           f"{record['sha256'][:12]}...): make the plan again")
+    return part_from(read_json(path), found) if path.suffix == ".json" else load(path)
+
+
+def _read_path(folder: Path, name: str) -> Any:
+    path = _inside(folder, name)
+    try:
+        return read_apt(path.read_text(encoding="utf-8")).path
+    except (InvalidInput, UnicodeDecodeError) as reason:
+        raise InvalidInput(f"{path}: {reason}") from reason

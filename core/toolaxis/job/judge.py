@@ -1,0 +1,119 @@
+"""Judge a plan through its written form: part copy, plan.json and CL files are all that the judge sees."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.neighbourhood import neighbourhood
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.verify.axes import Clearance
+from toolaxis.verify.maps import Place, Zone
+from toolaxis.verify.verdict import OperationVerdict, Task, Verdict
+from toolaxis.verify.verdict import verify as judged
+
+
+def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progress: Progress = NO_PROGRESS) -> Verdict:
+    """Judge a plan by material removal.
+
+    Parameters
+    ----------
+    plan : Plan
+        Written to a temporary folder and read back, so that the judge sees the CL files and nothing else.
+    spacing : float, optional
+        Distance of neighbouring rays on the faces, mm; by the size of each face unless given.
+    threads : int
+        The verdict does not depend on it.
+    progress : Progress
+
+    Returns
+    -------
+    Verdict
+        `passed`, `reasons`, and per operation what was measured.
+
+    Raises
+    ------
+    Cancelled
+        When the progress object asks to stop.
+    """
+    with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
+        write_plan(plan, Path(folder))
+        return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, progress=progress)
+
+
+def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
+                progress: Progress = NO_PROGRESS) -> Verdict:
+    """Judge a plan that `read_plan` has read.
+
+    Parameters
+    ----------
+    plan : Plan
+    spacing, threads, progress
+        As for `verify`.
+    """
+    tasks = [_task(plan, op) for op in plan.operations if op.path is not None]
+    return judged(tasks, spacing=spacing, threads=threads, progress=progress)
+
+
+def _task(plan: Plan, op: Operation) -> Task:
+    assert op.path is not None
+    skin, surroundings = neighbourhood(plan.part, op.face, plan.obstacles)
+    return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
+                plan.inputs.allowance, skin, surroundings, plan.tool.outlines, plan.inputs.tolerance,
+                min(1.0, op.orientation.unreached))
+
+
+def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
+    """A verdict as a document that `json.dump` takes.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : Verdict
+    """
+    missing = [op.name for op in plan.operations if op.path is None]
+    return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
+            "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing)],
+            "not_checked": list(plan.not_checked),
+            "operations": [_operation_document(op) for op in verdict.operations]}
+
+
+def passes(plan: Plan, verdict: Verdict) -> bool:
+    """Whether every sub-surface has an axis and every operation passed; a cancelled plan never passes.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : Verdict
+    """
+    return plan.outcome == "complete" and verdict.passed
+
+
+def _number(value: float) -> float | None:
+    return float(value) if abs(value) < float("inf") else None
+
+
+def _place(place: Place) -> dict[str, Any]:
+    return {"face": place.face, "uv": list(place.uv), "point": list(place.point), "value": _number(place.value),
+            "cl_point": place.motion + 1}
+
+
+def _zone(zone: Zone) -> dict[str, Any]:
+    return {"face": zone.face, "area": zone.area, "low": list(zone.low), "high": list(zone.high),
+            "largest": _number(zone.largest), "reason": zone.reason, "at_border": zone.at_border}
+
+
+def _clearances(found: Mapping[str, Clearance | str]) -> dict[str, Any]:
+    return {name: _number(room.distance) if isinstance(room, Clearance) else room for name, room in found.items()}
+
+
+def _operation_document(op: OperationVerdict) -> dict[str, Any]:
+    return {"name": op.name, "faces": list(op.faces), "passed": op.passed, "reasons": list(op.reasons),
+            "scallop_limit": op.scallop_limit, "allowance": op.allowance, "scallop_max": _number(op.scallop_max),
+            "share_within": op.share_within, "gouge_max": op.gouge_max, "gouge_allowed": op.gouge_allowed,
+            "clearance": _clearances(op.clearance), "worst_scallop": [_place(p) for p in op.worst_scallop],
+            "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
+            "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty}
