@@ -1,0 +1,416 @@
+"""Which axes may be used: limits, visibility, a contact that stays in front, no gouge, no collision.
+
+Screening looks at a few contacts and may only err towards "free"; proving looks at dense contacts with bounds of
+normals between them, and at last at every motion of the passes really made.
+
+A contact at which the cutter would come too near to a wall that is less than one cutter diameter away is left to a
+clean-up tool; anything else that is in the way forbids the axis.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.contact.distances import Found, bounded, motions
+from toolaxis.contact.placing import tips
+from toolaxis.machine.limits import AxisLimits
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+from toolaxis.orient.cloud import deepest
+from toolaxis.orient.normals import NormalField
+from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+FREE, LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER = range(8)
+COMPONENTS = ("cutter", "shank", "holder")
+
+#: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
+FINE, COARSE = 0.0003, 0.002
+_DENSE = 40
+
+
+class Verdicts(NamedTuple):
+    """Verdicts on k axes: reason (k,), index into `REASONS`; amount (k,) rad or mm; unreached (k,) share of area."""
+
+    reason: NDArray[np.int8]
+    amount: Array
+    unreached: Array
+
+
+class Contacts(NamedTuple):
+    """Places on a face: uv (n, 2), point and normal (n, 3), share (n,) of the area that each stands for."""
+
+    uv: Array
+    point: Array
+    normal: Array
+    share: Array
+
+
+class Trouble(NamedTuple):
+    """What is worst at n positions: reason (n,), amount (n,) mm, whether a clean-up tool can do it (n,), face index
+    within its group (n,), group index (n,), and a point near it (n, 3)."""
+
+    reason: NDArray[np.int8]
+    amount: Array
+    wall: Bools
+    face: NDArray[np.int64]
+    group: NDArray[np.int64]
+    point: Array
+
+
+class Witness(NamedTuple):
+    """The one place that decides against an axis: reason, amount (mm or rad), label of the face in the way ("" if
+    none), point (3,) at which it happens, uv (2,) of the contact."""
+
+    reason: int
+    amount: float
+    label: str
+    point: Array
+    uv: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """What an axis must satisfy for one face, tool and surroundings.
+
+    Attributes
+    ----------
+    face : Face
+    tool : Tool
+    groups : tuple of Group
+        From `toolaxis.orient.setting.grouped`.
+    tolerance : Tolerance
+    limits : AxisLimits or None
+    allowance : float
+        Stock left on the face, mm.
+    watched : (n, 2) array
+        Parameters of contacts that screening looks at besides its own.
+    """
+
+    face: Face
+    tool: Tool
+    groups: tuple[Group, ...]
+    tolerance: Tolerance
+    limits: AxisLimits | None = None
+    allowance: float = 0.0
+    watched: Array | None = None
+
+    @cached_property
+    def field(self) -> NormalField:
+        """Normals of the face."""
+        return NormalField(self.face)
+
+    @property
+    def greatest_angle(self) -> float:
+        """Greatest angle between axis and normal for which the contact lies on the cutter's bottom or arc, rad."""
+        return pi / 2 - self.tool.half_angle
+
+    @property
+    def least_angle(self) -> float:
+        """Least angle between axis and normal, rad: 0 unless the cutter has a flat bottom."""
+        return self.tolerance.min_lead if self.tool.flat_radius > 0 else 0.0
+
+    def watching(self, uv: ArrayLike) -> "Feasibility":
+        """The same with more contacts looked at in screening.
+
+        Parameters
+        ----------
+        uv : (n, 2) array_like
+        """
+        rows = as_rows(uv, 2, "uv")
+        new = replace(self, watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
+        for name in ("field", "dense", "cloud"):
+            if name in self.__dict__:
+                new.__dict__[name] = self.__dict__[name]
+        return new
+
+    @cached_property
+    def sparse(self) -> Contacts:
+        """Contacts for screening: a coarse grid, points along the border, and the most concave places."""
+        grid = self.face.grid(5, 5)
+        fine = self.face.grid(24, 24)
+        bent = fine[np.argsort(-self.face.curvature(fine).k1, kind="stable")[:6]]
+        rows = [grid, bent, _around(self.face, 24)]
+        return self._contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
+
+    @cached_property
+    def dense(self) -> Contacts:
+        """Contacts for proving: a fine grid, and points along the border."""
+        grid = self.face.grid(_DENSE, _DENSE)
+        return self._contacts(np.concatenate([grid, _around(self.face, 6 * _DENSE)]), len(grid))
+
+    def _contacts(self, uv: Array, weighed: int) -> Contacts:
+        d, normal = self.face.evaluate(uv), self.face.normal(uv)
+        share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+        share[weighed:] = 0.0
+        good = np.linalg.norm(normal, axis=1) > 0.5
+        return Contacts(uv[good], d.point[good], normal[good], share[good] / share.sum())
+
+    def screen(self, axes: ArrayLike) -> Verdicts:
+        """Verdicts on axes from a few contacts: cheap, and wrong only towards "free".
+
+        Parameters
+        ----------
+        axes : (k, 3) array_like
+        """
+        rows = unit(as_rows(axes, 3, "axes"))
+        reason, amount = self.quick(rows)
+        unreached = np.zeros(len(rows))
+        some = self.sparse
+        for i in np.flatnonzero(reason == FREE):
+            tip = tips(some.point, some.normal, rows[i], self.tool, self.allowance)
+            depth = deepest(self.tool, rows[i], tip, self.cloud) - self.tolerance.gouge
+            if depth > 0:
+                reason[i], amount[i] = GOUGE, depth
+            else:
+                reason[i], amount[i], unreached[i] = self.stand(rows[i], some, thorough=False)
+        return Verdicts(reason, amount, unreached)
+
+    @cached_property
+    def cloud(self) -> Array:
+        """Points of the skin that surely gouging axes run into, (m, 3)."""
+        return np.concatenate([self._points(face) for face in self.groups[0].faces])
+
+    def _points(self, face: Face) -> Array:
+        count = max(6, 24 // len(self.groups[0].faces))
+        return face.evaluate(np.concatenate([face.grid(count, count), _around(face, 3 * count)])).point
+
+    def quick(self, rows: Array) -> tuple[NDArray[np.int8], Array]:
+        """Reason and amount (rad) of axes by limits and sampled normals alone.
+
+        Parameters
+        ----------
+        rows : (k, 3) array
+            Unit vectors.
+        """
+        least, greatest = self.field.angles(rows)
+        excess = np.zeros(len(rows)) if self.limits is None else self.limits.excess(rows)
+        outside = np.zeros(len(rows), dtype=bool) if self.limits is None else ~self.limits.allowed(rows)
+        back, wanders = greatest - self.greatest_angle, self.least_angle - least
+        reason = np.select([outside, back > 0, wanders > 0], [LIMITS, BACK, WANDERS], FREE).astype(np.int8)
+        return reason, np.choose(reason, [np.zeros(len(rows)), excess, back, wanders])
+
+    def stand(self, axis: Array, contacts: Contacts, thorough: bool = True) -> tuple[int, float, float]:
+        """Reason, amount (mm) and unreached share of one axis at contacts.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        contacts : Contacts
+        thorough : bool
+            Whether gouges of the skin are looked for too.
+        """
+        trouble = self.trouble(axis, contacts, thorough)
+        left = trouble.wall & (trouble.reason != FREE)
+        bad = (trouble.reason != FREE) & ~left
+        unreached = float(contacts.share[left].sum())
+        if not bad.any() and (left | (contacts.share == 0)).all():
+            bad = left
+        if not bad.any():
+            return FREE, 0.0, unreached
+        i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
+        return int(trouble.reason[i]), float(trouble.amount[i]), unreached
+
+    def trouble(self, axis: Array, contacts: Contacts, thorough: bool = True) -> Trouble:
+        """What is worst at each contact.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        contacts : Contacts
+        thorough : bool
+            Whether gouges of the skin are looked for too.
+        """
+        tip = tips(contacts.point, contacts.normal, axis, self.tool, self.allowance)
+        return self.trouble_at(motions(tip, axis), contacts.point, thorough)
+
+    def trouble_at(self, moves: Array, places: Array, thorough: bool = True) -> Trouble:
+        """What is worst on each motion of the tool.
+
+        Parameters
+        ----------
+        moves : (n, 3, 3) array
+            From `toolaxis.contact.distances.motions` or `segment_motions`.
+        places : (n, 3) array
+            Contacts, from which the distance to walls counts.
+        thorough : bool
+            Whether gouges of the skin are looked for too.
+        """
+        n = len(moves)
+        worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
+                        np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
+        for number, group in enumerate(self.groups):
+            fine = FINE if group.role != OTHER else COARSE
+            left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
+            found = bounded(group.cells, self.tool, moves, group.required + 2 * fine, fine, left_out)
+            worst = self._worse(worst, found, number, places)
+        return worst
+
+    def _worse(self, worst: Trouble, found: Found, number: int, places: Array) -> Trouble:
+        """Merge in what one group does; what forbids goes before what a clean-up tool can do."""
+        group = self.groups[number]
+        near = 2 * self.tool.radius + self.tolerance.cutter_clearance
+        for c in range(3):
+            amount = group.required[c] - found.lower[:, c]
+            wall = (np.linalg.norm(found.point[:, c] - places, axis=1) <= near) if group.role == OTHER else np.zeros(
+                len(places), dtype=bool)
+            hit = amount > 0
+            before = worst.reason != FREE
+            take = hit & (~before | (worst.wall & ~wall) | ((worst.wall == wall) & (amount > worst.amount)))
+            code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
+            point = np.where(take[:, None], found.point[:, c], worst.point)
+            worst = Trouble(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
+                            np.where(take, wall, worst.wall), np.where(take, found.face[:, c], worst.face),
+                            np.where(take, number, worst.group), point)
+        return worst
+
+    def witness(self, axis: ArrayLike) -> Witness | None:
+        """The proof form: what forbids an axis, at dense contacts and with bounds of the normals between them.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+
+        Returns
+        -------
+        Witness of the first constraint that fails, or None when all hold.
+        """
+        t = unit(as_rows(axis, 3, "axis")[0])
+        if self.limits is not None and not self.limits.allowed(t)[0]:
+            return Witness(LIMITS, float(self.limits.excess(t)[0]), "", np.zeros(3), np.zeros(2))
+        spread = self.field.range_of_angles(t, self.least_angle, self.greatest_angle)
+        for code, amount, uv in ((BACK, spread.high - self.greatest_angle, spread.greatest),
+                                 (WANDERS, self.least_angle - spread.low, spread.least)):
+            if amount > 1e-9:
+                return Witness(code, float(amount), "", self.face.evaluate(uv[None]).point[0], uv)
+        return self.worst(t, self.dense)
+
+    def worst(self, axis: Array, contacts: Contacts) -> Witness | None:
+        """The worst contact of those that forbid an axis, or None.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        contacts : Contacts
+        """
+        trouble = self.trouble(axis, contacts)
+        bad = (trouble.reason != FREE) & ~trouble.wall
+        if not bad.any() and ((trouble.reason != FREE) | (contacts.share == 0)).all():
+            bad = trouble.reason != FREE
+        return self.witness_of(trouble, bad, contacts.uv)
+
+    def witness_of(self, trouble: Trouble, bad: Bools, uv: Array) -> Witness | None:
+        """The worst of the rows marked bad, or None.
+
+        Parameters
+        ----------
+        trouble : Trouble
+        bad : (n,) array of bool
+        uv : (n, 2) array
+        """
+        if not bad.any():
+            return None
+        i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
+        faces = self.groups[int(trouble.group[i])].faces
+        label = faces[int(trouble.face[i])].label if trouble.face[i] >= 0 else ""
+        return Witness(int(trouble.reason[i]), float(trouble.amount[i]), label, trouble.point[i], uv[i])
+
+    def unreached(self, axis: ArrayLike) -> float:
+        """Share of the area that is left to a clean-up tool, from the dense contacts.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+        """
+        if all(group.role != OTHER for group in self.groups):
+            return 0.0
+        return self.stand(unit(as_rows(axis, 3, "axis")[0]), self.dense)[2]
+
+    def reach(self, uv: ArrayLike, axis: ArrayLike) -> Bools:
+        """Whether the tool may stand at contacts, on the face or beyond its border.
+
+        Parameters
+        ----------
+        uv : (n, 2) array_like
+        axis : (3,) array_like
+
+        Returns
+        -------
+        (n,) bool; what is False is cut out of passes.
+        """
+        rows, t = as_rows(uv, 2, "uv"), unit(as_rows(axis, 3, "axis")[0])
+        normal, point = self.face.normal(rows), self.face.evaluate(rows).point
+        angle = angle_between(np.broadcast_to(t, normal.shape), normal)
+        good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
+        some = Contacts(rows[good], point[good], normal[good], np.zeros(int(good.sum())))
+        good[good] = self.trouble(t, some).reason == FREE
+        return np.asarray(good)
+
+    def clearances(self, path: ToolPath, most: float = 20.0) -> tuple[float, dict[str, float]]:
+        """Gouge and clearances of a path, bounds that hold on every motion.
+
+        Parameters
+        ----------
+        path : ToolPath
+        most : float
+            Greater clearances are not told apart, mm.
+
+        Returns
+        -------
+        gouge : float
+            Upper bound, mm.
+        clearance : dict of str to float
+            Lower bound per component, mm; the cutter's is to what is not the machined skin nor meets it harmlessly.
+        """
+        moves, _ = path_motions(path)
+        known = {"cutter", *self.tool.outlines}
+        gouge = 0.0
+        clearance: dict[str, float] = {}
+        for group in self.groups:
+            found = bounded(group.cells, self.tool, moves, np.full(3, most), FINE if group.role == SKIN else COARSE)
+            least = found.lower.min(axis=0)
+            if group.role == SKIN:
+                gouge = max(self.allowance - float(least[0]), 0.0)
+            for c, name in enumerate(COMPONENTS):
+                if name in known and (c > 0 or group.role == OTHER):
+                    clearance[name] = min(clearance.get(name, most), float(least[c]))
+        return gouge, clearance
+
+
+def path_motions(path: ToolPath) -> tuple[Array, NDArray[np.intp]]:
+    """Every motion of a path within its passes, (m, 3, 3), and the row at which each one arrives, (m,).
+
+    Parameters
+    ----------
+    path : ToolPath
+    """
+    arrives = np.arange(1, len(path.cl))
+    moves = np.stack([(path.cl[1:] + path.cl[:-1]) / 2, (path.cl[1:] - path.cl[:-1]) / 2,
+                      np.broadcast_to(path.axis[-1], path.cl[1:].shape)], axis=1)
+    return moves, arrives
+
+
+def _around(face: Face, count: int) -> Array:
+    """Points just inside along the loops of a face, (n, 2)."""
+    rows = []
+    total = sum(float(np.linalg.norm(np.diff(face.evaluate(np.vstack([loop, loop[:1]])).point, axis=0), axis=1).sum())
+                for loop in face.outline)
+    for loop in face.outline:
+        closed = np.vstack([loop, loop[:1]])
+        share = np.linspace(0.0, 1.0, 33)[:-1]
+        fine = (closed[:-1, None] * (1 - share[:, None]) + closed[1:, None] * share[:, None]).reshape(-1, 2)
+        fine = np.vstack([fine, closed[-1:]])
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(fine).point, axis=0), axis=1))])
+        wanted = max(8, round(count * length[-1] / total)) if total > 0 else 8
+        at = np.searchsorted(length, np.linspace(0, length[-1], wanted, endpoint=False))
+        rows += [fine[at], loop] if len(loop) <= wanted // 2 else [fine[at]]
+    return np.concatenate(rows)

@@ -1,0 +1,126 @@
+"""What stands around a face: its skin, the faces that meet it harmlessly, and what is in the way."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.cells import Cells, forest
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
+
+Array = NDArray[np.float64]
+Obstacles: TypeAlias = Part | Face | Sequence[Face] | None
+
+SKIN, TOUCHING, OTHER = "skin", "touching", "other"
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Faces that the tool has to keep the same distances from.
+
+    Attributes
+    ----------
+    role : str
+        "skin": machined; "touching": meets the machined skin at a convex edge; "other": walls and obstacles.
+    faces : tuple of Face
+    required : (3,) array
+        Least signed distance of cutter, shank and holder, mm.
+    """
+
+    role: str
+    faces: tuple[Face, ...]
+    required: Array
+
+    @cached_property
+    def cells(self) -> Cells:
+        """The faces' cells under one root."""
+        return forest(self.faces)
+
+
+def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: Part | None = None,
+            skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
+            obstacles: Obstacles = None) -> tuple[Group, ...]:
+    """Everything around a face, sorted by what the tool has to keep from it.
+
+    Parameters
+    ----------
+    face : Face
+        The face, or a piece of one.
+    tolerance : Tolerance
+    allowance : float
+        Stock left on the skin, mm.
+    part : Part, optional
+        The part that the face belongs to by its number: gives skin and surroundings with their edges.
+    skin : sequence of Face
+        Faces that continue the face tangentially, where there is no part.
+    surroundings : sequence of Face
+        Other faces that stand around; all count as walls.
+    obstacles : Part, Face or sequence of Face, optional
+
+    Returns
+    -------
+    tuple of Group, the skin first; empty groups are left out.
+
+    Raises
+    ------
+    InvalidInput
+        When obstacles are not faces.
+    """
+    touching: tuple[Face, ...] = ()
+    others = [*surroundings, *_faces_of(obstacles)]
+    own = (face, *(f for f in skin if f is not face))
+    if part is not None:
+        own = (*part.skin(face.number), *own[1:])
+        numbers = _harmless(part, face.number)
+        around = part.surroundings(face.number)
+        touching = tuple(f for f in around if f.number in numbers)
+        others = [*(f for f in around if f.number not in numbers), *others]
+    far = [tolerance.shank_clearance, tolerance.holder_clearance]
+    groups = (Group(SKIN, own, np.array([allowance - tolerance.gouge, *far])),
+              Group(TOUCHING, touching, np.array([-tolerance.gouge, *far])),
+              Group(OTHER, tuple(others), np.array([tolerance.cutter_clearance, *far])))
+    return tuple(group for group in groups if group.faces)
+
+
+def _faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
+    if obstacles is None:
+        return ()
+    if isinstance(obstacles, Face):
+        return (obstacles,)
+    if isinstance(obstacles, Part):
+        return obstacles.faces
+    if isinstance(obstacles, Iterable):
+        rows = tuple(obstacles)
+        if all(isinstance(row, Face) for row in rows):
+            return rows
+    raise InvalidInput(f"obstacles are {type(obstacles).__name__}: give a part, a face or a sequence of faces "
+                       "(toolaxis.load reads them from a file)")
+
+
+def _harmless(part: Part, number: int) -> set[int]:
+    """Numbers of the faces that meet the skin of a face at convex edges or at corners, and nowhere at a concave edge.
+
+    A cutter in contact at the shared edge touches these without harm.
+    """
+    skin = {face.number for face in part.skin(number)}
+    walls = {n for own in skin for n in part.neighbours(own, "concave")}
+    convex = {n for own in skin for n in part.neighbours(own, "convex")}
+    corners = _corners(part, skin)
+    if len(corners):
+        for edge in part.edges:
+            ends = edge.polyline[[0, -1]]
+            apart = np.linalg.norm(ends[:, None] - corners[None], axis=2).min()
+            if apart <= 1e-6 * part.diagonal:
+                convex |= set(edge.faces)
+    return convex - walls - skin
+
+
+def _corners(part: Part, skin: set[int]) -> Array:
+    ends = [edge.polyline[[0, -1]] for edge in part.edges if skin & set(edge.faces)]
+    return np.concatenate(ends) if ends else np.empty((0, 3))
