@@ -165,3 +165,38 @@ def chords(loops: tuple[Array, ...], y: float) -> Array:
         met = (y0 > y) != (y1 > y)
         found.append(x0[met] + (x1 - x0)[met] * (y - y0[met]) / (y1 - y0)[met])
     return np.sort(np.concatenate(found)).reshape(-1, 2)
+
+
+def walk(loop: Array, position: Array) -> Array:
+    """Points on a closed polygon, (n, 2).
+
+    Parameters
+    ----------
+    loop : (m, 2) array
+    position : (n,) array
+        Number of the edge plus the share of it that is passed; counted on round and round.
+    """
+    edge = np.floor(position)
+    share = (position - edge)[:, None]
+    start = edge.astype(np.int64) % len(loop)
+    return np.asarray((1 - share) * loop[start] + share * loop[(start + 1) % len(loop)])
+
+
+def stations(loop: Array, step: tuple[float, float]) -> Array:
+    """Positions for `walk` all round a polygon: every vertex, and points between no farther apart than a step.
+
+    Parameters
+    ----------
+    loop : (m, 2) array
+    step : (float, float)
+        Greatest distance of neighbours along x and along y.
+
+    Returns
+    -------
+    (k,) array, rising from 0 to below m
+    """
+    reach = np.abs(np.roll(loop, -1, axis=0) - loop) / np.asarray(step)
+    pieces = np.maximum(np.ceil(reach.max(axis=1) - 1e-9), 1).astype(np.int64)
+    edge = np.repeat(np.arange(len(loop)), pieces)
+    within = np.arange(len(edge)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    return np.asarray(edge + within / pieces[edge])
