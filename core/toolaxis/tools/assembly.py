@@ -1,7 +1,9 @@
 """The whole rotating solid: cutter, shank, holder and how far the cutter sticks out."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite, pi, radians
+from math import degrees, isfinite, radians
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,17 +14,31 @@ from toolaxis.tools.profile import Profile
 Array = NDArray[np.float64]
 
 
-def _positive(name: str, value: float) -> float:
-    if not (isfinite(value) and value > 0):
-        raise InvalidInput(f"{name} is {value} mm: it must be a finite number above zero")
-    return float(value)
+def _number(name: str, value: Any, unit: str = "mm") -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as reason:
+        raise InvalidInput(f"{name} is {value!r}: it must be a number of {unit}") from reason
+    if not isfinite(number):
+        raise InvalidInput(f"{name} is {number} {unit}: it must be finite")
+    return number
+
+
+def _positive(name: str, value: Any) -> float:
+    number = _number(name, value)
+    if number <= 0:
+        raise InvalidInput(f"{name} is {number:g} mm: it must be above zero")
+    return number
 
 
 def _outline(name: str, rows: ArrayLike | None) -> Array | None:
     """Check a polyline of (radius, z) rows."""
     if rows is None:
         return None
-    line = np.asarray(rows, dtype=float)
+    try:
+        line = np.array(rows, dtype=float)
+    except (TypeError, ValueError) as reason:
+        raise InvalidInput(f"{name} is {rows!r}: rows of (radius, z) in mm are needed") from reason
     if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
         raise InvalidInput(f"{name} has shape {line.shape}: at least two finite (radius, z) rows are needed")
     if (line[:, 0] < 0).any() or not (line[:, 0] > 0).any():
@@ -55,7 +71,7 @@ class Tool:
     stickout : float or None
         Length from the tip to the holder's lower face.
     shank : (k, 2) array or None
-        (radius, z) from the tip; counted above the cutting edge.
+        (radius, z) from the tip; counted from the end of the cutting edge up to the holder, see `outlines`.
     holder : (k, 2) array or None
         (radius, z) from the holder's own lower face, which stands at the stick-out.
     """
@@ -70,7 +86,7 @@ class Tool:
     holder: Array | None = None
 
     @staticmethod
-    def torus(diameter: float, corner_radius: float, **body: object) -> "Tool":
+    def torus(diameter: float, corner_radius: float, **body: Any) -> "Tool":
         """A bull-nose end mill: flat bottom, corner arc, cylindrical side.
 
         Parameters
@@ -80,11 +96,14 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        corner = _positive("corner radius", corner_radius)
-        return Tool.build("torus", _positive("diameter", diameter) / 2, corner, 0.0, **body)
+        radius, corner = _positive("diameter", diameter) / 2, _number("corner radius", corner_radius)
+        if corner <= 0:
+            raise InvalidInput(f"corner radius is {corner:g} mm: a torus needs one above zero; use a flat tool for a "
+                               "sharp corner")
+        return Tool.build("torus", radius, corner, 0.0, **body)
 
     @staticmethod
-    def ball(diameter: float, **body: object) -> "Tool":
+    def ball(diameter: float, **body: Any) -> "Tool":
         """A ball end mill.
 
         Parameters
@@ -98,7 +117,7 @@ class Tool:
         return Tool.build("ball", radius, radius, 0.0, **body)
 
     @staticmethod
-    def flat(diameter: float, **body: object) -> "Tool":
+    def flat(diameter: float, **body: Any) -> "Tool":
         """A flat end mill with a sharp corner.
 
         Parameters
@@ -111,14 +130,15 @@ class Tool:
         return Tool.build("flat", _positive("diameter", diameter) / 2, 0.0, 0.0, **body)
 
     @staticmethod
-    def tapered(diameter: float, corner_radius: float, half_angle_deg: float, **body: object) -> "Tool":
+    def tapered(diameter: float, corner_radius: float, half_angle_deg: float, **body: Any) -> "Tool":
         """A cutter with a conical side.
 
         Parameters
         ----------
         diameter : float
-            mm, of the circle in which the bottom plane and the side line would meet were the corner a torus of
-            the same size: flat bottom radius is diameter / 2 - corner_radius.
+            mm, at the tip: twice the sum of the flat bottom's radius and the corner radius.  A tapered ball of
+            diameter 6 has a ball of diameter 6 at its end; its side leaves the ball a little below the widest circle
+            and is wider than 6 above.
         corner_radius : float
             mm; diameter / 2 makes a tapered ball.
         half_angle_deg : float
@@ -126,14 +146,15 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        if not (isfinite(half_angle_deg) and 0 < half_angle_deg < 80):
-            raise InvalidInput(f"half angle is {half_angle_deg} deg: it must lie between 0 and 80")
-        if not (isfinite(corner_radius) and corner_radius >= 0):
-            raise InvalidInput(f"corner radius is {corner_radius} mm: it must be zero or more")
-        return Tool.build("tapered", _positive("diameter", diameter) / 2, corner_radius, radians(half_angle_deg), **body)
+        angle, corner = _number("half angle", half_angle_deg, "deg"), _number("corner radius", corner_radius)
+        if not 0 < angle < 80:
+            raise InvalidInput(f"half angle is {angle:g} deg: it must lie between 0 and 80")
+        if corner < 0:
+            raise InvalidInput(f"corner radius is {corner:g} mm: it must be zero or more")
+        return Tool.build("tapered", _positive("diameter", diameter) / 2, corner, radians(angle), **body)
 
     @staticmethod
-    def build(kind: str, radius: float, corner_radius: float, half_angle: float, **body: object) -> "Tool":
+    def build(kind: str, radius: float, corner_radius: float, half_angle: float, **body: Any) -> "Tool":
         """A tool from radii; `torus`, `ball`, `flat` and `tapered` call it.
 
         Parameters
@@ -145,13 +166,14 @@ class Tool:
             rad
         **body
             flute_length : float, optional
-                Length of the cutting edge, mm; four radii unless given, and never beyond the stick-out.
+                Length of the cutting edge from the tip, mm; two diameters unless given, and never beyond the stick-out.
             stickout : float, optional
                 Tip to the holder's lower face, mm.
             shank : rows of (radius, z), optional
-                From the tip; what lies below the cutting edge's end is the cutter's and not counted.
+                From the tip, z not decreasing; what lies below the end of the cutting edge is the cutter's and not
+                counted.  Unless given, the shank is as thick as the cutter's upper end.
             holder : rows of (radius, z), optional
-                From the holder's own lower face; needs a stick-out.
+                From the holder's own lower face, z not decreasing; needs a stick-out.
 
         Raises
         ------
@@ -163,24 +185,17 @@ class Tool:
             raise InvalidInput(f"tool has no property {sorted(unknown)[0]!r}: "
                                "use flute_length, stickout, shank or holder")
         if corner_radius > radius:
-            raise InvalidInput(f"corner radius is {corner_radius} mm, above the radius {radius} mm: "
+            raise InvalidInput(f"corner radius is {corner_radius:g} mm, above the radius {radius:g} mm: "
                                "it can be at most half the diameter")
-        stickout = body.get("stickout")
-        stick = None if stickout is None else _positive("stick-out", float(stickout))  # type: ignore[arg-type]
-        given = body.get("flute_length")
-        flute = 4 * radius if given is None else _positive("flute length", float(given))  # type: ignore[arg-type]
-        if stick is not None and given is None:
-            flute = min(flute, stick)
-        if flute <= corner_radius or (stick is not None and flute > stick):
-            raise InvalidInput(f"flute length is {flute} mm: it must exceed the corner radius {corner_radius} mm and "
-                               f"not the stick-out {stick} mm")
-        shank, holder = _outline("shank", body.get("shank")), _outline("holder", body.get("holder"))  # type: ignore[arg-type]
+        stick = None if body.get("stickout") is None else _positive("stick-out", body["stickout"])
+        flute = _flute(4 * radius, body.get("flute_length"), corner_radius, stick)
+        shank, holder = _outline("shank", body.get("shank")), _outline("holder", body.get("holder"))
         if holder is not None and stick is None:
             raise InvalidInput("a holder is given without a stick-out: give the length from tip to holder")
         return Tool(kind, radius, corner_radius, half_angle, flute, stick, shank, holder)
 
     @staticmethod
-    def parse(text: str, **body: object) -> "Tool":
+    def parse(text: str, **body: Any) -> "Tool":
         """A tool from its short form: torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner x degrees).
 
         Parameters
@@ -194,16 +209,17 @@ class Tool:
         InvalidInput
             When the text is not of that form.
         """
-        kind, _, sizes = text.strip().partition(":")
+        kind, _, sizes = text.strip().lower().partition(":")
         counts = {"torus": 2, "ball": 1, "flat": 1, "tapered": 3}
         try:
-            numbers = [float(part) for part in sizes.lower().split("x")]
+            numbers = [float(part) for part in sizes.split("x")]
         except ValueError:
             numbers = []
         if kind not in counts or len(numbers) != counts[kind]:
             raise InvalidInput(f"tool {text!r} is not understood: write torus:12x1, ball:8, flat:20 or tapered:6x3x4")
-        maker = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat, "tapered": Tool.tapered}[kind]
-        return maker(*numbers, **body)  # type: ignore[operator, no-any-return]
+        makers: dict[str, Callable[..., Tool]] = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat,
+                                                  "tapered": Tool.tapered}
+        return makers[kind](*numbers, **body)
 
     @property
     def flat_radius(self) -> float:
@@ -218,33 +234,65 @@ class Tool:
     @property
     def name(self) -> str:
         """The short form, as `parse` reads it."""
-        sizes = {"torus": f"{2 * self.radius:g}x{self.corner_radius:g}", "ball": f"{2 * self.radius:g}",
-                 "flat": f"{2 * self.radius:g}"}
-        return f"{self.kind}:" + sizes.get(
-            self.kind, f"{2 * self.radius:g}x{self.corner_radius:g}x{self.half_angle * 180 / pi:g}")
+        sizes = [2 * self.radius]
+        if self.kind in ("torus", "tapered"):
+            sizes.append(self.corner_radius)
+        if self.kind == "tapered":
+            sizes.append(degrees(self.half_angle))
+        return f"{self.kind}:" + "x".join(f"{size:.10g}" for size in sizes)
 
     @property
     def outlines(self) -> dict[str, Array]:
         """Polylines (radius, z from the tip) of the components that are known: shank above the flutes, and holder.
 
-        A tool with a stick-out and no shank has a plain shank of the radius at the end of its flutes.
+        No height between the end of the flutes and the holder is left empty: a shank that begins higher goes down
+        with the larger of its own and the cutter's radius, one that ends below the holder goes on up to it, and a tool
+        with a stick-out and no shank has a plain one of the radius at the end of its flutes.
         """
         found: dict[str, Array] = {}
-        if self.shank is not None:
-            found["shank"] = _above(self.shank, self.flute_length)
-        elif self.stickout is not None and self.stickout > self.flute_length:
-            top = self.profile.top_radius
-            found["shank"] = np.array([[top, self.flute_length], [top, self.stickout]])
+        line = self._shank_line()
+        if line is not None:
+            found["shank"] = line
         if self.holder is not None and self.stickout is not None:
-            found["holder"] = self.holder - [0.0, self.holder[0, 1]] + [0.0, self.stickout]
-        return {name: line for name, line in found.items() if len(line) > 1}
+            found["holder"] = self.holder + np.array([0.0, self.stickout - self.holder[0, 1]])
+        return found
+
+    def _shank_line(self) -> Array | None:
+        top, end = self.profile.top_radius, self.flute_length
+        line = np.empty((0, 2)) if self.shank is None else _above(self.shank, end)
+        if self.stickout is not None and self.stickout > (line[-1, 1] if len(line) else end):
+            last = top if self.shank is None else self.shank[-1, 0]
+            line = np.vstack([line if len(line) else [[last, end]], [[last, self.stickout]]])
+        if not len(line):
+            return None
+        if line[0, 1] > end:
+            wide = max(top, line[0, 0])
+            line = np.vstack([[[wide, end], [wide, line[0, 1]]], line])
+        return line
+
+
+def _flute(usual: float, given: Any, corner_radius: float, stickout: float | None) -> float:
+    """Length of the cutting edge: the one given, or the usual one as far as the stick-out allows."""
+    length = usual if given is None else _positive("flute length", given)
+    if stickout is not None and given is None:
+        length = min(length, stickout)
+        if length <= corner_radius:
+            raise InvalidInput(f"stick-out is {stickout:g} mm, not above the corner radius {corner_radius:g} mm: "
+                               "the holder would stand in the cutting edge")
+    if length <= corner_radius:
+        raise InvalidInput(f"flute length is {length:g} mm: it must exceed the corner radius {corner_radius:g} mm")
+    if stickout is not None and length > stickout:
+        raise InvalidInput(f"flute length is {length:g} mm, above the stick-out {stickout:g} mm: "
+                           "lengthen the stick-out or shorten the cutting edge")
+    return length
 
 
 def _above(line: Array, z: float) -> Array:
-    """The part of a polyline (radius, z) that lies above a height."""
+    """The part of a polyline (radius, z) that lies above a height; from the upper side of a step at that height."""
     if line[-1, 1] <= z:
         return np.empty((0, 2))
-    if line[0, 1] >= z:
-        return line
-    radius = np.interp(z, line[:, 1], line[:, 0])
-    return np.vstack([[radius, z], line[line[:, 1] > z]])
+    below = int(np.searchsorted(line[:, 1], z, side="right")) - 1
+    if below < 0 or line[below, 1] == z:
+        return line[max(below, 0):]
+    (r0, z0), (r1, z1) = line[below], line[below + 1]
+    return np.vstack([[r0 + (r1 - r0) * (z - z0) / (z1 - z0), z], line[below + 1:]])

@@ -6,6 +6,8 @@ from math import cos, sin, tan
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.errors import InvalidInput
+
 Array = NDArray[np.float64]
 
 
@@ -68,7 +70,14 @@ class Profile:
         Returns
         -------
         (k, 2) array of (radius, z)
+
+        Raises
+        ------
+        InvalidInput
+            When the tolerance is not above zero.
         """
+        if not tolerance > 0:
+            raise InvalidInput(f"tolerance of the cutter's polyline is {tolerance} mm: it must be above zero")
         a, r = self.flat_radius, self.corner_radius
         points = [(0.0, 0.0)] if a > 0 else []
         sweep = np.pi / 2 - self.half_angle
