@@ -20,14 +20,14 @@ def _number(name: str, value: Any, unit: str = "mm") -> float:
     except (TypeError, ValueError) as reason:
         raise InvalidInput(f"{name} is {value!r}: it must be a number of {unit}") from reason
     if not isfinite(number):
-        raise InvalidInput(f"{name} is {number} {unit}: it must be finite")
+        raise InvalidInput(f"{name} is {number} {unit}: it must be a finite number")
     return number
 
 
 def _positive(name: str, value: Any) -> float:
     number = _number(name, value)
     if number <= 0:
-        raise InvalidInput(f"{name} is {number:g} mm: it must be above zero")
+        raise InvalidInput(f"{name} is {number} mm: it must be a finite number above zero")
     return number
 
 
@@ -98,7 +98,7 @@ class Tool:
         """
         radius, corner = _positive("diameter", diameter) / 2, _number("corner radius", corner_radius)
         if corner <= 0:
-            raise InvalidInput(f"corner radius is {corner:g} mm: a torus needs one above zero; use a flat tool for a "
+            raise InvalidInput(f"corner radius is {corner} mm: a torus needs one above zero; use a flat tool for a "
                                "sharp corner")
         return Tool.build("torus", radius, corner, 0.0, **body)
 
@@ -148,9 +148,9 @@ class Tool:
         """
         angle, corner = _number("half angle", half_angle_deg, "deg"), _number("corner radius", corner_radius)
         if not 0 < angle < 80:
-            raise InvalidInput(f"half angle is {angle:g} deg: it must lie between 0 and 80")
+            raise InvalidInput(f"half angle is {angle} deg: it must lie between 0 and 80")
         if corner < 0:
-            raise InvalidInput(f"corner radius is {corner:g} mm: it must be zero or more")
+            raise InvalidInput(f"corner radius is {corner} mm: it must be zero or more")
         return Tool.build("tapered", _positive("diameter", diameter) / 2, corner, radians(angle), **body)
 
     @staticmethod
@@ -185,7 +185,7 @@ class Tool:
             raise InvalidInput(f"tool has no property {sorted(unknown)[0]!r}: "
                                "use flute_length, stickout, shank or holder")
         if corner_radius > radius:
-            raise InvalidInput(f"corner radius is {corner_radius:g} mm, above the radius {radius:g} mm: "
+            raise InvalidInput(f"corner radius is {corner_radius} mm, above the radius {radius} mm: "
                                "it can be at most half the diameter")
         stick = None if body.get("stickout") is None else _positive("stick-out", body["stickout"])
         flute = _flute(4 * radius, body.get("flute_length"), corner_radius, stick)
@@ -277,12 +277,12 @@ def _flute(usual: float, given: Any, corner_radius: float, stickout: float | Non
     if stickout is not None and given is None:
         length = min(length, stickout)
         if length <= corner_radius:
-            raise InvalidInput(f"stick-out is {stickout:g} mm, not above the corner radius {corner_radius:g} mm: "
+            raise InvalidInput(f"stick-out is {stickout} mm, not above the corner radius {corner_radius} mm: "
                                "the holder would stand in the cutting edge")
     if length <= corner_radius:
-        raise InvalidInput(f"flute length is {length:g} mm: it must exceed the corner radius {corner_radius:g} mm")
+        raise InvalidInput(f"flute length is {length} mm: it must exceed the corner radius {corner_radius} mm")
     if stickout is not None and length > stickout:
-        raise InvalidInput(f"flute length is {length:g} mm, above the stick-out {stickout:g} mm: "
+        raise InvalidInput(f"flute length is {length} mm, above the stick-out {stickout} mm: "
                            "lengthen the stick-out or shorten the cutting edge")
     return length
 
