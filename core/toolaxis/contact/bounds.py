@@ -3,8 +3,10 @@
 The signed distance phi to a convex piece is a convex function of the point, so with its slope g at any point y,
 phi(x) >= phi(y) + g (x - y) for all x.  Over a cell {q + s a + t b + d, with s and t in [-1, 1] and d no longer than e}
 the right side is least at a corner: a bound that holds between all points.  A straight motion of the tip adds a third
-direction c, since only places relative to the tip count.  The bound is taken at the centre and, where that does not
-decide, at the point of the cell that looks nearest; near a minimum its error falls as the square of the cell's size.
+direction c, since only places relative to the tip count.  The bound is taken at the centre, from the plane of the cell
+itself, and at the point of the cell that looks nearest; near a minimum its error falls as the square of the cell's size.
+
+Vectors are tuples of numbers here: they stay in registers, while every array that is handed on costs a reference count.
 """
 
 from typing import TypeAlias
@@ -12,150 +14,221 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
-Scratch: TypeAlias = tuple[Array, Array]
+Triple: TypeAlias = tuple[float, float, float]
+# q from the tip; the axis; a; b; c
+Frame: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple]
+# rho, z, 1 / rho (0 on the axis), the direction outwards
+View: TypeAlias = tuple[float, float, float, Triple]
+# of a, b and c each: the parts outwards, along the axis and around it
+Steps: TypeAlias = tuple[Triple, Triple, Triple]
+Piece: TypeAlias = tuple[float, float, float, float, float, float, float]
 
 
-@compiled
-def evaluate_at(frame: Array, piece: Array, at: Array, out: Array) -> None:
-    """phi at one point of a cell, its slopes along a, b and c, and what its second order is made of.
+@built_in
+def dot(x: Triple, y: Triple) -> float:
+    """Scalar product."""
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
-    Parameters
-    ----------
-    frame : (5, 3) array
-        q from the tip, the axis, a, b, c.
-    piece : (8,) array
-    at : (3,) array
-        Shares of a, b, c.
-    out : (12,) array
-        Receives phi; three slopes; three steps in the meridian plane across the gradient; three steps around the
-        axis; the curvatures that belong to these steps.
-    """
-    wx = frame[0, 0] + at[0] * frame[2, 0] + at[1] * frame[3, 0] + at[2] * frame[4, 0]
-    wy = frame[0, 1] + at[0] * frame[2, 1] + at[1] * frame[3, 1] + at[2] * frame[4, 1]
-    wz = frame[0, 2] + at[0] * frame[2, 2] + at[1] * frame[3, 2] + at[2] * frame[4, 2]
-    ax, ay, az = frame[1, 0], frame[1, 1], frame[1, 2]
-    z = wx * ax + wy * ay + wz * az
-    px, py, pz = wx - z * ax, wy - z * ay, wz - z * az
-    rho = np.sqrt(px * px + py * py + pz * pz)
-    value, along_rho, along_z, bend = piece_distance(piece, rho, z)
+
+@built_in
+def cross(x: Triple, y: Triple) -> Triple:
+    """Vector product."""
+    return x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
+
+
+@built_in
+def row(table: Array, k: int, first: int) -> Triple:
+    """Three neighbours of a row."""
+    return table[k, first], table[k, first + 1], table[k, first + 2]
+
+
+@built_in
+def look(w: Triple, axis: Triple) -> View:
+    """Where a point, seen from the tip, stands to the axis."""
+    z = dot(w, axis)
+    p = (w[0] - z * axis[0], w[1] - z * axis[1], w[2] - z * axis[2])
+    rho = np.sqrt(dot(p, p))
     scale = 1.0 / rho if rho > 1e-12 else 0.0
-    px, py, pz = px * scale, py * scale, pz * scale
-    cx, cy, cz = ay * pz - az * py, az * px - ax * pz, ax * py - ay * px
-    out[0] = value
-    for k in range(3):
-        vx, vy, vz = frame[2 + k, 0], frame[2 + k, 1], frame[2 + k, 2]
-        v_rho = vx * px + vy * py + vz * pz
-        v_z = vx * ax + vy * ay + vz * az
-        out[1 + k] = along_rho * v_rho + along_z * v_z
-        out[4 + k] = along_rho * v_z - along_z * v_rho
-        out[7 + k] = vx * cx + vy * cy + vz * cz
-    out[10] = bend
-    out[11] = along_rho * scale
+    return rho, z, scale, (p[0] * scale, p[1] * scale, p[2] * scale)
 
 
-@compiled
-def nearest_share(out: Array, at: Array) -> None:
-    """Shares in [-1, 1] where the second-order form of phi about the centre is about least, by two sweeps.
-
-    Parameters
-    ----------
-    out : (12,) array
-        From `evaluate_at` at the centre.
-    at : (3,) array
-        Receives the shares.
-    """
-    for k in range(3):
-        at[k] = 0.0
-    for _ in range(2):
-        for k in range(3):
-            slope = out[1 + k]
-            for j in range(3):
-                if j != k:
-                    slope += at[j] * (out[10] * out[4 + j] * out[4 + k] + out[11] * out[7 + j] * out[7 + k])
-            bend = out[10] * out[4 + k] * out[4 + k] + out[11] * out[7 + k] * out[7 + k]
-            if bend > abs(slope):
-                at[k] = -slope / bend
-            elif slope != 0.0:
-                at[k] = -1.0 if slope > 0.0 else 1.0
+@built_in
+def spread(frame: Frame, outwards: Triple) -> Steps:
+    """Parts of a, b and c outwards, along the axis and around it."""
+    _, axis, a, b, c = frame
+    around = cross(axis, outwards)
+    return ((dot(a, outwards), dot(a, axis), dot(a, around)), (dot(b, outwards), dot(b, axis), dot(b, around)),
+            (dot(c, outwards), dot(c, axis), dot(c, around)))
 
 
-@compiled
-def greatest_fall(out: Array, at: Array, region: Array, count: int) -> tuple[float, int]:
-    """Least value of the linear continuation, from ``at``, over a cell or the part of it that trims leave.
+@built_in
+def slopes_along(steps: Steps, rise: float, climb: float) -> Triple:
+    """Slopes along a, b and c of a function with slopes ``rise`` along rho and ``climb`` along z."""
+    a, b, c = steps
+    return rise * a[0] + climb * a[1], rise * b[0] + climb * b[1], rise * c[0] + climb * c[1]
+
+
+@built_in
+def settle(step: Triple, along: tuple[float, float, float, float], at: Triple) -> Triple:
+    """Best share of one direction in phi's second-order form, the others held.
 
     Parameters
     ----------
-    out : (12,) array
-        From `evaluate_at`.
-    at : (3,) array
-    region : (k, 2) array
-        Shares of a and b of the corners of what trims leave.
-    count : int
-        How many corners count; 0 for the whole cell.
+    step : (float, float, float)
+        Parts outwards, along the axis, around it.
+    along : (float, float, float, float)
+        Slopes of phi along rho and z, its curvatures across the gradient in the meridian plane and around the axis.
+    at : (float, float, float)
+        Share so far, and how far all shares together lead across the gradient and around the axis.
 
     Returns
     -------
-    fall : float
-        Zero or negative where ``at`` is in the cell.
-    corner : int
-        Which corner of the region is lowest.
+    (float, float, float) : the same three, renewed
     """
-    fall = -abs(out[3]) - out[3] * at[2]
-    if count == 0:
-        return fall - abs(out[1]) - out[1] * at[0] - abs(out[2]) - out[2] * at[1], 0
+    (rise, climb, bend, ring), (share, over, around) = along, at
+    across = rise * step[1] - climb * step[0]
+    over -= share * across
+    around -= share * step[2]
+    stiff = bend * across * across + ring * step[2] * step[2]
+    slope = rise * step[0] + climb * step[1] + bend * over * across + ring * around * step[2]
+    share = 0.0
+    if stiff > abs(slope):
+        share = -slope / stiff
+    elif slope != 0.0:
+        share = -1.0 if slope > 0.0 else 1.0
+    return share, over + share * across, around + share * step[2]
+
+
+@built_in
+def nearest_share(steps: Steps, along: tuple[float, float, float, float]) -> Triple:
+    """Shares in [-1, 1] where phi's second-order form about the centre is about least, by two sweeps."""
+    s, over, around = settle(steps[0], along, (0.0, 0.0, 0.0))
+    t, over, around = settle(steps[1], along, (0.0, over, around))
+    tau, over, around = settle(steps[2], along, (0.0, over, around))
+    s, over, around = settle(steps[0], along, (s, over, around))
+    t, over, around = settle(steps[1], along, (t, over, around))
+    tau, over, around = settle(steps[2], along, (tau, over, around))
+    return s, t, tau
+
+
+@built_in
+def fall_over_cell(slopes: Triple, at: Triple) -> float:
+    """Least value of a linear function over a whole cell, less its value at some shares."""
+    return (-abs(slopes[0]) - slopes[0] * at[0] - abs(slopes[1]) - slopes[1] * at[1]
+            - abs(slopes[2]) - slopes[2] * at[2])
+
+
+@built_in
+def fall_over_region(slopes: Triple, at: Triple, region: Array, count: int) -> tuple[float, int]:
+    """Least value of a linear function over what trims leave of a cell, less its value at some shares; its corner."""
     corner, least = 0, np.inf
     for k in range(count):
-        value = out[1] * (region[k, 0] - at[0]) + out[2] * (region[k, 1] - at[1])
+        value = slopes[0] * (region[k, 0] - at[0]) + slopes[1] * (region[k, 1] - at[1])
         if value < least:
             corner, least = k, value
-    return fall + least, corner
+    return least - abs(slopes[2]) - slopes[2] * at[2], corner
 
 
-@compiled
-def piece_bound(frame: Array, piece: Array, reach: tuple[float, float, float], trims: tuple[Array, int],
-                scratch: Scratch) -> tuple[float, float]:
-    """Bounds of the least phi of one piece over a cell.
+@built_in
+def plane_gap(frame: Frame, piece: Piece, along: tuple[float, float], outwards: Triple) -> float:
+    """Distance by which the plane of a cell lies beyond the piece's supporting plane; -inf where a cell has none.
 
     Parameters
     ----------
-    frame : (5, 3) array
-        q from the tip, the axis, a, b, c.
-    piece : (8,) array
-    reach : (float, float, float)
-        e; the radius around q, half the motion included; the value from which more effort is not wanted.
-    trims : (array, int)
-        Corners of what trims leave, and their number.
-    scratch : (array (3,), array (12,))
-
-    Returns
-    -------
-    lower : float
-        No point of the cell has a smaller phi.
-    upper : float
-        phi at the centre of a whole cell; a value that some point does not exceed where trims cut the cell.
+    frame : tuple
+    piece : tuple
+    along : (float, float)
+        Slopes of phi along rho and z at the centre; they tell the far side of the plane.
+    outwards : (float, float, float)
     """
-    (at, out), (region, count), (e, radius, wanted) = scratch, trims, reach
-    at[0] = at[1] = at[2] = 0.0
-    evaluate_at(frame, piece, at, out)
-    upper = out[0] if count == 0 else np.inf
-    lower = out[0] - radius
-    if lower >= wanted:
-        return lower, upper
-    fall, corner = greatest_fall(out, at, region, count)
-    lower = max(lower, out[0] + fall - e)
-    if lower >= wanted or (count == 0 and out[10] == 0.0 and out[11] == 0.0) or e >= radius:
-        return lower, upper
-    if count == 0:
-        nearest_share(out, at)
+    w, axis, a, b, c = frame
+    n = cross(a, b)
+    size = np.sqrt(dot(n, n))
+    if size < 1e-100:
+        return -np.inf
+    scale = 1.0 / size if along[0] * dot(n, outwards) + along[1] * dot(n, axis) > 0.0 else -1.0 / size
+    climb = scale * dot(n, axis)
+    rise = np.sqrt(max(1.0 - climb * climb, 0.0))
+    if piece[2] * climb + piece[3] * rise <= 0.0:
+        support = piece[0] * rise + (piece[4] + piece[1]) * climb + piece[1]
     else:
-        at[0], at[1] = region[corner, 0], region[corner, 1]
-        at[2] = 0.0 if out[3] == 0.0 else -np.sign(out[3])
-    evaluate_at(frame, piece, at, out)
-    fall, corner = greatest_fall(out, at, region, count)
-    if count > 0:
-        upper = out[0] + e
-    return max(lower, out[0] + fall - e), upper
+        support = piece[6] * rise + piece[5] * climb
+    return scale * dot(n, w) - abs(scale * dot(n, c)) - support
+
+
+@built_in
+def seen_from(frame: Frame, piece: Piece, at: Triple) -> tuple[float, Triple]:
+    """phi at some shares of a, b and c, and its slopes along them there."""
+    w, axis, a, b, c = frame
+    s, t, tau = at
+    rho, z, _, outwards = look((w[0] + s * a[0] + t * b[0] + tau * c[0], w[1] + s * a[1] + t * b[1] + tau * c[1],
+                                w[2] + s * a[2] + t * b[2] + tau * c[2]), axis)
+    value, rise, climb, _ = piece_distance(piece, rho, z)
+    return value, slopes_along(spread(frame, outwards), rise, climb)
+
+
+@built_in
+def bound_over_cell(frame: Frame, piece: Piece, view: View, reach: Triple) -> tuple[float, float]:
+    """Least phi of one piece over a whole cell: a lower bound, and phi at the centre.
+
+    Parameters
+    ----------
+    frame : tuple
+    piece : tuple
+    view : tuple
+        From `look` at the centre.
+    reach : (float, float, float)
+        e; radius around q, half the motion included; the value from which more effort is not wanted.
+    """
+    (rho, z, over_rho, outwards), (e, radius, wanted) = view, reach
+    value, rise, climb, bend = piece_distance(piece, rho, z)
+    lower = value - radius
+    if lower >= wanted or e >= radius:
+        return lower, value
+    steps = spread(frame, outwards)
+    slopes = slopes_along(steps, rise, climb)
+    lower = max(lower, value - abs(slopes[0]) - abs(slopes[1]) - abs(slopes[2]) - e)
+    ring = rise * over_rho
+    if lower >= wanted or (bend == 0.0 and ring == 0.0):
+        return lower, value
+    lower = max(lower, plane_gap(frame, piece, (rise, climb), outwards) - e)
+    if lower >= wanted:
+        return lower, value
+    at = nearest_share(steps, (rise, climb, bend, ring))
+    seen, slopes = seen_from(frame, piece, at)
+    return max(lower, seen + fall_over_cell(slopes, at) - e), value
+
+
+@built_in
+def bound_over_region(frame: Frame, piece: Piece, reach: Triple, region: Array, count: int) -> tuple[float, float]:
+    """Least phi of one piece over what trims leave of a cell: a lower bound, and one that some point stays under.
+
+    Parameters
+    ----------
+    frame : tuple
+    piece : tuple
+    reach : (float, float, float)
+        e; radius around q; the value from which more effort is not wanted.
+    region : (k, 2) array
+        Corners of what is left, as shares of a and b.
+    count : int
+        How many of them count.
+    """
+    e, radius, wanted = reach
+    centre = (0.0, 0.0, 0.0)
+    value, slopes = seen_from(frame, piece, centre)
+    fall, corner = fall_over_region(slopes, centre, region, count)
+    lower = max(value - radius, value + fall - e)
+    if lower >= wanted:
+        return lower, np.inf
+    tau = 0.0
+    if slopes[2] != 0.0:
+        tau = -1.0 if slopes[2] > 0.0 else 1.0
+    at = (region[corner, 0], region[corner, 1], tau)
+    value, slopes = seen_from(frame, piece, at)
+    fall, corner = fall_over_region(slopes, at, region, count)
+    return max(lower, value + fall - e), value + e

@@ -5,9 +5,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.bounds import piece_bound
+from toolaxis.contact.bounds import Triple, bound_over_cell, bound_over_region, dot, look, row
+from toolaxis.contact.trimming import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in, compiled
 from toolaxis.shape.cells import ForestData
 
 Array = NDArray[np.float64]
@@ -17,174 +18,100 @@ BUDGET = 100_000
 DECIDED = 1e-6
 DEPTH = 2048
 TREE, WHOLE, CUT = 0, 1, 2
+HALVE_U, HALVE_V, HALVE_MOTION, BRANCH, START = 0, 1, 2, 3, 4
 
-# pieces (k, 8); limits (faces, 3): what each component must keep, -inf where it is not asked; limits above faces (3,);
-# height of the tool's lower end, its greatest radius, resolution (negative: only decide against the limits)
-ToolData: TypeAlias = tuple[Array, Array, Array, tuple[float, float, float]]
-# cell (11,), frame (5, 3), region (k, 2), at (3,), out (12,), derivatives (6, 3), spline scratch (6, 26), item (6,)
-Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array, Array, Array]
-# items (DEPTH, 9): u, v, du, dv, middle and half of the motion, lowest bound, radius, longer side; tags (DEPTH, 3):
-# node, kind, pieces
+# pieces (k, 8); limits (faces + 1, 3): what each component must keep, -inf where it is not asked, the last row for
+# nodes above faces; height of the tool's lower end, its greatest radius, resolution (negative: only decide)
+ToolData: TypeAlias = tuple[Array, Array, tuple[float, float, float]]
+# region (k, 2), derivatives (6, 3), spline scratch (6, 26)
+Work: TypeAlias = tuple[Array, Array, Array]
+# items (DEPTH, 7): u, v, du, dv, middle and half of the motion, lowest bound; tags (DEPTH, 4): node, kind, pieces, what
+# is to be halved
 Stack: TypeAlias = tuple[Array, Indices]
-# values (2, 3): least phi seen, least bound given up; nearest point (3, 3); tags (5,): face by component, then the
-# component found too near (-1: none), and cells looked at
-State: TypeAlias = tuple[Array, Array, Indices]
+# found (5, 3): least phi seen and least bound given up, by component, and the nearest points; tags (5,): faces, then
+# the component found too near (-1: none), and cells looked at
+State: TypeAlias = tuple[Array, Indices]
+# tip half-way, half of its way (zero for a standing tool), axis
+Motion: TypeAlias = tuple[Triple, Triple, Triple]
+# q, a, b; e, radius, and what of e no splitting removes
+Cell: TypeAlias = tuple[Triple, Triple, Triple, Triple]
+# u, v, du, dv, middle and half of the motion
+Item: TypeAlias = tuple[float, float, float, float, float, float]
 
 
-@compiled
-def examine(tool: ToolData, work: Work, state: State, tag: tuple[int, int, bool, int, float]) -> tuple[int, float]:
+@built_in
+def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
+            tag: tuple[int, int, bool, int, float, float], state: State) -> tuple[int, float]:
     """Which pieces are still open over one cell, and the lowest of their bounds.
 
     Parameters
     ----------
-    tool, work, state
-        See the aliases; the cell and its frame stand in ``work``.
-    tag : (int, int, bool, int, float)
-        Face, open pieces as bits, whether the centre is a point of the face, corners that trims leave, and what of e
-        no splitting removes.
+    tool, cell, motion, state
+        See the aliases.
+    region : (k, 2) array
+        Corners of what trims leave.
+    tag : (int, int, bool, int, float, float)
+        Face, open pieces as bits, whether the centre is a point of the face, corners that trims leave, and the part of
+        the motion.
     """
-    pieces, limits, top, (_, _, resolution) = tool
-    cell, frame, region, at, out, _, _, _ = work
-    values, points, tags = state
-    face, mask, real, count, extra = tag
-    sweep = np.sqrt(frame[4, 0] ** 2 + frame[4, 1] ** 2 + frame[4, 2] ** 2)
+    pieces, limits, (low, wide, resolution) = tool
+    (q, a, b, (e, radius, extra)), (tip, way, axis) = cell, motion
+    face, mask, real, count, middle, half = tag
+    found, tags = state
+    c = (-half * way[0], -half * way[1], -half * way[2])
+    w = (q[0] - tip[0] - middle * way[0], q[1] - tip[1] - middle * way[1], q[2] - tip[2] - middle * way[2])
+    frame, view = (w, axis, a, b, c), look(w, axis)
+    radius += np.sqrt(dot(c, c))
+    outside = max(low - view[1], view[0] - wide) - radius
     left, key = 0, np.inf
     tags[4] += 1
     for p in range(pieces.shape[0]):
         if not mask & (1 << p):
             continue
-        c = int(pieces[p, 7])
-        wanted = limits[face, c] if face >= 0 else top[c]
+        k = int(pieces[p, 7])
+        wanted = limits[face, k]
         if wanted == -np.inf:
             continue
         if resolution >= 0.0:
-            wanted = values[0, c] - resolution
-        lower, upper = piece_bound(frame, pieces[p], (cell[9], cell[10] + sweep, wanted + extra), (region, count),
-                                   (at, out))
-        if (real or count > 0) and upper < values[0, c]:
-            values[0, c] = upper
-            tags[c] = face
-            for k in range(3):
-                points[c, k] = cell[k]
-        if lower + extra >= wanted:
-            values[1, c] = min(values[1, c], lower)
+            wanted = found[0, k] - resolution
+        if outside >= wanted:
+            found[1, k] = min(found[1, k], outside)
             continue
-        seen = (real or count > 0) and upper - extra < wanted
-        if resolution < 0.0 and (seen or upper - lower - extra < DECIDED):
-            tags[3] = c
-            tags[c] = face
+        piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
+        if count == 0:
+            lower, upper = bound_over_cell(frame, piece, view, (e, radius, wanted + extra))
+            upper = upper if real else np.inf
+        else:
+            lower, upper = bound_over_region(frame, piece, (e, radius, wanted + extra), region, count)
+        if upper < found[0, k]:
+            found[0, k], found[2, k], found[3, k], found[4, k] = upper, q[0], q[1], q[2]
+            tags[k] = face
+        if lower + extra >= wanted:
+            found[1, k] = min(found[1, k], lower)
+        elif resolution < 0.0 and (upper - extra < wanted or upper - lower - extra < DECIDED):
+            tags[3], tags[k] = k, face
             return 0, lower
-        left |= 1 << p
-        key = min(key, lower)
+        else:
+            left |= 1 << p
+            key = min(key, lower)
     return left, key
 
 
-@compiled
-def clip_edges(edges: Array, rect: Array, corners: Array) -> int:
-    """Ends of the parts of trim edges that run through the inner part of a rectangle.
+@built_in
+def tree_cell(shape: Array, node: int) -> Cell:
+    """Enclosure of a node of the tree.
 
     Parameters
     ----------
-    edges : (k, 4) array
-        u, v of both ends.
-    rect : (4,) array
-        Centre and half widths.
-    corners : (2 k + 4, 2) array
-        Receives the ends.
-
-    Returns
-    -------
-    int
-        How many ends were written.
+    shape : (n, 12) array
+    node : int
     """
-    count = 0
-    for k in range(edges.shape[0]):
-        enter, leave = 0.0, 1.0
-        for axis in range(2):
-            start, along = edges[k, axis] - rect[axis], edges[k, 2 + axis] - edges[k, axis]
-            half = rect[2 + axis] * (1.0 - 1e-9)
-            if along == 0.0:
-                if abs(start) >= half:
-                    leave = -1.0
-            else:
-                first, second = (-half - start) / along, (half - start) / along
-                enter, leave = max(enter, min(first, second)), min(leave, max(first, second))
-        if enter < leave:
-            for share in (enter, leave):
-                for axis in range(2):
-                    corners[count, axis] = edges[k, axis] + share * (edges[k, 2 + axis] - edges[k, axis])
-                count += 1
-    return count
+    return row(shape, node, 0), row(shape, node, 3), row(shape, node, 6), row(shape, node, 9)
 
 
-@compiled
-def inside_leaf(edges: Array, reference: Array, u: float, v: float) -> bool:
-    """Whether a point of a leaf's rectangle lies inside the loops: crossings of the way from the reference point.
-
-    Parameters
-    ----------
-    edges : (k, 4) array
-        Trim edges through the leaf.
-    reference : (3,) array
-        u, v and whether that point is inside (1 or 0).
-    u, v : float
-    """
-    within = reference[2] > 0.5
-    x0, y0 = reference[0], reference[1]
-    dx, dy = u - x0, v - y0
-    for k in range(edges.shape[0]):
-        first = dx * (edges[k, 1] - y0) - dy * (edges[k, 0] - x0) > 0.0
-        second = dx * (edges[k, 3] - y0) - dy * (edges[k, 2] - x0) > 0.0
-        if first != second:
-            ex, ey = edges[k, 2] - edges[k, 0], edges[k, 3] - edges[k, 1]
-            here = ex * (y0 - edges[k, 1]) - ey * (x0 - edges[k, 0]) > 0.0
-            there = ex * (v - edges[k, 1]) - ey * (u - edges[k, 0]) > 0.0
-            if here != there:
-                within = not within
-    return within
-
-
-@compiled
-def trim_cell(edges: Array, reference: Array, rect: Array, region: Array) -> int:
-    """Corners of what trims leave of a rectangle, which shrinks to the box around them.
-
-    Parameters
-    ----------
-    edges, reference
-        Those of the leaf.
-    rect : (4,) array
-        Centre and half widths, changed.
-    region : (k, 2) array
-        Receives the corners, as shares of the new half widths.
-
-    Returns
-    -------
-    int
-        Number of corners, 0 where no edge runs through and the rectangle is inside, -1 where nothing is left.
-    """
-    count = clip_edges(edges, rect, region)
-    if count == 0:
-        return 0 if inside_leaf(edges, reference, rect[0], rect[1]) else -1
-    for i in (-1.0, 1.0):
-        for j in (-1.0, 1.0):
-            u, v = rect[0] + i * rect[2], rect[1] + j * rect[3]
-            if inside_leaf(edges, reference, u, v):
-                region[count, 0], region[count, 1] = u, v
-                count += 1
-    for axis in range(2):
-        low, high = np.inf, -np.inf
-        for k in range(count):
-            low, high = min(low, region[k, axis]), max(high, region[k, axis])
-        middle, half = (low + high) / 2.0, (high - low) / 2.0 + 1e-9 * rect[2 + axis]
-        rect[axis], rect[2 + axis] = middle, half
-        for k in range(count):
-            region[k, axis] = (region[k, axis] - middle) / half
-    return count
-
-
-@compiled
-def enclose_cell(data: ForestData, node: int, rect: Array, work: Work) -> float:
-    """Enclosure of a part of a leaf, into the cell of ``work``; what of its e no splitting removes.
+@built_in
+def part_cell(data: ForestData, node: int, rect: tuple[float, float, float, float], work: Work) -> Cell:
+    """Enclosure of a part of a leaf.
 
     Parameters
     ----------
@@ -192,201 +119,167 @@ def enclose_cell(data: ForestData, node: int, rect: Array, work: Work) -> float:
         The forest.
     node : int
         The leaf's node.
-    rect : (4,) array
+    rect : (float, float, float, float)
         Centre and half widths of the part.
     work : tuple
     """
     _, link, leaf, _, _, knots, control, layout = data
-    cell, derivatives, spline = work[0], work[5], work[6]
-    k0, nu, nv, c0, mu, mv, pu, pv, rational = layout[link[node, 2]]
-    surface = (knots[k0:k0 + nu], knots[k0 + nu:k0 + nu + nv],
-               control[c0:c0 + mu * mv * 4].reshape((mu, mv, 4)), pu, pv, rational != 0)
-    surface_derivatives(surface, rect[0], rect[1], derivatives, spline)
-    du, dv = rect[2], rect[3]
-    plus = minus = 0.0
-    for k in range(3):
-        a, b = derivatives[1, k] * du, derivatives[2, k] * dv
-        cell[k], cell[3 + k], cell[6 + k] = derivatives[0, k], a, b
-        plus += (a + b) ** 2
-        minus += (a - b) ** 2
-    row = leaf[link[node, 3]]
-    cell[9] = row[4] * du * du / 2.0 + row[5] * du * dv + row[6] * dv * dv / 2.0 + row[7]
-    cell[10] = np.sqrt(max(plus, minus)) + cell[9]
-    return float(row[7])
+    u, v, du, dv = rect
+    face, number = link[node, 2], link[node, 3]
+    k0, nu, nv, c0 = layout[face, 0], layout[face, 1], layout[face, 2], layout[face, 3]
+    mu, mv, pu, pv = layout[face, 4], layout[face, 5], layout[face, 6], layout[face, 7]
+    surface_derivatives((knots[k0:k0 + nu], knots[k0 + nu:k0 + nu + nv],
+                         control[c0:c0 + mu * mv * 4].reshape((mu, mv, 4)), pu, pv, layout[face, 8] != 0),
+                        u, v, work[1], work[2])
+    d = work[1]
+    a, b = (d[1, 0] * du, d[1, 1] * du, d[1, 2] * du), (d[2, 0] * dv, d[2, 1] * dv, d[2, 2] * dv)
+    extra = leaf[number, 7]
+    e = leaf[number, 4] * du * du / 2.0 + leaf[number, 5] * du * dv + leaf[number, 6] * dv * dv / 2.0 + extra
+    radius = np.sqrt(dot(a, a) + dot(b, b) + 2.0 * abs(dot(a, b))) + e
+    return row(d, 0, 0), a, b, (e, radius, extra)
 
 
-@compiled
-def aim(work: Work, motion: Array, middle: float, half: float) -> None:
-    """Frame of the cell in ``work`` seen from the tip on a part of its motion.
+@built_in
+def halved(cell: Cell, motion: Motion, half: float, branch: bool) -> int:
+    """What is to be halved of an open cell: u, v, the motion, or the branch of the tree.
 
     Parameters
     ----------
-    work : tuple
-    motion : (3, 3) array
-        Tip half-way, half of its way, axis.
-    middle, half : float
-        Part of the motion, -1 at its start and 1 at its end.
+    cell, motion : tuples
+    half : float
+        Half of the part of the motion.
+    branch : bool
+        Whether the cell is an inner node of the tree.
     """
-    cell, frame = work[0], work[1]
-    for k in range(3):
-        frame[0, k] = cell[k] - motion[0, k] - middle * motion[1, k]
-        frame[1, k] = motion[2, k]
-        frame[2, k] = cell[3 + k]
-        frame[3, k] = cell[6 + k]
-        frame[4, k] = -half * motion[1, k]
+    if half * half * dot(motion[1], motion[1]) > cell[3][1] ** 2:
+        return HALVE_MOTION
+    if branch:
+        return BRANCH
+    return HALVE_U if dot(cell[1], cell[1]) >= dot(cell[2], cell[2]) else HALVE_V
 
 
-@compiled
-def admit(data: ForestData, tool: ToolData, motion: Array, item: Array, tag: tuple[int, int, int], stack: Stack,
-          depth: int, work: Work, state: State) -> int:
+@built_in
+def part(data: ForestData, entry: tuple[int, int, int], item: Item, side: int) -> tuple[int, int, Item]:
+    """One of the two parts of a cell or of its motion.
+
+    Parameters
+    ----------
+    data : tuple
+        The forest.
+    entry : (int, int, int)
+        Node, kind, and what is halved.
+    item : tuple
+    side : int
+        0 or 1.
+
+    Returns
+    -------
+    node, kind : int
+        Node -1 where there is no such part.
+    item : tuple
+    """
+    _, link, leaf, start, _, _, _, _ = data
+    node, kind, across = entry
+    u, v, du, dv, middle, half = item
+    sign = 2.0 * side - 1.0
+    if across == START:
+        return node, kind, item
+    if across == BRANCH:
+        return link[node, side], kind, item
+    if across == HALVE_MOTION:
+        return node, kind, (u, v, du, dv, middle + sign * half / 2.0, half / 2.0)
+    if kind == TREE:
+        number = link[node, 3]
+        kind = CUT if start[number + 1] > start[number] else WHOLE
+        u, v, du, dv = leaf[number, 0], leaf[number, 1], leaf[number, 2], leaf[number, 3]
+    if across == HALVE_U:
+        return node, kind, (u + sign * du / 2.0, v, du / 2.0, dv, middle, half)
+    return node, kind, (u, v + sign * dv / 2.0, du, dv / 2.0, middle, half)
+
+
+@built_in
+def admit(data: ForestData, tool: ToolData, motion: Motion, tag: tuple[int, int, int, Item], stack: Stack, depth: int,
+          work: Work, state: State) -> int:
     """Look at one cell and put it on the stack if it is still open; the new depth of the stack.
 
     Parameters
     ----------
     data, tool, motion, stack, work, state
-        See `descend`.
-    item : (6,) array
-        Rectangle (below leaves) and part of the motion.
-    tag : (int, int, int)
-        Node, kind and open pieces.
+        See the aliases.
+    tag : (int, int, int, tuple)
+        Node, kind, open pieces, and the item.
     depth : int
     """
     shape, link, leaf, start, edges, _, _, _ = data
     items, tags = stack
-    node, kind, mask = tag
-    face, number = link[node, 2], link[node, 3]
-    real, count, extra = link[node, 4] == 1, 0, 0.0
+    node, kind, mask, (u, v, du, dv, middle, half) = tag
+    face, number, real, count = link[node, 2], link[node, 3], link[node, 4] == 1, 0
     if kind == TREE:
-        for k in range(11):
-            work[0][k] = shape[node, k]
-        if number >= 0:
-            extra = leaf[number, 7]
+        cell = tree_cell(shape, node)
     else:
         if kind == CUT:
-            count = trim_cell(edges[start[number]:start[number + 1]], leaf[number, 8:11], item[0:4], work[2])
+            count, u, v, du, dv = trim_cell(edges[start[number]:start[number + 1]], leaf[number, 8:11],
+                                            (u, v, du, dv), work[0])
             if count < 0:
                 return depth
             if count == 0:
                 kind = WHOLE
-        extra = enclose_cell(data, node, item, work)
+        cell = part_cell(data, node, (u, v, du, dv), work)
         real = kind == WHOLE
-    aim(work, motion, item[4], item[5])
-    left, key = examine(tool, work, state, (face, mask, real, count, extra))
-    if left == 0:
-        return depth
-    for k in range(6):
-        items[depth, k] = item[k]
-    items[depth, 6], items[depth, 7] = key, work[0][10]
-    items[depth, 8] = 0.0 if longer_first(work[0]) else 1.0
-    tags[depth, 0], tags[depth, 1], tags[depth, 2] = node, kind, left
-    return depth + 1
+    left, key = examine(tool, cell, motion, work[0], (face, mask, real, count, middle, half), state)
+    if left != 0:
+        items[depth, 0], items[depth, 1], items[depth, 2], items[depth, 3] = u, v, du, dv
+        items[depth, 4], items[depth, 5], items[depth, 6] = middle, half, key
+        tags[depth, 0], tags[depth, 1], tags[depth, 2] = node, kind, left
+        tags[depth, 3] = halved(cell, motion, half, kind == TREE and number < 0)
+        depth += 1
+    return depth
 
 
-@compiled
-def longer_first(cell: Array) -> bool:
-    """Whether a cell is longer along a than along b.
-
-    Parameters
-    ----------
-    cell : (11,) array
-    """
-    return (cell[3] ** 2 + cell[4] ** 2 + cell[5] ** 2 >= cell[6] ** 2 + cell[7] ** 2 + cell[8] ** 2)  # type: ignore[no-any-return]
-
-
-@compiled
+@built_in
 def decided(tool: ToolData, state: State, mask: int, key: float) -> bool:
     """Whether what was found since makes a waiting cell needless; its bound is then taken into account.
 
     Parameters
     ----------
-    tool, state
-        See `descend`.
+    tool, state : tuples
     mask : int
         Open pieces of the cell.
     key : float
         The lowest of their bounds.
     """
-    pieces, resolution = tool[0], tool[3][2]
-    values = state[0]
+    pieces, found, resolution = tool[0], state[0], tool[2][2]
     if resolution < 0.0:
         return False
     for p in range(pieces.shape[0]):
-        if mask & (1 << p) and key < values[0, int(pieces[p, 7])] - resolution:
+        if mask & (1 << p) and key < found[0, int(pieces[p, 7])] - resolution:
             return False
     give_up(tool, state, mask, key)
     return True
 
 
-@compiled
+@built_in
 def give_up(tool: ToolData, state: State, mask: int, key: float) -> None:
     """Take the bound of a cell into account without looking further into it.
 
     Parameters
     ----------
-    tool, state
-        See `descend`.
+    tool, state : tuples
     mask : int
         Open pieces of the cell.
     key : float
         The lowest of their bounds.
     """
-    pieces, values = tool[0], state[0]
+    pieces, found = tool[0], state[0]
     for p in range(pieces.shape[0]):
         if mask & (1 << p):
-            c = int(pieces[p, 7])
-            values[1, c] = min(values[1, c], key)
-            if tool[3][2] < 0.0:
-                state[2][3] = c
+            k = int(pieces[p, 7])
+            found[1, k] = min(found[1, k], key)
+            if tool[2][2] < 0.0:
+                state[1][3] = k
 
 
-@compiled
-def expand(data: ForestData, tool: ToolData, motion: Array, stack: Stack, depth: int, work: Work,
-           state: State) -> int:
-    """Replace the cell above the top of the stack by its parts; the new depth of the stack.
-
-    Parameters
-    ----------
-    data, tool, motion, stack, work, state
-        See `descend`.
-    depth : int
-        Where the cell stands.
-    """
-    _, link, leaf, start, _, _, _, _ = data
-    items, tags = stack
-    item = work[7]
-    for k in range(6):
-        item[k] = items[depth, k]
-    node, kind, mask, bottom = tags[depth, 0], tags[depth, 1], tags[depth, 2], depth
-    sweep = item[5] * np.sqrt(motion[1, 0] ** 2 + motion[1, 1] ** 2 + motion[1, 2] ** 2)
-    in_time = sweep > items[depth, 7]
-    in_tree = kind == TREE and link[node, 3] < 0 and not in_time
-    across, number = int(items[depth, 8]), link[node, 3]
-    if not in_tree and not in_time and kind == TREE:
-        kind = CUT if start[number + 1] > start[number] else WHOLE
-        for k in range(4):
-            item[k] = leaf[number, k]
-    u, v, du, dv, middle, half = item[0], item[1], item[2], item[3], item[4], item[5]
-    for side in range(2):
-        sign = 2.0 * side - 1.0
-        item[0], item[1], item[2], item[3], item[4], item[5] = u, v, du, dv, middle, half
-        child = node
-        if in_tree:
-            child = link[node, side]
-            if child < 0:
-                continue
-        elif in_time:
-            item[4], item[5] = middle + sign * half / 2.0, half / 2.0
-        elif across == 0:
-            item[0], item[2] = u + sign * du / 2.0, du / 2.0
-        else:
-            item[1], item[3] = v + sign * dv / 2.0, dv / 2.0
-        depth = admit(data, tool, motion, item, (child, kind, mask), stack, depth, work, state)
-    if depth == bottom + 2 and items[bottom, 6] < items[bottom + 1, 6]:
-        exchange(stack, bottom)
-    return depth
-
-
-@compiled
+@built_in
 def exchange(stack: Stack, low: int) -> None:
     """Exchange two neighbouring entries of the stack.
 
@@ -397,47 +290,49 @@ def exchange(stack: Stack, low: int) -> None:
         The lower of the two.
     """
     items, tags = stack
-    for k in range(9):
+    for k in range(7):
         items[low, k], items[low + 1, k] = items[low + 1, k], items[low, k]
-    for k in range(3):
+    for k in range(4):
         tags[low, k], tags[low + 1, k] = tags[low + 1, k], tags[low, k]
 
 
-@compiled
-def descend(data: ForestData, tool: ToolData, motion: Array, stack: Stack, work: Work, state: State) -> None:
+@built_in
+def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work: Work, state: State) -> None:
     """Bound the least distance of the tool's components on one motion, or decide whether they keep their limits.
 
     Parameters
     ----------
-    data : tuple
-        The forest.
-    tool : tuple
-        Pieces, limits, and what belongs to them.
-    motion : (3, 3) array
-        Tip half-way, half of its way (zero for a standing tool), axis.
-    stack, work : tuples
-        Scratch.
+    data, tool, motion, stack, work
+        See the aliases.
     state : tuple
         Starting values; receives the answer.
     """
-    tags = state[2]
-    item = work[7]
-    for k in range(5):
-        item[k] = 0.0
-    item[5] = 1.0
-    depth = admit(data, tool, motion, item, (0, TREE, (1 << tool[0].shape[0]) - 1), stack, 0, work, state)
-    while depth > 0 and tags[3] < 0:
+    items, tags = stack
+    items[0, 4], items[0, 5], items[0, 6] = 0.0, 1.0, -np.inf
+    tags[0, 0], tags[0, 1], tags[0, 2], tags[0, 3] = 0, TREE, (1 << tool[0].shape[0]) - 1, START
+    depth = 1
+    while depth > 0 and state[1][3] < 0:
         depth -= 1
-        mask, key = stack[1][depth, 2], stack[0][depth, 6]
-        if tags[4] > BUDGET:
+        bottom, mask, across, key = depth, tags[depth, 2], tags[depth, 3], items[depth, 6]
+        if state[1][4] > BUDGET:
             give_up(tool, state, mask, key)
-        elif not decided(tool, state, mask, key):
-            depth = expand(data, tool, motion, stack, depth, work, state)
+            continue
+        if decided(tool, state, mask, key):
+            continue
+        entry = (tags[bottom, 0], tags[bottom, 1], across)
+        whole = (items[bottom, 0], items[bottom, 1], items[bottom, 2], items[bottom, 3], items[bottom, 4],
+                 items[bottom, 5])
+        for side in range(1 if across == START else 2):
+            node, kind, item = part(data, entry, whole, side)
+            if node >= 0:
+                depth = admit(data, tool, motion, (node, kind, mask, item), stack, depth, work, state)
+        if depth == bottom + 2 and items[bottom, 6] < items[bottom + 1, 6]:
+            exchange(stack, bottom)
 
 
 @compiled
 def descend_many(data: ForestData, tool: ToolData, motions: Array, cutoff: Array,
-                 answer: tuple[Array, Indices, Array, Indices]) -> None:
+                 answer: tuple[Array, Indices]) -> None:
     """`descend` for many motions.
 
     Parameters
@@ -447,28 +342,26 @@ def descend_many(data: ForestData, tool: ToolData, motions: Array, cutoff: Array
     cutoff : (3,) array
         Values from which distances are not told apart, mm.
     answer : tuple of arrays
-        Receives lower bounds (n, 3), faces (n, 3), nearest points (n, 3, 3), and the component that is too near with
-        the number of cells looked at (n, 2).
+        Receives lower bounds and nearest points by component (n, 4, 3), and faces, the component that is too near and
+        the number of cells looked at (n, 5).
     """
-    lower, faces, points, verdict = answer
+    values, tags = answer
     start = data[3]
     longest = 0
     for k in range(start.shape[0] - 1):
         longest = max(longest, start[k + 1] - start[k])
-    work = (np.empty(11), np.empty((5, 3)), np.empty((2 * longest + 4, 2)), np.empty(3), np.empty(12),
-            np.empty((6, 3)), np.empty((6, 26)), np.empty(6))
-    stack = (np.empty((DEPTH, 9)), np.empty((DEPTH, 3), dtype=np.int64))
-    state = (np.empty((2, 3)), np.empty((3, 3)), np.empty(5, dtype=np.int64))
+    work = (np.empty((2 * longest + 4, 2)), np.empty((6, 3)), np.empty((6, 26)))
+    stack = (np.empty((DEPTH, 7)), np.empty((DEPTH, 4), dtype=np.int64))
+    state = (np.empty((5, 3)), np.empty(5, dtype=np.int64))
+    found, seen = state
     for i in range(motions.shape[0]):
-        state[0][0, :] = cutoff
-        state[0][1, :] = np.inf
-        state[1][:, :] = 0.0
-        state[2][:4] = -1
-        state[2][4] = 0
-        descend(data, tool, motions[i], stack, work, state)
+        found[:] = 0.0
+        found[0, :] = cutoff
+        found[1, :] = np.inf
+        seen[:4] = -1
+        seen[4] = 0
+        descend(data, tool, (row(motions[i], 0, 0), row(motions[i], 1, 0), row(motions[i], 2, 0)), stack, work, state)
         for c in range(3):
-            lower[i, c] = min(state[0][0, c], state[0][1, c])
-            faces[i, c] = state[2][c]
-            for k in range(3):
-                points[i, c, k] = state[1][c, k]
-        verdict[i, 0], verdict[i, 1] = state[2][3], state[2][4]
+            values[i, 0, c] = min(found[0, c], found[1, c])
+        values[i, 1:] = found[2:]
+        tags[i] = seen

@@ -129,13 +129,11 @@ def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]
     total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))
     for first in range(0, len(pieces), _PIECES_AT_ONCE):
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
-        found = Found(np.empty((n, 3)), np.empty((n, 3), dtype=np.int64), np.empty((n, 3, 3)),
-                      *np.empty((2, n), dtype=np.int64))
-        verdict = np.empty((n, 2), dtype=np.int64)
+        values, tags = np.empty((n, 4, 3)), np.empty((n, 5), dtype=np.int64)
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
-        descend_many(cells.data, (some, limits, limits.max(axis=0), shape), np.ascontiguousarray(moves),
-                     np.ascontiguousarray(cutoff), (found.lower, found.face, found.point, verdict))
-        total = _merged(total, found._replace(blocked=verdict[:, 0], looked=verdict[:, 1]))
+        descend_many(cells.data, (some, np.vstack([limits, limits.max(axis=0)]), shape), np.ascontiguousarray(moves),
+                     np.ascontiguousarray(cutoff), (values, tags))
+        total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), tags[:, 3], tags[:, 4]))
     return total
 
 

@@ -56,7 +56,7 @@ class Cells:
 
     @cached_property
     def data(self) -> ForestData:
-        """The tuple that kernels take: the trees, then knots, control points and layout of all surfaces."""
+        """The tuple that kernels take: the trees (with what is added to e), then knots, control points and their layout."""
         knots: list[Array] = []
         control: list[Array] = []
         layout = []
@@ -67,7 +67,8 @@ class Cells:
             knots += [ku, kv]
             control.append(net.reshape(-1))
             at_knot, at_number = at_knot + len(ku) + len(kv), at_number + net.size
-        return (self.shape, self.link, self.leaf, self.edge_start, self.edges, np.concatenate(knots),
+        extra = np.where(self.link[:, 3] >= 0, self.leaf[self.link[:, 3], 7], 0.0)
+        return (np.column_stack([self.shape, extra]), self.link, self.leaf, self.edge_start, self.edges, np.concatenate(knots),
                 np.concatenate(control), np.array(layout, dtype=np.int64))
 
 

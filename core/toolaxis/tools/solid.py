@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in, compiled
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.tools.profile import Profile
 
@@ -72,7 +72,7 @@ def solid_pieces(profile: Profile, outlines: dict[str, Array]) -> Array:
     return np.vstack([cutter_piece(profile)[None], *bodies])
 
 
-@compiled
+@built_in
 def piece_distance(piece: Array, rho: float, z: float) -> tuple[float, float, float, float]:
     """Signed distance of a meridian point from a convex piece, its slopes along rho and z, and its curvature.
 
