@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from toolaxis.job.run import plan as plan
     from toolaxis.orient.indexed import best_axis as best_axis
     from toolaxis.path.count import count as count
-    from toolaxis.path.count import estimate as estimate
+    from toolaxis.path.estimate import estimate as estimate
     from toolaxis.path.isoparametric import passes as passes
     from toolaxis.path.sampling import sample_points as sample_points
     from toolaxis.shape.face import Face as Face
@@ -37,7 +37,7 @@ __version__ = "0.1.0"
 _HOME = {
     "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
     "load": "cad.loading", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
-    "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.count",
+    "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.estimate",
     "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed", "plan": "job.run",
     "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors", "UnsupportedGeometry": "errors",
     "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",

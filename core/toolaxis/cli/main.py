@@ -59,7 +59,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--obstacles", metavar="FILE", action="append", default=[],
                      help="STEP file of bodies to keep clear of; may be repeated")
     sub.add_argument("--limits", default="", metavar="SPEC",
-                     help="axes that the machine can reach: cone:I,J,K,DEG or rotary:A=LOW..HIGH,C=LOW..HIGH")
+                     help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
+                          "rotary:tilt=-5..110,turn=-360..360, several joined by +")
     sub.add_argument("--method", default="sphere", choices=("sphere", "sectors"),
                      help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016")
     sub.add_argument("--objective", default="length", choices=("length", "passes"),

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.neighbourhood import neighbourhood
+from toolaxis.orient.setting import OTHER, grouped
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -60,7 +60,11 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
 
 def _task(plan: Plan, op: Operation) -> Task:
     assert op.path is not None
-    skin, surroundings = neighbourhood(plan.part, op.face, plan.obstacles)
+    around = grouped(op.face, plan.inputs.tolerance, part=plan.part,
+                     obstacles=[face for body in plan.obstacles for face in body.faces])
+    skin = tuple(face for group in around if group.role != OTHER for face in group.faces
+                 if (face.number, face.label) != (op.face.number, op.face.label))
+    surroundings = tuple(face for group in around if group.role == OTHER for face in group.faces)
     return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
                 plan.inputs.allowance, skin, surroundings, plan.tool.outlines, plan.inputs.tolerance,
                 min(1.0, op.orientation.unreached))

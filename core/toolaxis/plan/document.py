@@ -14,6 +14,7 @@ from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
@@ -115,9 +116,15 @@ def _frame_document(frame: WorkCoordinates | None) -> Document | None:
     return {name: _rows(getattr(frame, name)) for name in ("origin", "x", "y", "z", "shown_at")}
 
 
-def _operation_document(op: Operation, whole: Face | None, cl_file: str | None) -> Document:
-    same = whole is not None and len(whole.trims) == len(op.face.trims) and all(
-        map(np.array_equal, whole.trims, op.face.trims))
+def _smooth_piece(part: Part, number: int, label: str) -> Face:
+    """The face, or its piece between kinks that has a label."""
+    face = part.face(number)
+    return next((piece for piece in split_at_kinks(face) if piece.label == label), face)
+
+
+def _operation_document(op: Operation, part: Part, cl_file: str | None) -> Document:
+    whole = _smooth_piece(part, op.face.number, op.face.label)
+    same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "label": op.face.label,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
@@ -135,7 +142,6 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
     files : mapping
         "part": {"file", "sha256"}; "obstacles": list of the same; "operations": CL file name or None per operation.
     """
-    whole = {face.number: face for face in plan.part.faces}
     return {
         "schema": NAME, "version": VERSION,
         "units": {"length": "mm", "angle": "rad", "feedrate": "mm/min", "spindle": "rev/min"},
@@ -148,13 +154,13 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
         "length": plan.length,
-        "operations": [_operation_document(op, whole.get(op.face.number), name)
+        "operations": [_operation_document(op, plan.part, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
     }
 
 
 def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | None) -> Operation:
-    face = part.face(document["face"])
+    face = _smooth_piece(part, document["face"], document["label"])
     if document["region"] is not None:
         face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
     frame = document["work_coordinates"]

@@ -1,0 +1,54 @@
+"""`toolaxis inspect`: the faces of a part."""
+
+from argparse import Namespace
+from collections.abc import Callable
+from dataclasses import asdict
+from math import degrees
+from typing import Any
+
+from toolaxis.cad.loading import load
+from toolaxis.cli.output import print_json, print_table, say
+from toolaxis.job.survey import FaceSummary, survey
+from toolaxis.report.tables import number, table
+from toolaxis.shape.part import Part
+
+_COLUMNS = (("face", "right"), ("kind", "left"), ("area mm²", "right"), ("size mm (x y z)", "right"),
+            ("least radius mm\nconvex", "right"), ("least radius mm\nconcave", "right"),
+            ("normals ±°", "right"), ("notes", "left"))
+
+
+def run(given: Namespace, asked: Callable[[], bool]) -> int:
+    """Print the faces of a part.
+
+    Parameters
+    ----------
+    given : argparse.Namespace
+    asked : callable
+        Whether the user asked to stop.
+    """
+    part = load(given.part)
+    found = survey(part)
+    for warning in part.warnings:
+        say(f"toolaxis: warning: {warning}")
+    if given.json:
+        print_json(_document(part, found))
+    else:
+        title = f"{given.part}: {len(found)} faces, {len(part.sculptured)} sculptured, file in {part.unit}"
+        print_table(table(title, _COLUMNS, [_row(face) for face in found],
+                          "* planes, cylinders and cones are not sculptured"))
+    return 0
+
+
+def _document(part: Part, found: tuple[FaceSummary, ...]) -> dict[str, Any]:
+    return {"schema": "toolaxis.inspect", "version": 1, "source": part.source, "sha256": part.sha256,
+            "unit": part.unit, "units": {"length": "mm", "angle": "rad"}, "warnings": list(part.warnings),
+            "diagonal": part.diagonal, "faces": [asdict(face) for face in found]}
+
+
+def _row(face: FaceSummary) -> list[str]:
+    notes = [f"{face.holes} hole{'s' * (face.holes > 1)}"] if face.holes else []
+    notes += [f"{face.pieces} smooth pieces"] if face.pieces > 1 else []
+    notes += [f"within {face.tolerance:.1g} mm"] if face.tolerance > 0 else []
+    return [str(face.number), face.kind + ("" if face.sculptured else " *"), number(face.area, 2),
+            " x ".join(number(side, 2) for side in face.size), number(face.convex_radius, 2),
+            number(face.concave_radius, 2), number(degrees(face.spread), 1), ", ".join(notes)]

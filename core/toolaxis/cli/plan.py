@@ -1,0 +1,87 @@
+"""`toolaxis plan`: axes and passes for the faces of a part, written to a folder."""
+
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+
+from toolaxis.cli.display import shown_progress
+from toolaxis.cli.output import print_json, print_table, say
+from toolaxis.errors import InvalidInput
+from toolaxis.job.folder import PLAN, read_json, staged, write_plan
+from toolaxis.job.spec import Spec
+from toolaxis.machine.limits import parse_limits
+from toolaxis.plan.plan import Inputs, Plan
+
+_LATER = {"machine": "choosing a machine by name; give its axis range with --limits",
+          "regions": "dividing faces into regions", "orientations": "a number of orientations for all faces",
+          "strategy": "any other strategy than one fixed axis per face"}
+
+
+def run(given: Namespace, asked: Callable[[], bool]) -> int:
+    """Plan, write the folder, and print the operations.
+
+    Parameters
+    ----------
+    given : argparse.Namespace
+    asked : callable
+        Whether the user asked to stop.
+
+    Returns
+    -------
+    int
+        0 where every sub-surface has an axis, 1 where one has none, 130 where the user stopped it.
+    """
+    spec = _spec(given)
+    tool = spec.resolved_tool()
+    with staged(Path(given.out)) as stage:
+        from toolaxis.job.run import plan
+
+        with shown_progress(asked) as progress:
+            made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.inputs.limits or None, faces=spec.numbers,
+                        objective=spec.inputs.objective, allowance=spec.inputs.allowance,
+                        direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
+                        feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, progress=progress)
+            write_plan(made, stage.folder)
+            if not given.no_pictures and made.outcome != "cancelled":
+                from toolaxis.job.pictures import draw_plan
+
+                draw_plan(made, stage.folder, progress)
+        stage.publish()
+    return _told(made, given)
+
+
+def _spec(given: Namespace) -> Spec:
+    for name, what in _LATER.items():
+        value = getattr(given, name)
+        if value is not None and (name, value) != ("strategy", "indexed"):
+            raise InvalidInput(f"--{name} {value}: {what} is not part of this version; leave it out")
+    if given.limits:
+        parse_limits(given.limits)
+    inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
+                    given.feedrate, given.spindle)
+    spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
+                tuple(given.obstacles))
+    _ = spec.numbers
+    return spec
+
+
+def _told(made: Plan, given: Namespace) -> int:
+    """Print what was made and turn its outcome into the exit code."""
+    for warning in made.part.warnings:
+        say(f"toolaxis: warning: {warning}")
+    if given.json:
+        print_json(read_json(Path(given.out) / PLAN))
+    else:
+        from toolaxis.report.tables import plan_table
+
+        print_table(plan_table(made))
+    for op in made.operations:
+        if not op.done:
+            for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):
+                say(f"toolaxis: face {op.face.label}: {reason}")
+    say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
+    say(f"toolaxis: {len(made.operations)} operations in {given.out}")
+    if made.outcome == "cancelled":
+        say("toolaxis: stopped before all faces were done; plan.json holds those that were")
+        return 130
+    return 0 if made.outcome == "complete" else 1

@@ -1,0 +1,145 @@
+"""Pictures of a plan and of its verdict, written as PNG files beside it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.strip import strip_width
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import unit
+from toolaxis.orient.normals import smallest_cap
+from toolaxis.path.count import count
+from toolaxis.path.estimate import estimate
+from toolaxis.path.isoparametric import layout
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.report.hemisphere import hemisphere_picture
+from toolaxis.report.plots import WidthStudy, map_picture, operation_picture, study_picture, widths_picture
+from toolaxis.report.raster import mean_direction
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+from toolaxis.verify.verdict import Verdict
+
+Array = NDArray[np.float64]
+
+DPI = 110
+_ANGLES = 9
+_POINTS = 60
+
+
+def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
+    """Draw every operation: passes and tool, hemisphere, strip widths; and one study of estimate and count.
+
+    Parameters
+    ----------
+    plan : Plan
+    folder : Path
+    progress : Progress
+    """
+    done = [op for op in plan.operations if op.done]
+    largest = max(done, key=lambda op: op.face.area, default=None)
+    for index, op in enumerate(plan.operations):
+        progress.report("pictures", index, len(plan.operations))
+        if op.orientation.map is not None:
+            hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), _marks(op),
+                               op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
+        if op.done:
+            operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
+            _draw_widths(plan, op, folder)
+        if op is largest:
+            _draw_study(plan, op, folder)
+
+
+def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress = NO_PROGRESS) -> None:
+    """Draw the scallop and gouge maps of every operation.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : Verdict
+    folder : Path
+    progress : Progress
+    """
+    axes = {op.name: op.orientation.axis for op in plan.operations}
+    for index, found in enumerate(verdict.operations):
+        progress.report("pictures", index, len(verdict.operations))
+        axis = axes[found.name]
+        assert axis is not None
+        targets = found.maps[:len(found.faces)]
+        map_picture(targets, found.scallop_limit, found.gouge_allowed, found.name,
+                    axis).savefig(folder / f"{found.name}-verdict.png", dpi=DPI)
+
+
+def _mean_normal(face: Face) -> Array:
+    return mean_direction(face.normal(face.grid(24, 24)))
+
+
+def _marks(op: Operation) -> Mapping[str, ArrayLike]:
+    marks: dict[str, ArrayLike] = {}
+    if op.orientation.axis is not None:
+        marks["chosen"] = op.orientation.axis
+    lobes = [lobe.axis for lobe in op.orientation.lobes if lobe.axis is not None]
+    if lobes:
+        marks["other lobes"] = np.array(lobes)
+    marks["mean normal"] = _mean_normal(op.face)
+    return marks
+
+
+def _draw_widths(plan: Plan, op: Operation, folder: Path) -> None:
+    axis, feed = op.orientation.axis, op.orientation.feed
+    assert axis is not None
+    placed = layout(op.face, plan.tool, axis, plan.inputs.scallop, feed, allowance=plan.inputs.allowance)
+    lines = []
+    for low, high, step in placed.pieces:
+        uv = placed.chart.uv(np.linspace(low, high, _POINTS), np.full(_POINTS, step))
+        width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
+        lines.append((op.face.evaluate(uv).point, width))
+    widths_picture(lines, (op.face, plan.tool), op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
+
+
+def _draw_study(plan: Plan, op: Operation, folder: Path) -> None:
+    assert op.orientation.axis is not None
+    study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed)
+    if len(study.angle) > 1:
+        study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png", dpi=DPI)
+
+
+def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str,
+                angles: int = _ANGLES) -> WidthStudy:
+    """Estimate, count and passes made for axes in the plane of the mean normal and a given axis.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    axis : (3,) array_like
+    scallop : float
+        mm
+    feed : str
+    angles : int
+        How many axes; from 3 degrees outside the cone of normals to 75 degrees from its middle.
+
+    Returns
+    -------
+    WidthStudy
+        Without the axes that leave no strip somewhere.
+    """
+    normals = face.normal(np.concatenate([face.grid(24, 24), *face.outline]))
+    middle, spread, _ = smallest_cap(normals)
+    chosen = float(np.arccos(np.clip(middle @ unit(axis), -1, 1)))
+    across = unit(np.asarray(axis) - (middle @ np.asarray(axis)) * middle)
+    low = spread + np.radians(3.0) if tool.flat_radius > 0 else 0.0
+    found = []
+    for angle in np.linspace(low, max(low + np.radians(5.0), min(np.radians(75.0), np.pi / 2 - spread)), angles):
+        turned = np.cos(angle) * middle + np.sin(angle) * across
+        try:
+            made = layout(face, tool, turned, scallop, feed).used
+            found.append((angle, 1 / float(np.asarray(estimate(face, tool, turned, scallop, feed))),
+                          1 / count(face, tool, turned, scallop, feed), 1 / made))
+        except InvalidInput:  # no strip somewhere: the axis cannot machine this face
+            continue
+    table = np.array(found).reshape(-1, 4)
+    return WidthStudy(table[:, 0], table[:, 1], table[:, 2], table[:, 3], chosen)

@@ -1,0 +1,173 @@
+"""The main job: from a part and a tool to operations, each with its axis, passes and work coordinate system."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cad.loading import load
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.job.spec import chosen_faces
+from toolaxis.job.toolfile import load_tool
+from toolaxis.machine.limits import AxisLimits, parse_limits
+from toolaxis.machine.setup import WorkCoordinates, work_coordinates
+from toolaxis.orient.indexed import best_axis
+from toolaxis.path.isoparametric import passes
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import split_at_kinks
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+
+def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
+         faces: Sequence[int] | str | None = None, regions: None = None, orientations: None = None,
+         objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
+         obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
+         tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
+         progress: Progress = NO_PROGRESS) -> Plan:
+    """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
+
+    Parameters
+    ----------
+    part : Part or anything that `toolaxis.load` takes
+    tool : Tool or str
+        A tool, or its short form, file or name.
+    scallop : float
+        Greatest scallop height, mm.
+    machine : AxisLimits or str, optional
+        Limits of the axis, or their short form ("cone:0,0,1,45").
+    faces : sequence of int, "all" or text such as "3,5-8", optional
+        The sculptured faces unless given.
+    regions, orientations : None
+        Dividing faces and sharing axes are not part of this version.
+    objective : str
+        "length" or "passes".
+    strategy : str
+        "indexed": one fixed axis for each sub-surface.
+    allowance : float
+        Stock left on the faces, mm.
+    direction : str
+        "zigzag", "climb" or "conventional".
+    obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
+        Further bodies to keep clear of.
+    method : str
+        "sphere" or "sectors".
+    feedrate, spindle : float
+        mm/min and rev/min, for the CL files.
+    tolerance : Tolerance, optional
+    datum : (3,) sequence of float
+        Origin of the work coordinate systems, mm.
+    progress : Progress
+
+    Returns
+    -------
+    Plan
+        Its outcome is "complete", "incomplete" (a sub-surface has no axis; its reasons say why) or "cancelled"
+        (operations done so far).
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+    """
+    _refuse_later(regions=regions, orientations=orientations, strategy=None if strategy == "indexed" else strategy)
+    limits = parse_limits(machine) if isinstance(machine, str) and machine else machine or None
+    inputs = Inputs(float(scallop), float(allowance), method, objective, direction,
+                    machine if isinstance(machine, str) else "" if limits is None else repr(limits),
+                    float(feedrate), float(spindle), tolerance or Tolerance())
+    cutter = load_tool(tool) if isinstance(tool, str) else tool
+    inputs.check_tool(cutter)
+    loaded = load(part)
+    bodies = tuple(load(body) for body in _listed(obstacles))
+    targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]  # type: ignore[arg-type]
+    job = _Job(loaded, cutter, inputs, limits, bodies, np.asarray(datum, dtype=float))  # type: ignore[arg-type]
+    return job.carried_out(targets, progress)
+
+
+def _refuse_later(**given: Any) -> None:
+    for name, value in given.items():
+        if value is not None:
+            raise InvalidInput(f"{name} {value!r} is not part of this version: every face gets one fixed axis of its "
+                               f"own; leave {name} out")
+
+
+def _listed(obstacles: Any) -> list[Any]:
+    if obstacles is None:
+        return []
+    if isinstance(obstacles, list | tuple) and not all(isinstance(item, Face) for item in obstacles):
+        return list(obstacles)
+    return [obstacles] if obstacles else []
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """One plan in the making."""
+
+    part: Part
+    tool: Tool
+    inputs: Inputs
+    limits: AxisLimits | None
+    bodies: tuple[Part, ...]
+    datum: Array
+
+    def carried_out(self, targets: Sequence[Face], progress: Progress) -> Plan:
+        done: list[Operation] = []
+        outcome = "complete"
+        try:
+            for index, face in enumerate(targets):
+                done.append(self._operation(face, index, len(targets), progress))
+        except Cancelled:
+            outcome = "cancelled"
+        if outcome == "complete" and not all(op.done for op in done):
+            outcome = "incomplete"
+        return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome)
+
+    def _operation(self, face: Face, index: int, count: int, progress: Progress) -> Operation:
+        stage = f"face {face.label} ({index + 1} of {count})"
+        inner = Progress(lambda what, done, total: progress.report(f"{stage}: {what}", done, total), progress.cancelled)
+        inner.report("search for the axis", 0, 1)
+        found = self._searched(face, inner)
+        if found.outcome == "cancelled":
+            raise Cancelled("cancelled by the user")
+        if found.axis is None:
+            return Operation(index + 1, face, found)
+        inner.report("passes", 0, 1)
+        path = self._traced(face, found, inner)
+        return Operation(index + 1, face, found, path, self._frame(face, found))
+
+    def _searched(self, face: Face, progress: Progress) -> Orientation:
+        return best_axis(face, self.tool, self.inputs.scallop, machine=self.limits, obstacles=self._obstacles,
+                         method=self.inputs.method, objective=self.inputs.objective, part=self.part,
+                         allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, progress=progress)
+
+    @property
+    def _obstacles(self) -> tuple[Face, ...]:
+        return tuple(face for body in self.bodies for face in body.faces)
+
+    def _traced(self, face: Face, found: Orientation, progress: Progress) -> Any:
+        return passes(face, self.tool, found.axis, self.inputs.scallop, found.feed, direction=self.inputs.direction,
+                      allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, box=self._box,
+                      progress=progress)
+
+    @property
+    def _box(self) -> Array:
+        boxes = np.array([self.part.box, *(body.box for body in self.bodies)])
+        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+    def _frame(self, face: Face, found: Orientation) -> WorkCoordinates:
+        d = face.evaluate(face.grid(16, 16))
+        feeds = d.su if found.feed == "u" else d.sv
+        middle = d.point[int(np.argmin(np.linalg.norm(d.point - d.point.mean(axis=0), axis=1)))]
+        assert found.axis is not None
+        return work_coordinates(found.axis, feeds, self.datum, middle)
+
+

@@ -1,0 +1,116 @@
+"""What a job is asked for in words: face lists, tools, holders and limits, resolved and checked."""
+
+from dataclasses import dataclass
+
+from toolaxis.errors import InvalidInput
+from toolaxis.job.toolfile import load_holder, load_tool
+from toolaxis.plan.plan import Inputs
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tools.assembly import Tool
+
+Numbers = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A planning job as the command's user writes it; lengths in mm, angles in degrees.
+
+    Attributes
+    ----------
+    part : str
+        Path of a STEP file.
+    tool : str
+        Short form, file, or name from the library.
+    inputs : Inputs
+    faces : str
+        "3,5-8", "all", or empty for the sculptured faces.
+    holder : str
+        File or rows "r,z;r,z"; empty for the tool file's own, or none.
+    stickout : float or None
+    obstacles : tuple of str
+        Paths of STEP files.
+    """
+
+    part: str
+    tool: str
+    inputs: Inputs
+    faces: str = ""
+    holder: str = ""
+    stickout: float | None = None
+    obstacles: tuple[str, ...] = ()
+
+    def resolved_tool(self) -> Tool:
+        """The tool with its holder.
+
+        Raises
+        ------
+        InvalidInput
+            When tool, holder and stick-out do not make one, or the scallop is not below the cutter's radius.
+        """
+        body = load_holder(self.holder) if self.holder else {}
+        if self.stickout is not None:
+            body["stickout"] = self.stickout
+        tool = load_tool(self.tool, **body)
+        self.inputs.check_tool(tool)
+        return tool
+
+    @property
+    def numbers(self) -> Numbers | str | None:
+        """The face list as `toolaxis.plan` takes it."""
+        return parse_faces(self.faces) if self.faces else None
+
+
+def parse_faces(text: str) -> Numbers | str:
+    """Face numbers from their short form.
+
+    Parameters
+    ----------
+    text : str
+        "3,5-8" or "all".
+
+    Raises
+    ------
+    InvalidInput
+        When the text is not of that form.
+    """
+    if text.strip().lower() == "all":
+        return "all"
+    numbers: list[int] = []
+    for piece in text.split(","):
+        low, dash, high = piece.strip().partition("-")
+        if not low.isdigit() or (dash and not high.isdigit()) or (dash and int(high) < int(low)):
+            raise InvalidInput(f"faces {text!r} is not understood at {piece!r}: write 3,5-8 or all")
+        if int(high or low) > 10**6:
+            raise InvalidInput(f"face {high or low} is out of range: see toolaxis inspect for the part's faces")
+        numbers += range(int(low), int(high or low) + 1)
+    return tuple(dict.fromkeys(numbers))
+
+
+def chosen_faces(part: Part, faces: Numbers | list[int] | str | None) -> tuple[Face, ...]:
+    """The faces to machine.
+
+    Parameters
+    ----------
+    part : Part
+    faces : sequence of int, "all", a text such as "3,5-8", or None
+        None stands for the faces that were picked when the part was loaded, else for the sculptured ones.
+
+    Raises
+    ------
+    InvalidInput
+        When a number is out of range, or there is no sculptured face.
+    """
+    if isinstance(faces, str):
+        faces = parse_faces(faces)
+    if faces == "all":
+        return part.faces
+    if faces is None:
+        found = tuple(part.face(number) for number in part.selected) or part.sculptured
+        if not found:
+            raise InvalidInput(f"none of the part's {len(part.faces)} faces is sculptured (all are planes, cylinders "
+                               "or cones): choose faces by number, or all")
+        return found
+    if not faces:
+        raise InvalidInput("the list of faces is empty: choose at least one face, or all")
+    return tuple(part.face(int(number)) for number in dict.fromkeys(faces))  # type: ignore[arg-type]

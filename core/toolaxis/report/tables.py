@@ -1,0 +1,113 @@
+"""Tables for the terminal: the faces of a part, the operations of a plan, the verdict."""
+
+from collections.abc import Mapping, Sequence
+from math import inf, isfinite
+from typing import TypeAlias
+
+import numpy as np
+from rich.table import Table
+
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.verify.axes import Clearance
+from toolaxis.verify.verdict import OperationVerdict, Verdict
+
+Column: TypeAlias = tuple[str, str]
+
+_COLUMNS: tuple[Column, ...] = (
+    ("sub-\nsurface", "right"), ("axis", "left"), ("feed", "left"), ("passes", "right"), ("strip width\nmm", "right"),
+    ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
+
+
+def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> Table:
+    """A table of text.
+
+    Parameters
+    ----------
+    title : str
+    columns : sequence of (heading, "left" or "right")
+    rows : sequence of sequence of str
+    caption : str
+        Stands below.
+    """
+    made = Table(title=title, title_justify="left", caption=caption or None, caption_justify="left")
+    for heading, side in columns:
+        made.add_column(heading, justify="right" if side == "right" else "left", no_wrap=True)
+    for row in rows:
+        made.add_row(*row)
+    return made
+
+
+def number(value: float | None, digits: int) -> str:
+    """A number for a table: a dash for none, "far" where nothing is near.
+
+    Parameters
+    ----------
+    value : float or None
+    digits : int
+        After the point.
+    """
+    if value is None:
+        return "-"
+    return f"{value:.{digits}f}" if isfinite(value) else "far" if value == inf else "-"
+
+
+def _axis(op: Operation) -> str:
+    axis = op.orientation.axis
+    return "-" if axis is None else " ".join(f"{component:+.4f}" for component in np.asarray(axis) + 0.0)
+
+
+def _clearances(found: Mapping[str, float]) -> str:
+    return " / ".join(number(found.get(name), 2) for name in ("cutter", "shank", "holder"))
+
+
+def _operation_row(op: Operation) -> list[str]:
+    found = op.orientation
+    if not op.done:
+        return [op.face.label, found.outcome, *["-"] * 6]
+    return [op.face.label, _axis(op), found.feed, str(found.passes), number(found.average_strip_width, 3),
+            number(found.length, 1), number(found.gouge, 4), _clearances(found.clearance)]
+
+
+def plan_table(plan: Plan) -> Table:
+    """One row per sub-surface: axis, feed, passes, average strip width, cutting length, gouge and clearance.
+
+    Parameters
+    ----------
+    plan : Plan
+        Gouge is an upper bound, clearance a lower one.
+    """
+    rows = [[*_operation_row(op), op.orientation.outcome] for op in plan.operations]
+    title = f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, cutting length {plan.length:.1f} mm"
+    return table(title, [*_COLUMNS, ("outcome", "left")], rows)
+
+
+def _measured(found: Mapping[str, Clearance | str]) -> str:
+    def one(name: str) -> str:
+        room = found.get(name)
+        return number(room.distance, 2) if isinstance(room, Clearance) else "-"
+
+    return " / ".join(one(name) for name in ("cutter", "shank", "holder"))
+
+
+def _verdict_row(op: Operation, found: OperationVerdict | None) -> list[str]:
+    row = _operation_row(op)
+    if found is None:
+        return [*row, "-", "-", "NO AXIS"]
+    row[6:8] = [number(found.gouge_max, 4), _measured(found.clearance)]
+    return [*row, number(found.scallop_max, 4), f"{100 * found.share_within:.2f}", "pass" if found.passed else "FAIL"]
+
+
+def verdict_table(plan: Plan, verdict: Verdict) -> Table:
+    """One row per sub-surface: what was planned, and gouge, clearance and scallop as material removal measured them.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : Verdict
+    """
+    judged = {op.name: op for op in verdict.operations}
+    rows = [_verdict_row(op, judged.get(op.name)) for op in plan.operations]
+    columns = [*_COLUMNS, ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"), ("verdict", "left")]
+    return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, measured by material removal",
+                 columns, rows)
