@@ -37,7 +37,8 @@ def row(last, lean=0.0, count=30):
 @pytest.mark.parametrize("gap", [0.005, -0.005, 0.6, 12.0])
 def test_holder_beside_a_wall(gap):
     found = clearance(row(-5.0 - gap), ("holder", frustum_solids(HOLDER, "holder")), (FLOOR, WALL))
-    assert found.distance == pytest.approx(gap, abs=1e-6)
+    assert found.distance == pytest.approx(gap, abs=1e-6 if gap < 1 else found.uncertainty)
+    assert found.uncertainty <= max(5e-4, 1e-3 * gap)
     assert found.motion == 29
     assert found.point[0] == pytest.approx(20)
     assert 60 <= found.point[2] <= 80

@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
 Pieces: TypeAlias = tuple[Array, Array, Array, Array]
 
-#: Side of the cells at the start, and the error of the distance at which the search ends, mm.
-CELL, RESOLUTION = 0.7, 5e-4
+#: Side of the cells at the start, mm; error at which the search ends, mm, or as a share of the distance.
+CELL, RESOLUTION, SHARE = 3.0, 5e-4, 1e-3
 
-#: Cells that are looked at more closely in one round, the closest first; rounds.
-_BEAM, _ROUNDS = 4_000, 12
+#: Once cells are smaller than FINE, mm, only so many are split again, the closest first; most rounds.
+FINE, _BEAM, _ROUNDS = 0.5, 4_000, 12
 
 #: Distances above this are not measured, mm.
 FAR = 100.0
@@ -148,7 +148,7 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
 
     Points all over the faces and their borders are measured against the swept solids; around the nearest ones the
     points are made denser.  At a distance d, points of spacing e miss the nearest place of a smooth face by about
-    e^2 / d, of any face by e; the search ends where the lesser of both is `RESOLUTION`.
+    e^2 / d, of any face by e; the search ends where the lesser of both is `RESOLUTION`, or `SHARE` of d.
 
     Parameters
     ----------
@@ -176,12 +176,12 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
         return nothing
     search, cells = _Search(solids, motions), face_cells(faces, CELL)
     best, found, error = FAR, None, 0.0
-    few = cells.rows(np.arange(0, len(cells), 64))
+    few = cells.rows(np.arange(0, len(cells), 16))
     value, _ = search.distances(few, best, 0.0)
     best = float(value[few.on_face].min(initial=FAR))
     for turn in range(_ROUNDS):
         progress.report(f"{name} clearance", turn, _ROUNDS)
-        margin = 2 * float(cells.radius.max())
+        margin = float(cells.radius.max())
         value, by = search.distances(cells, best, margin)
         here = np.where(cells.on_face, value, np.inf)
         i = int(np.argmin(here))
@@ -191,9 +191,10 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
         near = np.flatnonzero((value - cells.radius <= best) & (by >= 0))
         radius = float(cells.radius[near].max(initial=0.0))
         error = min(radius, radius**2 / max(best, RESOLUTION))
-        if not len(near) or error <= RESOLUTION:
+        if not len(near) or error <= max(RESOLUTION, SHARE * best):
             break
-        near = near[np.argsort(value[near], kind="stable")[:_BEAM]]
+        if radius < FINE:
+            near = near[np.argsort(value[near], kind="stable")[:_BEAM]]
         cells = split(faces, cells.rows(np.sort(near)))
     if found is None:
         return nothing

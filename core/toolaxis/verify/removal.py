@@ -16,15 +16,16 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.blocks import balls, curve_order
-from toolaxis.verify.motions import Motions, grouped, motions_from_cl
+from toolaxis.verify.motions import GROUP, Motions, grouped, motions_from_cl
 from toolaxis.verify.removal_numpy import remove_numpy
 from toolaxis.verify.solids import cutter_solid, meridian, reach_of
-from toolaxis.verify.sweep import first_entry, moment, never_inside
+from toolaxis.verify.sweep import LOOK, first_entry, moment
 
 Array = NDArray[np.float64]
 Counts: TypeAlias = NDArray[np.int64]
 Pieces: TypeAlias = tuple[Array, Array, Array, Array]
 Found: TypeAlias = tuple[Array, Array, Counts, Counts]
+Tables: TypeAlias = tuple[Array, Counts, Array, NDArray[np.bool_], Counts]
 
 #: Bound of the rounding and root-finding errors of a height, mm.
 NUMERICAL = 1e-6
@@ -56,17 +57,15 @@ class Remains:
 
 
 @compiled
-def _meet(solid: Array, motion: Pieces, which: tuple[int, bool, int], ray: Array, out: Found, i: int) -> None:
-    """Let motion which[0] (cutting or not, arriving at which[2]) act on ray i."""
+def _meet(solid: Array, motion: Pieces, which: tuple[int, bool, int], ray: Array, out: Found,
+          place: tuple[int, float]) -> None:
+    """Let motion which[0] (cutting or not, arriving at which[2]) act on ray place[0], outside until t = place[1]."""
     k, cutting, arrival = which
+    i, start = place
     remaining, gouge, cut_by, gouged_by = out
-    level = -gouge[i]
-    if cutting and remaining[i] > 0.0:
-        level = min(remaining[i], ray[i, 7])
+    level = _level(ray, out, i, cutting)
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
-    if never_inside(solid, motion, k, line, (-ray[i, 6], level)):
-        return
-    entry = first_entry(solid, motion, k, line, (-ray[i, 6], level))
+    entry = first_entry(solid, motion, k, line, (start, level))
     if -entry > gouge[i]:
         gouge[i] = -entry
         gouged_by[i] = arrival
@@ -76,6 +75,52 @@ def _meet(solid: Array, motion: Pieces, which: tuple[int, bool, int], ray: Array
         if entry < remaining[i]:
             remaining[i] = entry
             cut_by[i] = arrival
+
+
+@compiled
+def _level(ray: Array, out: Found, i: int, cutting: bool) -> float:
+    """Height below which a motion would change ray i."""
+    if cutting and out[0][i] > 0.0:
+        return float(min(out[0][i], ray[i, 7]))
+    return float(-out[1][i])
+
+
+@compiled
+def _turns(motion: Pieces, k: int) -> bool:
+    turn = motion[3]
+    return bool(turn[k, 0] != 0.0 or turn[k, 1] != 0.0 or turn[k, 2] != 0.0)
+
+
+@compiled
+def _meet_group(solid: Array, motion: Pieces, tables: Tables, ray: Array, out: Found,
+                near: tuple[Counts, int, Array, int]) -> None:
+    """Let the motions near[0][:near[1]] act on ray near[3]: the closest first, then those it does not rule out.
+
+    One look at the middle of each motion, at height t, tells that the solid's function over the whole motion and ray
+    is at least rest + along (t' - t); that rules most of them out, and bounds the root of the others from below.
+    """
+    which, count, look, i = near
+    cutting, arrival = tables[3], tables[4]
+    line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
+    best, first = np.inf, -1
+    for n in range(count):
+        level = _level(ray, out, i, cutting[which[n]])
+        value, slope, along = moment(solid, motion, (which[n], 0.5), line, level)
+        look[n, 0], look[n, 1], look[n, 2] = value - 0.5 * abs(slope) - LOOK, along, level
+        if value < best:
+            best, first = value, n
+    for turn in range(-1, count):
+        n = first if turn < 0 else turn
+        if turn == first:
+            continue
+        level = _level(ray, out, i, cutting[which[n]])
+        rest, along = look[n, 0] + look[n, 1] * (level - look[n, 2]), look[n, 1]
+        start = -ray[i, 6]
+        if rest > (along * (level - start) if along > 0.0 else 0.0):
+            continue
+        if along < 0.0 and not _turns(motion, which[n]):
+            start = max(start, level - rest / along)
+        _meet(solid, motion, (which[n], cutting[which[n]], arrival[which[n]]), ray, out, (i, start))
 
 
 @compiled
@@ -90,28 +135,33 @@ def _bounds(solid: Array, groups: Array, ball: Array, reach: float, bound: Array
 
 
 @compiled
-def _remove_block(solid: Array, motion: Pieces, tables: tuple[Array, Counts, Array, NDArray[np.bool_], Counts],
+def _remove_block(solid: Array, motion: Pieces, tables: Tables,
                   ball: Array, ray: Array, rows: tuple[int, int], out: Found) -> None:
     """Let all motions act on one block of rays, nearest groups first."""
-    groups, first, slack, cutting, arrival = tables
+    groups, first, slack, _, _ = tables
     bound = np.empty(groups.shape[0])
     _bounds(solid, groups, ball, np.sqrt(solid[5] ** 2 + max(solid[0] + solid[1], solid[6]) ** 2), bound)
     centre = (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0)
+    which, look = np.empty(GROUP, dtype=np.int64), np.empty((GROUP, 3))
     for g in np.argsort(bound):
         lever = 0.0
         for i in range(rows[0], rows[1]):
             lever = max(lever, ray[i, 6], min(out[0][i], ray[i, 7]))
         if bound[g] > lever:
             break
+        count = 0
         for k in range(first[g], first[g + 1]):
             value, _, _ = moment(solid, motion, (k, 0.5), centre, 0.0)
             if value - slack[k] <= ball[3] + lever:
-                for i in range(rows[0], rows[1]):
-                    _meet(solid, motion, (k, cutting[k], arrival[k]), ray, out, i)
+                which[count] = k
+                count += 1
+        if count:
+            for i in range(rows[0], rows[1]):
+                _meet_group(solid, motion, tables, ray, out, (which, count, look, i))
 
 
 @compiled
-def _remove(solid: Array, motion: Pieces, tables: tuple[Array, Counts, Array, NDArray[np.bool_], Counts],
+def _remove(solid: Array, motion: Pieces, tables: Tables,
             rays: tuple[Array, Array, Counts], out: Found, part: tuple[int, int]) -> None:
     ray, ball, first = rays
     for b in range(part[0], part[1]):

@@ -113,14 +113,3 @@ def first_entry(solid: Array, motion: Motion, k: int, ray: Ray, span: tuple[floa
         if t > span[1]:
             return np.inf
     return t
-
-
-@compiled
-def never_inside(solid: Array, motion: Motion, k: int, ray: Ray, span: tuple[float, float]) -> bool:
-    """Whether one look at the middle of motion k shows that the ray's span stays outside the swept solid."""
-    value, slope, along = moment(solid, motion, (k, 0.5), ray, span[1])
-    rest = value - 0.5 * abs(slope)
-    if along > 0.0:
-        rest -= along * (span[1] - span[0])
-    return rest > LOOK
-
