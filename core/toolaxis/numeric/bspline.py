@@ -244,8 +244,8 @@ def _extend(data: SurfaceData, first: tuple[int, int], beyond: tuple[float, floa
         out[0, c] += du * su + dv * sv + du * dv * suv
         out[1, c] = su + dv * suv
         out[2, c] = sv + du * suv
-        out[3, c] = out[3, c] + dv * suuv if du == 0.0 else 0.0
-        out[5, c] = out[5, c] + du * suvv if dv == 0.0 else 0.0
+        out[3, c] = out[3, c] + dv * suuv if du == 0.0 else 0.0 * du
+        out[5, c] = out[5, c] + du * suvv if dv == 0.0 else 0.0 * dv
 
 
 @compiled
@@ -379,5 +379,5 @@ def _quotient(h: NDArray[Any]) -> tuple[Array, Array, Array]:
 def _extend_numpy(out: Array, suuv: Array, suvv: Array, beyond: Array) -> Array:
     du, dv = beyond[:, :1], beyond[:, 1:]
     s, su, sv, suu, suv, svv = (out[:, k] for k in range(6))
-    return np.stack([s + du * su + dv * sv + du * dv * suv, su + dv * suv, sv + du * suv,
-                     np.where(du != 0, 0.0, suu + dv * suuv), suv, np.where(dv != 0, 0.0, svv + du * suvv)], axis=1)
+    suu_on, svv_on = np.where(du != 0, 0.0 * du, suu + dv * suuv), np.where(dv != 0, 0.0 * dv, svv + du * suvv)
+    return np.stack([s + du * su + dv * sv + du * dv * suv, su + dv * suv, sv + du * suv, suu_on, suv, svv_on], axis=1)

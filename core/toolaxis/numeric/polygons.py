@@ -133,7 +133,8 @@ def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
     Parameters and result as there.
     """
     odd, on = np.zeros((2, len(points)), dtype=bool)
-    x, y = np.asarray(points, dtype=float).T
+    finite = np.isfinite(points).all(axis=1)
+    x, y = np.where(finite[:, None], points, 0.0).T
     for x0, y0, x1, y1 in table.edges:
         touched = (y >= min(y0, y1)) & (y <= max(y0, y1))
         if y0 == y1:
@@ -142,7 +143,7 @@ def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
         beyond = x0 + (x1 - x0) * (y - y0) / (y1 - y0) - x
         on |= touched & (np.abs(beyond) <= table.border)
         odd ^= (beyond > 0) & ((y0 > y) != (y1 > y))
-    return odd | on
+    return np.asarray((odd | on) & finite)
 
 
 def chords(loops: tuple[Array, ...], y: float) -> Array:

@@ -1,0 +1,75 @@
+"""Compiling: the switch, the notice, and code kept on disk that must not outlive its sources."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CORE = Path(__file__).resolve().parents[2] / "core"
+
+
+def run(script: str, folder: Path, **environment: str) -> str:
+    settings = {"PYTHONPATH": os.pathsep.join([str(CORE), str(folder)]), "NUMBA_CACHE_DIR": str(folder / "kept")}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False,
+                          env={**os.environ, **settings, **environment})
+    assert done.returncode == 0, done.stderr
+    return done.stdout + done.stderr
+
+
+def test_without_numba_the_twins_run(tmp_path: Path) -> None:
+    script = """
+import sys, numpy as np
+from toolaxis.numeric import bspline, compiled
+from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+assert compiled.available == ("numba" in sys.modules) == (sys.argv[-1] == "with")
+face = Face(Sphere(20.0, (0.0, 1.5), (-1.0, 1.0)).nurbs(), (np.array([[0.1, -0.5], [1.2, -0.5], [0.7, 0.8]]),))
+uv = face.grid(9, 9)
+work, out = np.empty(bspline.WORK_SHAPE), np.empty((6, 3))
+bspline.surface_derivatives(face.surface.data, *uv[0], out, work)
+assert np.abs(out - bspline.surface_derivatives_many(face.surface.data, uv[:1])[0]).max() < 1e-10
+assert np.abs(np.linalg.norm(nearest(face, [[30.0, 10.0, 0.0]]).point, axis=1) - 20).max() < 1e-9
+print("fine", round(face.area, 6))
+"""
+    without = run(script, tmp_path, TOOLAXIS_NUMBA="0")
+    assert "fine" in without and without == run("import sys; sys.argv.append('with')\n" + script, tmp_path)
+
+
+def test_a_broken_numba_gives_one_notice(tmp_path: Path) -> None:
+    (tmp_path / "numba.py").write_text("raise SystemError('made for another numpy')")
+    path = os.pathsep.join([str(tmp_path), str(CORE)])
+    done = subprocess.run([sys.executable, "-c", "from toolaxis.numeric import bspline, polygons, compiled\n"
+                           "assert not compiled.available"], capture_output=True, text=True, timeout=60, check=False,
+                          env={**os.environ, "PYTHONPATH": path})
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("numba cannot be used (made for another numpy): slower numpy code runs instead") == 1
+
+
+def test_without_compilation_kernels_are_plain_functions(tmp_path: Path) -> None:
+    script = "from toolaxis.numeric.bspline import find_span as f; import numpy as np; print(f(np.arange(6.0), 1, 2.5))"
+    assert run(script, tmp_path, NUMBA_DISABLE_JIT="1").strip() == "2"
+
+
+def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
+    pytest.importorskip("numba")
+    inner = "from toolaxis.numeric.compiled import compiled\n\n\n@compiled\ndef inner(x):\n    return x + {}\n"
+    (tmp_path / "outer_kernel.py").write_text("from inner_kernel import inner\nfrom toolaxis.numeric.compiled import "
+                                              "compiled\n\n\n@compiled\ndef outer(x):\n    return inner(x)\n")
+    script = "from outer_kernel import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
+    source, answers = tmp_path / "inner_kernel.py", []
+    for term in ("1.0", None, "20.0"):
+        if term:
+            source.write_text(inner.format(term))
+        answers.append(run(script, tmp_path).split())
+    assert [float(answer) for answer, _ in answers] == [2.0, 2.0, 21.0]
+    assert [hits for _, hits in answers] == ["0", "1", "0"]
+
+
+def test_nothing_else_imports_numba() -> None:
+    importing = re.compile(r"^\s*(import|from) numba\b", re.MULTILINE)
+    guilty = [str(path.relative_to(CORE)) for path in CORE.rglob("*.py") if importing.search(path.read_text())]
+    assert guilty == ["toolaxis/numeric/compiled.py"]
