@@ -4,9 +4,9 @@ The signed distance phi to a convex piece is a convex function of the point, so 
 phi(x) >= phi(y) + g (x - y) for all x.  Over a cell {q + s a + t b + d, with s and t in [-1, 1] and d no longer than e}
 the right side is least at a corner: a bound that holds between all points.  A straight motion of the tip adds a third
 direction c, since only places relative to the tip count.  The bound is taken at the centre, from the plane of the cell
-itself, and at the point of the cell that looks nearest; near a minimum its error falls as the square of the cell's size.
+itself, and at the point that looks nearest; near a minimum its error falls as the square of the cell's size.
 
-Vectors are tuples of numbers here: they stay in registers, while every array that is handed on costs a reference count.
+Vectors are tuples of numbers here: they stay in registers.
 """
 
 from typing import TypeAlias

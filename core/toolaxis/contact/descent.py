@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.contact.bounds import Triple, bound_over_cell, bound_over_region, dot, look, row
 from toolaxis.contact.trimming import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.compiled import borrowed, built_in, compiled
 from toolaxis.shape.cells import ForestData
 
 Array = NDArray[np.float64]
@@ -330,37 +330,52 @@ def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work
             exchange(stack, bottom)
 
 
+def scratch(data: ForestData) -> tuple[Array, Array, Array, Array, Indices, Array, Indices]:
+    """Arrays in which `descend_many` works.
+
+    Parameters
+    ----------
+    data : tuple
+        The forest.
+    """
+    longest = int(np.diff(data[3]).max(initial=0))
+    return (np.empty((2 * longest + 4, 2)), np.empty((6, 3)), np.empty((6, 26)), np.empty((DEPTH, 7)),
+            np.empty((DEPTH, 4), dtype=np.int64), np.empty((5, 3)), np.empty(5, dtype=np.int64))
+
+
 @compiled
-def descend_many(data: ForestData, tool: ToolData, motions: Array, cutoff: Array,
+def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array],
+                 room: tuple[Array, Array, Array, Array, Indices, Array, Indices],
                  answer: tuple[Array, Indices]) -> None:
     """`descend` for many motions.
 
     Parameters
     ----------
     data, tool : tuples
-    motions : (n, 3, 3) array
-    cutoff : (3,) array
-        Values from which distances are not told apart, mm.
+    asked : tuple of arrays
+        Motions (n, 3, 3), and by component the value from which distances are not told apart, mm.
+    room : tuple of arrays
+        From `scratch`.
     answer : tuple of arrays
         Receives lower bounds and nearest points by component (n, 4, 3), and faces, the component that is too near and
         the number of cells looked at (n, 5).
     """
     values, tags = answer
-    start = data[3]
-    longest = 0
-    for k in range(start.shape[0] - 1):
-        longest = max(longest, start[k + 1] - start[k])
-    work = (np.empty((2 * longest + 4, 2)), np.empty((6, 3)), np.empty((6, 26)))
-    stack = (np.empty((DEPTH, 7)), np.empty((DEPTH, 4), dtype=np.int64))
-    state = (np.empty((5, 3)), np.empty(5, dtype=np.int64))
-    found, seen = state
+    motions, cutoff = asked
+    forest = (borrowed(data[0]), borrowed(data[1]), borrowed(data[2]), borrowed(data[3]), borrowed(data[4]),
+              borrowed(data[5]), borrowed(data[6]), borrowed(data[7]))
+    cutter = (borrowed(tool[0]), borrowed(tool[1]), tool[2])
+    work, stack = (borrowed(room[0]), borrowed(room[1]), borrowed(room[2])), (borrowed(room[3]), borrowed(room[4]))
+    found, seen = room[5], room[6]
+    state = (borrowed(found), borrowed(seen))
     for i in range(motions.shape[0]):
         found[:] = 0.0
         found[0, :] = cutoff
         found[1, :] = np.inf
         seen[:4] = -1
         seen[4] = 0
-        descend(data, tool, (row(motions[i], 0, 0), row(motions[i], 1, 0), row(motions[i], 2, 0)), stack, work, state)
+        motion = row(motions[i], 0, 0), row(motions[i], 1, 0), row(motions[i], 2, 0)
+        descend(forest, cutter, motion, stack, work, state)
         for c in range(3):
             values[i, 0, c] = min(found[0, c], found[1, c])
         values[i, 1:] = found[2:]

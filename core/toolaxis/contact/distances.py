@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.descent import descend_many
+from toolaxis.contact.descent import descend_many, scratch
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.shape.cells import Cells
@@ -131,9 +131,9 @@ def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
         values, tags = np.empty((n, 4, 3)), np.empty((n, 5), dtype=np.int64)
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
-        descend_many(cells.data, (some, np.vstack([limits, limits.max(axis=0)]), shape), np.ascontiguousarray(moves),
-                     np.ascontiguousarray(cutoff), (values, tags))
-        total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), tags[:, 3], tags[:, 4]))
+        descend_many(cells.data, (some, np.vstack([limits, limits.max(axis=0)]), shape),
+                     (np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)), scratch(cells.data), (values, tags))
+        total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), *tags[:, 3:].T))
     return total
 
 

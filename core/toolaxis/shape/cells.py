@@ -56,7 +56,7 @@ class Cells:
 
     @cached_property
     def data(self) -> ForestData:
-        """The tuple that kernels take: the trees (with what is added to e), then knots, control points and their layout."""
+        """The tuple that kernels take: the trees (what is added to e beside them), then the surfaces, all in a row."""
         knots: list[Array] = []
         control: list[Array] = []
         layout = []
@@ -68,8 +68,8 @@ class Cells:
             control.append(net.reshape(-1))
             at_knot, at_number = at_knot + len(ku) + len(kv), at_number + net.size
         extra = np.where(self.link[:, 3] >= 0, self.leaf[self.link[:, 3], 7], 0.0)
-        return (np.column_stack([self.shape, extra]), self.link, self.leaf, self.edge_start, self.edges, np.concatenate(knots),
-                np.concatenate(control), np.array(layout, dtype=np.int64))
+        return (np.column_stack([self.shape, extra]), self.link, self.leaf, self.edge_start, self.edges,
+                np.concatenate(knots), np.concatenate(control), np.array(layout, dtype=np.int64))
 
 
 _known: "WeakKeyDictionary[Face, dict[float, Cells]]" = WeakKeyDictionary()
