@@ -147,6 +147,15 @@ def test_twin_equals_kernel(monkeypatch):
     assert slow.distance == pytest.approx(fast.distance, abs=1e-8)
 
 
+def test_ample_room_is_measured_roughly_and_says_so():
+    solids = frustum_solids(HOLDER, "holder")
+    rough = clearance(row(-17.0), ("holder", solids), (WALL, FLOOR), enough=1.0)
+    assert rough.distance == pytest.approx(12.0, abs=rough.uncertainty)
+    assert 5e-4 < rough.uncertainty <= 0.6
+    near = clearance(row(-6.0), ("holder", solids), (WALL, FLOOR), enough=1.0)
+    assert near.distance == pytest.approx(1.0, abs=1e-3)
+
+
 def test_nothing_near_is_far():
     away = plane([500, 0, 0], [1, 0, 0], [0, 1, 0])
     solids = frustum_solids(HOLDER, "holder")

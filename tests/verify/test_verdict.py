@@ -111,6 +111,18 @@ def test_gouge_into_the_skin_counts(plane_passes):
     assert found.share_within == 1.0
 
 
+@pytest.mark.parametrize("deep", [0.0, 0.1])
+def test_back_of_a_thin_wall_is_not_taken_for_a_gouge(plane_passes, deep):
+    back = rectangle([-8, -8, -0.4], [0, 16, 0], [16, 0, 0], 8)
+    good = task(plane_passes, skin=(back,))
+    good.tips[good.kind == 0, 2] -= deep
+    found = judge(good, spacing=0.5)
+    assert found.passed == (deep == 0.0)
+    if deep:
+        assert {place.face for place in found.worst_gouge} == {"7"}
+        assert found.gouge_max == pytest.approx(0.1, abs=1e-3)
+
+
 def test_holder_touch_and_cutter_too_near_are_named(plane_passes):
     good = task(plane_passes)
     wall = rectangle([-30, 18.0, 0], [60, 0, 0], [0, 0, 60], 3)

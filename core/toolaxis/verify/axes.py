@@ -30,6 +30,9 @@ FINE, _BEAM, _ROUNDS = 0.5, 4_000, 12
 #: Distances above this are not measured, mm.
 FAR = 100.0
 
+#: More than this many times what is enough need only be known to this share of itself.
+AMPLE, AMPLE_SHARE = 5.0, 0.05
+
 
 @dataclass(frozen=True)
 class Clearance:
@@ -142,8 +145,8 @@ class _Search:
         return result, which
 
 
-def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...],
-              progress: Progress = NO_PROGRESS) -> Clearance:
+def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
+              enough: float = np.inf, progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
     Points all over the faces and their borders are measured against the swept solids; around the nearest ones the
@@ -157,6 +160,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     component : (str, (k, 7) array)
         Name, and its solids as `solids.cutter_solid` and `solids.frustum_solids` give them.
     faces : tuple of Face
+    enough : float
+        Distance that is asked for, mm: where the tool stays `AMPLE` times as far away, the search ends early.
     progress : Progress
 
     Raises
@@ -191,7 +196,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
         near = np.flatnonzero((value - cells.radius <= best) & (by >= 0))
         radius = float(cells.radius[near].max(initial=0.0))
         error = min(radius, radius**2 / max(best, RESOLUTION))
-        if not len(near) or error <= max(RESOLUTION, SHARE * best):
+        ample = AMPLE_SHARE if best - error > AMPLE * enough else SHARE
+        if not len(near) or error <= max(RESOLUTION, ample * best):
             break
         if radius < FINE:
             near = near[np.argsort(value[near], kind="stable")[:_BEAM]]

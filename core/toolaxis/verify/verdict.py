@@ -16,8 +16,10 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, surface_map
+from toolaxis.verify.rays import Rays, face_rays
 from toolaxis.verify.removal import Remains, removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
+from toolaxis.verify.walls import wall_depth
 
 Array = NDArray[np.float64]
 
@@ -56,7 +58,7 @@ class Task:
     clean_up : float
         Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
     depth : float
-        How far below a face a gouge is followed, mm; less than the thickness of the part.
+        How far below a face a gouge is followed, mm; less where a wall of targets and skin is thinner.
     """
 
     name: str
@@ -203,15 +205,26 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
         As for `verify`.
     """
     cl = (task.tips, task.axes, task.kind)
+    cut = partial(removal, cl, task.profile, height=max(1.0, 20 * task.scallop), threads=threads, progress=progress)
     seen: list[float] = []
+    samples: list[Rays] = []
 
     def measure(point: Array, normal: Array) -> Remains:
-        left = cut((point + task.allowance * normal, normal))
+        foot = point + task.allowance * normal
+        left = cut((foot, normal), depth=task.depth)
         seen.append(left.uncertainty)
+        deep = np.flatnonzero(left.gouge > task.tolerance.gouge)
+        if len(deep):
+            if not samples:
+                samples.extend(face_rays(face) for face in (*task.targets, *task.skin))
+            limit = wall_depth(foot[deep], normal[deep], tuple(samples), task.depth)
+            thin = limit < task.depth
+            if thin.any():
+                rows = deep[thin]
+                less = cut((foot[rows], normal[rows]), depth=np.maximum(limit[thin], 1e-3))
+                left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
         return left
 
-    cut = partial(removal, cl, task.profile, depth=task.depth, height=max(1.0, 20 * task.scallop), threads=threads,
-                  progress=progress)
     targets = tuple(surface_map(face, measure, spacing) for face in task.targets)
     skin = tuple(surface_map(face, measure, spacing) for face in task.skin)
     rooms = _rooms(task, progress)
@@ -219,15 +232,22 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     return _summed(task, targets, skin, (rooms, uncertainty))
 
 
+def _needed(task: Task, name: str) -> float:
+    """Clearance that a component must keep, mm."""
+    needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance}
+    return needed.get(name, task.tolerance.holder_clearance)
+
+
 def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
     """Clearance of every component: the cutter from the surroundings, shank and holder from all faces."""
-    cl = (task.tips, task.axes, task.kind)
     everything = (*task.targets, *task.skin, *task.surroundings)
-    rooms: dict[str, Clearance | str] = {"cutter": NOT_CHECKED, "shank": NOT_CHECKED, "holder": NOT_CHECKED}
+    parts = {name: (frustum_solids(outline, name), everything) for name, outline in task.outlines.items()}
     if task.surroundings:
-        rooms["cutter"] = clearance(cl, ("cutter", cutter_solid(task.profile)), task.surroundings, progress)
-    for name, outline in task.outlines.items():
-        rooms[name] = clearance(cl, (name, frustum_solids(outline, name)), everything, progress)
+        parts["cutter"] = (cutter_solid(task.profile), task.surroundings)
+    rooms: dict[str, Clearance | str] = {"cutter": NOT_CHECKED, "shank": NOT_CHECKED, "holder": NOT_CHECKED}
+    for name, (solids, faces) in parts.items():
+        rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=_needed(task, name),
+                                progress=progress)
     return rooms
 
 
@@ -290,10 +310,8 @@ def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[
 
 def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
-    needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance,
-              "holder": task.tolerance.holder_clearance}
     for name, room in rooms.items():
-        need = needed.get(name, task.tolerance.holder_clearance)
+        need = _needed(task, name)
         if isinstance(room, Clearance) and room.distance < min(need, FAR):
             verb = f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
             reasons.append(f"{name} {verb} face {room.face} at {_at(room.point)}, needed {need} mm, on the "
