@@ -157,7 +157,7 @@ def plane_gap(frame: Frame, piece: Piece, along: tuple[float, float], outwards: 
         support = piece[0] * rise + (piece[4] + piece[1]) * climb + piece[1]
     else:
         support = piece[6] * rise + piece[5] * climb
-    return scale * dot(n, w) - abs(scale * dot(n, c)) - support
+    return float(scale * dot(n, w) - abs(scale * dot(n, c)) - support)
 
 
 @built_in

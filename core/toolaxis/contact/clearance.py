@@ -88,12 +88,14 @@ def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles:
     **Properties**: 1. never above the distance of any point of an obstacle; 2. moves with the part; 3. more obstacles
     never enlarge it.
     """
+    skin: tuple[Face, ...] = (face,)
     if isinstance(obstacles, Sequence):
-        faces, skin = tuple(obstacles), (face,)
+        faces = tuple(obstacles)
     else:
         faces, skin = tuple(obstacles.faces), (face, *obstacles.skin(face.number))
     around = Surroundings.of(faces, skin=skin)
-    return clearances(tool, place(face, tool, uv, axis, allowance), axis, around).distance.min(axis=1)
+    found = clearances(tool, place(face, tool, uv, axis, allowance), axis, around)
+    return np.asarray(found.distance.min(axis=1))
 
 
 def clearances(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings, cutoff: float = CUTOFF,
@@ -174,7 +176,7 @@ def _known(tool: Tool) -> tuple[str, ...]:
 
 def _distances(tool: Tool, moves: Array, around: Surroundings, how: tuple[float, float]) -> Clearances:
     n, (cutoff, resolution) = len(moves), how
-    asked = (around.required > IGNORED).any(axis=0)
+    asked = np.asarray((around.required > IGNORED).any(axis=0))
     checked = tuple(name for name in _known(tool) if asked[COMPONENTS.index(name)])
     if not around.faces or not n:
         return Clearances(np.full((n, 3), cutoff), np.full((n, 3), -1), np.zeros((n, 3, 3)), checked)
@@ -186,6 +188,6 @@ def _verdicts(tool: Tool, moves: Array, around: Surroundings) -> Verdicts:
     if not around.faces or not len(moves):
         return Verdicts(np.ones(len(moves), dtype=bool), np.full(len(moves), -1), np.full(len(moves), -1))
     found = judged(around.cells, tool, moves, around.required)
-    safe = found.blocked < 0
+    safe = np.asarray(found.blocked < 0)
     face = np.where(safe, -1, np.take_along_axis(found.face, np.maximum(found.blocked, 0)[:, None], axis=1)[:, 0])
     return Verdicts(safe, found.blocked, face)

@@ -123,7 +123,7 @@ def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
 def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> Found:
     limits, cutoff, resolution = ask
     pieces = solid_pieces(tool.profile, tool.outlines)
-    asked = (limits > -np.inf).any(axis=0)
+    asked = np.asarray((limits > -np.inf).any(axis=0))
     pieces = pieces[asked[pieces[:, 7].astype(int)]]
     n = len(moves)
     total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))

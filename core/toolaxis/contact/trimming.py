@@ -62,7 +62,7 @@ def inside_leaf(edges: Array, reference: Array, u: float, v: float) -> bool:
         u, v and whether that point is inside (1 or 0).
     u, v : float
     """
-    within = reference[2] > 0.5
+    within = bool(reference[2] > 0.5)
     x0, y0 = reference[0], reference[1]
     dx, dy = u - x0, v - y0
     for k in range(edges.shape[0]):

@@ -67,7 +67,7 @@ def bezier_nets(data: SurfaceData, breaks_u: Array, breaks_v: Array) -> Array:
     rows_v, first_v = bezier_rows(knots_v, pv, breaks_v[:-1], breaks_v[1:])
     half = np.einsum("iab,ibjc->iajc", rows_u, control[first_u[:, None] + np.arange(pu + 1)])
     net = half[:, :, first_v[:, None] + np.arange(pv + 1)]
-    return np.einsum("jab,icjbd->ijcad", rows_v, net)
+    return np.asarray(np.einsum("jab,icjbd->ijcad", rows_v, net))
 
 
 def _peak(net: Array) -> Array:
@@ -104,21 +104,15 @@ def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Arr
     least = w.min(axis=(2, 3, 4))
     reach = _peak(a / w)
 
-    def u(net: Array) -> Array:
-        return np.diff(net, axis=2) * (pu / hu)[..., None, None, None]
+    def slope(net: Array, order_u: int, order_v: int) -> Array:
+        for axis, order, degree, width in ((2, order_u, pu, hu), (3, order_v, pv, hv)):
+            for k in range(order):
+                net = np.diff(net, axis=axis) * ((degree - k) / width)[..., None, None, None]
+        return net
 
-    def v(net: Array) -> Array:
-        return np.diff(net, axis=3) * (pv / hv)[..., None, None, None]
-
-    def uu(net: Array) -> Array:
-        return np.diff(net, 2, axis=2) * (pu * (pu - 1) / hu**2)[..., None, None, None]
-
-    def vv(net: Array) -> Array:
-        return np.diff(net, 2, axis=3) * (pv * (pv - 1) / hv**2)[..., None, None, None]
-
-    wu, wv = _peak(u(w)), _peak(v(w))
-    su, sv = (_peak(u(a)) + wu * reach) / least, (_peak(v(a)) + wv * reach) / least
-    suu = (_peak(uu(a)) + 2 * wu * su + _peak(uu(w)) * reach) / least
-    suv = (_peak(v(u(a))) + wu * sv + wv * su + _peak(v(u(w))) * reach) / least
-    svv = (_peak(vv(a)) + 2 * wv * sv + _peak(vv(w)) * reach) / least
+    wu, wv = _peak(slope(w, 1, 0)), _peak(slope(w, 0, 1))
+    su, sv = (_peak(slope(a, 1, 0)) + wu * reach) / least, (_peak(slope(a, 0, 1)) + wv * reach) / least
+    suu = (_peak(slope(a, 2, 0)) + 2 * wu * su + _peak(slope(w, 2, 0)) * reach) / least
+    suv = (_peak(slope(a, 1, 1)) + wu * sv + wv * su + _peak(slope(w, 1, 1)) * reach) / least
+    svv = (_peak(slope(a, 0, 2)) + 2 * wv * sv + _peak(slope(w, 0, 2)) * reach) / least
     return np.stack([suu, suv, svv], axis=-1)

@@ -98,13 +98,15 @@ def _borrowed() -> Any:
     from numba.core import cgutils
     from numba.extending import intrinsic
 
+    null: Any = cgutils.get_null_value
+
     @intrinsic
     def borrow(context: Any, array: Any) -> Any:
         """The array without its owner."""
         def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             view = target.make_array(signature.args[0])(target, builder, value=arguments[0])
-            view.meminfo = cgutils.get_null_value(view.meminfo.type)
-            view.parent = cgutils.get_null_value(view.parent.type)
+            view.meminfo = null(view.meminfo.type)
+            view.parent = null(view.parent.type)
             return view._getvalue()
 
         return array(array), generate
@@ -113,6 +115,6 @@ def _borrowed() -> Any:
 
 
 borrowed = _borrowed()
-"""Inside kernels: a view of an array that nobody counts.  Handing an array to a built-in kernel costs an atomic count, up
-and down; handing on a borrowed one costs nothing.  The array itself must outlive the view: borrow only what the caller
+"""Inside kernels: a view of an array that nobody counts.  Handing an array to a built-in kernel costs an atomic count,
+up and down; handing on a borrowed one costs nothing.  The array must outlive the view: borrow only what the caller
 holds, since an array made in the kernel is freed after its own last use, whatever its views do."""

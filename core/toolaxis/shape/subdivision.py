@@ -94,10 +94,10 @@ def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
     """
     start, along = edges[:, :2], edges[:, 2:] - edges[:, :2]
     middle, half = (rect[:, 0::2] + rect[:, 1::2]) / 2, (rect[:, 1::2] - rect[:, 0::2]) / 2 * (1 - _MARGIN)
-    still = along == 0
+    still = np.asarray(along == 0)
     step = np.where(still, 1.0, along)
     first, second = (middle - half - start) / step, (middle + half - start) / step
-    outside = (still & (np.abs(start - middle) >= half)).any(axis=1)
+    outside = np.asarray((still & (np.abs(start - middle) >= half)).any(axis=1))
     enter = np.where(still, -np.inf, np.minimum(first, second)).max(axis=1).clip(0.0)
     leave = np.where(still, np.inf, np.maximum(first, second)).min(axis=1).clip(None, 1.0)
     ends = start[:, None] + np.stack([enter, leave], axis=1)[:, :, None] * along[:, None]
@@ -127,7 +127,7 @@ def _halved(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array
     owner, edge = owner[owner >= 0], edge[owner >= 0]
     both = _Level(base.reshape(-1, 4), rect.reshape(-1, 4), np.concatenate([rows, rows]),
                   np.concatenate([owner, owner + len(rows)]), np.concatenate([edge, edge]))
-    return both.chosen((both.half > 0).all(axis=1), both.rect)
+    return both.chosen(np.asarray((both.half > 0).all(axis=1)), both.rect)
 
 
 class _Builder:

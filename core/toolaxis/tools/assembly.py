@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.tools.profile import Profile
+from toolaxis.tools.solid import COMPONENTS, Distance, signed_distance, solid_pieces
 
 Array = NDArray[np.float64]
 
@@ -256,6 +257,29 @@ class Tool:
         if self.holder is not None and self.stickout is not None:
             found["holder"] = self.holder + np.array([0.0, self.stickout - self.holder[0, 1]])
         return found
+
+    def distance(self, points: ArrayLike, component: str | None = None) -> Distance:
+        """Exact signed distance of points from the whole rotating solid, or from one component.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            In the tool's frame: tip at the origin, axis along +z, mm.
+        component : str, optional
+            "cutter", "shank" or "holder"; their union unless given.
+
+        Raises
+        ------
+        InvalidInput
+            When the tool has no such component, or the points are not rows of three finite numbers.
+        """
+        pieces = solid_pieces(self.profile, self.outlines)
+        if component is None:
+            return signed_distance(pieces, points)
+        known = [name for name in COMPONENTS if name == "cutter" or name in self.outlines]
+        if component not in known:
+            raise InvalidInput(f"tool {self.name} has no {component!r}: it has {', '.join(known)}")
+        return signed_distance(pieces[pieces[:, 7] == COMPONENTS.index(component)], points)
 
     def _shank_line(self) -> Array | None:
         top, end = self.profile.top_radius, self.flute_length

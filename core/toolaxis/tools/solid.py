@@ -73,12 +73,12 @@ def solid_pieces(profile: Profile, outlines: dict[str, Array]) -> Array:
 
 
 @built_in
-def piece_distance(piece: Array, rho: float, z: float) -> tuple[float, float, float, float]:
+def piece_distance(piece: Array | tuple[float, ...], rho: float, z: float) -> tuple[float, float, float, float]:
     """Signed distance of a meridian point from a convex piece, its slopes along rho and z, and its curvature.
 
     Parameters
     ----------
-    piece : (8,) array
+    piece : (8,) array or tuple
     rho, z : float
         Distance from the axis and height, mm.
 
@@ -181,6 +181,7 @@ def _envelope(pieces: Array) -> tuple[Array, Array]:
             slope[i] - slope[steeper])
         heights.append(meet[(meet > start[i]) & (meet < thick[i, 5])])
     z = np.unique(np.concatenate(heights))
+    z = z[np.concatenate([[True], np.diff(z) > 1e-9 * (z[-1] - z[0])])]
     middle = (z[:-1] + z[1:]) / 2
     over = (middle[:, None] > start) & (middle[:, None] < thick[:, 5])
     radius = np.where(over, base + slope * (middle[:, None] - start), -1.0)
@@ -248,7 +249,8 @@ def signed_distance(pieces: Array, points: ArrayLike) -> Distance:
     rows = as_rows(points, 3, "points")
     rho, z = np.hypot(rows[:, 0], rows[:, 1]), rows[:, 2].copy()
     found = nearest_piece(pieces, rho, z)
-    within = found[:, 0] <= 0
+    thick = pieces[pieces[:, 5] > pieces[:, 4]]
+    within = nearest_piece(thick, rho, z)[:, 0] <= 0
     if within.any() and len(pieces) > 1:
         deep = _depth(pieces, rho[within], z[within])
         found[within, 0] = -deep[:, 0]
