@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placing import tips
-from toolaxis.contact.second_order import second_order_many_axes
+from toolaxis.contact.second_order import contact_forms, screen_numpy
+from toolaxis.contact.sizes import cutter_numbers
 from toolaxis.contact.strip import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.path.lean import lean_ratios, lean_table
 from toolaxis.path.material import Intervals, intervals
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -55,8 +57,19 @@ class Cut:
         if not 0 < self.scallop < self.tool.radius:
             raise InvalidInput(f"scallop height is {self.scallop} mm: it must be above zero and below the cutter "
                                f"radius {self.tool.radius} mm")
-        if not (np.isfinite(self.allowance) and self.allowance >= 0):
-            raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        if not (np.isfinite(self.allowance) and self.allowance >= -self.tool.corner_radius):
+            raise InvalidInput(f"allowance is {self.allowance} mm: it must be finite and not below minus the corner "
+                               f"radius {self.tool.corner_radius} mm")
+
+    @cached_property
+    def numbers(self) -> Array:
+        """Sizes of the cutter as kernels take them."""
+        return cutter_numbers(self.tool, self.scallop, self.allowance)
+
+    @cached_property
+    def leans(self) -> Array:
+        """Ratio of exact to second-order widths on a plane, see `lean_table`."""
+        return lean_table(self.tool, self.scallop)
 
 
 class Chart(Protocol):
@@ -85,7 +98,7 @@ class Chart(Protocol):
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
-        """Both half widths together to the second order, (n,), in the step parameter; 0 where the cutter gouges."""
+        """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
@@ -147,10 +160,11 @@ class IsoChart:
                                       cut.allowance))
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
-        """Both half widths together to the second order, (n,), in the step parameter; 0 where the cutter gouges."""
-        uv = self.uv(along, step)
-        half = second_order_many_axes(self.face, cut.tool, uv, cut.axis[None], cut.scallop, self.feed)
-        return np.asarray(2 * half[0])
+        """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
+        forms = contact_forms(self.face, self.uv(along, step), self.feed, True)
+        half = np.empty((1, len(forms)))
+        screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
+        return np.asarray(2 * half[0] * lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis))
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2).

@@ -95,7 +95,7 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     Count; inf where the axis leaves no strip somewhere.
     """
     scale = _Scale(chart, cut)
-    edges = _panels(chart)
+    edges = panels(chart)
     low, high = edges[:-1], edges[1:]
     done = np.zeros(2)
     for level in range(_ROUNDS):
@@ -113,8 +113,13 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     raise AssertionError("refinement must end")
 
 
-def _panels(chart: Chart) -> Array:
-    """Ends of the stretches of the step parameter in which the count is smooth, more or less."""
+def panels(chart: Chart) -> Array:
+    """Ends of the stretches of the step parameter in which the count is smooth, more or less, (m,).
+
+    Parameters
+    ----------
+    chart : Chart
+    """
     _, _, s0, s1 = chart.bounds
     turns = [s0, s1, *chart.breaks[1]]
     for loop in chart.loops:
@@ -224,7 +229,8 @@ def _candidates(points: RowPoints, line: Index, guess: Array) -> tuple[Array, In
     i, tiny = chosen[inner], np.finfo(float).tiny
     left, right = points.along[i] - points.along[i - 1], points.along[i + 1] - points.along[i]
     left, right = np.maximum(left, tiny), np.maximum(right, tiny)
-    slope_left, slope_right = (guess[i] - guess[i - 1]) / left, (guess[i + 1] - guess[i]) / right
+    square = guess**2  # nearly a parabola where the lean crosses the feed at a right angle
+    slope_left, slope_right = (square[i] - square[i - 1]) / left, (square[i + 1] - square[i]) / right
     bend = (slope_right - slope_left) / (left + right)
     slope = (slope_left * right + slope_right * left) / (left + right)
     shift = np.where(bend > 0, -slope / np.where(bend > 0, 2 * bend, 1.0), 0.0)

@@ -70,7 +70,7 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
     InvalidInput
         When the axis leaves no strip somewhere.
     """
-    across = lines(chart)
+    across = lines(chart, cut)
     column = columns(chart, across.along)
     if reach is not None:
         column = _reachable(chart, across.along, column, reach)

@@ -1,0 +1,79 @@
+"""How the exact strip width departs from the second-order one as the cutter leans: a table made on a plane.
+
+Near the normal a cutter's flat bottom, not its curvature, limits the strip.  On a plane the ratio of the two widths
+depends on the lean alone, so one table serves all contacts and axes of a tool and a scallop height.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.strip import step_widths
+from toolaxis.numeric.compiled import compiled
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+_LEANS, _TURNS = 25, 17
+_LEAST = 1e-3
+
+
+def lean_table(tool: Tool, scallop: float) -> Array:
+    """Ratio of the exact to the second-order strip width on a plane.
+
+    Parameters
+    ----------
+    tool : Tool
+    scallop : float
+        mm
+
+    Returns
+    -------
+    (25, 17) array over the square roots of the sine of the angle between axis and normal and of the cosine between
+    its lean and the feed, both even from 0 to 1; 1 where the contact is not on the cutter's bottom or arc.
+    """
+    size = 40 * tool.radius
+    corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
+    plane = Face.from_bspline(corners, (1, 1))
+    sine = np.maximum(np.linspace(0, 1, _LEANS) ** 2, _LEAST)
+    sine[-1] = 0.9999
+    s, c = (part.ravel() for part in np.meshgrid(sine, np.linspace(0, 1, _TURNS) ** 2, indexing="ij"))
+    k = np.sqrt(1 - c**2)
+    axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
+    exact = size * step_widths(plane, tool, np.full((len(s), 2), 0.5), axes, scallop).sum(axis=1)
+    second = 2 * np.sqrt(2 * scallop * (tool.corner_radius + tool.flat_radius * c**2 / s))
+    return np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
+
+
+@compiled
+def lean_ratio(table: Array, along: float, across: float) -> float:
+    """Ratio from the table for an axis with these components along and across the feed, by bilinear interpolation."""
+    square = along * along + across * across
+    if square <= 0.0:
+        return float(table[0, 0])
+    lean = np.sqrt(square)
+    x = np.sqrt(min(lean, 1.0)) * (table.shape[0] - 1)
+    y = np.sqrt(min(abs(along) / lean, 1.0)) * (table.shape[1] - 1)
+    i, j = min(int(x), table.shape[0] - 2), min(int(y), table.shape[1] - 2)
+    x, y = x - i, y - j
+    return float((table[i, j] * (1.0 - x) + table[i + 1, j] * x) * (1.0 - y)
+                 + (table[i, j + 1] * (1.0 - x) + table[i + 1, j + 1] * x) * y)
+
+
+def lean_ratios(table: Array, along: Array, across: Array) -> Array:
+    """Ratios for many components at once; the plain twin of `lean_ratio`.
+
+    Parameters
+    ----------
+    table : (k, m) array
+    along, across : array
+        Components of the unit axis along the feed and to its left.
+    """
+    lean = np.hypot(along, across)
+    x = np.sqrt(np.minimum(lean, 1.0)) * (table.shape[0] - 1)
+    cosine = np.abs(along) / np.where(lean > 0, lean, 1.0)
+    y = np.sqrt(np.minimum(cosine, 1.0)) * (table.shape[1] - 1)
+    i, j = (np.minimum(p.astype(int), n - 2) for p, n in ((x, table.shape[0]), (y, table.shape[1])))
+    x, y = x - i, y - j
+    return np.asarray((table[i, j] * (1 - x) + table[i + 1, j] * x) * (1 - y)
+                      + (table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x) * y)
