@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cad.loading import load
+from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.orient.indexed import best_axis
+from toolaxis.orient.indexed import task as search_task
 from toolaxis.path.isoparametric import passes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -88,7 +90,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     inputs.check_tool(cutter)
     loaded = load(part)
     bodies = tuple(load(body) for body in _listed(obstacles))
-    targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]  # type: ignore[arg-type]
+    targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
     job = _Job(loaded, cutter, inputs, limits, bodies, np.asarray(datum, dtype=float))  # type: ignore[arg-type]
     return job.carried_out(targets, progress)
 
@@ -145,23 +147,24 @@ class _Job:
         return Operation(index + 1, face, found, path, self._frame(face, found))
 
     def _searched(self, face: Face, progress: Progress) -> Orientation:
-        return best_axis(face, self.tool, self.inputs.scallop, machine=self.limits, obstacles=self._obstacles,
-                         method=self.inputs.method, objective=self.inputs.objective, part=self.part,
-                         allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, progress=progress)
+        return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
+                         self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
+                         tolerance=self.inputs.tolerance, progress=progress)
 
     @property
     def _obstacles(self) -> tuple[Face, ...]:
         return tuple(face for body in self.bodies for face in body.faces)
 
-    def _traced(self, face: Face, found: Orientation, progress: Progress) -> Any:
-        return passes(face, self.tool, found.axis, self.inputs.scallop, found.feed, direction=self.inputs.direction,
-                      allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, box=self._box,
-                      progress=progress)
-
-    @property
-    def _box(self) -> Array:
-        boxes = np.array([self.part.box, *(body.box for body in self.bodies)])
-        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+    def _traced(self, face: Face, found: Orientation, progress: Progress) -> ToolPath:
+        """The passes in the wanted direction; the search has proven the same contacts in zigzag."""
+        assert found.axis is not None
+        axis = found.axis
+        task = search_task(face, self.tool, self.inputs.scallop, self.limits, self._obstacles,
+                           objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
+                           tolerance=self.inputs.tolerance, progress=progress)
+        return passes(face, self.tool, axis, self.inputs.scallop, found.feed, direction=self.inputs.direction,
+                      allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, box=task.box,
+                      reach=lambda uv: task.feasibility.reach(uv, axis), progress=progress)
 
     def _frame(self, face: Face, found: Orientation) -> WorkCoordinates:
         d = face.evaluate(face.grid(16, 16))

@@ -1,5 +1,6 @@
 """What a job is asked for in words: face lists, tools, holders and limits, resolved and checked."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from toolaxis.errors import InvalidInput
@@ -87,7 +88,7 @@ def parse_faces(text: str) -> Numbers | str:
     return tuple(dict.fromkeys(numbers))
 
 
-def chosen_faces(part: Part, faces: Numbers | list[int] | str | None) -> tuple[Face, ...]:
+def chosen_faces(part: Part, faces: Sequence[int] | str | None) -> tuple[Face, ...]:
     """The faces to machine.
 
     Parameters
@@ -103,7 +104,7 @@ def chosen_faces(part: Part, faces: Numbers | list[int] | str | None) -> tuple[F
     """
     if isinstance(faces, str):
         faces = parse_faces(faces)
-    if faces == "all":
+    if isinstance(faces, str):
         return part.faces
     if faces is None:
         found = tuple(part.face(number) for number in part.selected) or part.sculptured
@@ -113,4 +114,4 @@ def chosen_faces(part: Part, faces: Numbers | list[int] | str | None) -> tuple[F
         return found
     if not faces:
         raise InvalidInput("the list of faces is empty: choose at least one face, or all")
-    return tuple(part.face(int(number)) for number in dict.fromkeys(faces))  # type: ignore[arg-type]
+    return tuple(part.face(int(number)) for number in dict.fromkeys(faces))

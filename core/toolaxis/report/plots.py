@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
@@ -173,8 +175,8 @@ def _standing(path: ToolPath) -> Array:
 
 
 def _legend(ax: Axes, areas: Mapping[str, tuple[float, float, float]], lines: Mapping[str, str]) -> None:
-    handles = [Patch(facecolor=colour, edgecolor="#555555", linewidth=0.5, label=name)
-               for name, colour in areas.items()]
+    handles: list[Artist] = [Patch(facecolor=colour, edgecolor="#555555", linewidth=0.5, label=name)
+                             for name, colour in areas.items()]
     handles += [Line2D([], [], color=colour, label=name) for name, colour in lines.items()]
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
 
@@ -233,9 +235,8 @@ def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, 
     picture = np.full(len(grid), np.nan)
     picture[np.isfinite(distance)] = value[facing][nearest[np.isfinite(distance)]]
     finite = np.where(np.isfinite(picture), picture, np.nan)
-    image = ax.imshow(finite.reshape(rows, columns), origin="lower", extent=seen.extent, cmap=colours,
-                      norm=Normalize(0.0, 1.1 * limit), interpolation="nearest")
-    image.cmap.set_over(VERMILION)
+    image = ax.imshow(finite.reshape(rows, columns), origin="lower", extent=seen.extent, interpolation="nearest",
+                      cmap=colormaps[colours].with_extremes(over=VERMILION), norm=Normalize(0.0, 1.1 * limit))
     lost = np.isinf(picture).reshape(rows, columns)
     if lost.any():
         ax.contourf(x, y, lost.astype(float), levels=[0.5, 1.5], colors=[GREY])

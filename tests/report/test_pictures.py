@@ -1,0 +1,157 @@
+"""Every picture is drawn from data without a display, and says what it shows."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.placing import tips
+from toolaxis.machine.setup import work_coordinates
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
+from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.report.hemisphere import equal_area, hemisphere_picture
+from toolaxis.report.plots import (
+    WidthStudy,
+    cutting_lines,
+    map_picture,
+    operation_picture,
+    study_picture,
+    widths_picture,
+)
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tools.assembly import Tool
+from toolaxis.verify.maps import SurfaceMap
+
+TOOL = Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)])
+AXIS = np.array([0.0, 0.28, 0.96])
+
+
+def surface() -> Face:
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij")
+    return Face.from_bspline(np.stack([x, y, 2 * np.sin(x / 12) + 0.01 * y**2], axis=-1))
+
+
+def planned() -> tuple[Plan, Operation]:
+    face = surface()
+    lines = [np.stack([np.linspace(0, 1, 20), np.full(20, v)], axis=1) for v in np.linspace(0, 1, 12)]
+    uv = np.concatenate(lines)
+    points, normals = face.evaluate(uv).point, face.normal(uv)
+    kind = np.tile([Motion.LINK, *[Motion.CUT] * 19], 12).astype(np.int8)
+    path = ToolPath(points, tips(points, normals, AXIS, TOOL), np.tile(AXIS, (240, 1)), normals, kind,
+                    np.arange(0, 241, 20))
+    found = Orientation(AXIS, "u", 12, 11.5, 480.0, 2.5, outcome="feasible")
+    frame = work_coordinates(AXIS, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
+    op = Operation(1, face, found, path, frame)
+    return Plan(Part.from_faces([face]), TOOL, Inputs(0.02), (op,), (), np.zeros(3), "complete"), op
+
+
+def colours_of(made: Figure, path: Path) -> np.ndarray:
+    from matplotlib.image import imread
+
+    made.savefig(path, dpi=60)
+    image = imread(path)[..., :3]
+    return np.unique((image.reshape(-1, 3) * 8).astype(int), axis=0)
+
+
+def test_operation_picture_shows_part_passes_and_tool(tmp_path: Path) -> None:
+    plan, op = planned()
+    made = operation_picture(plan, op)
+    titles = [ax.get_title() for ax in made.axes]
+    assert titles[0] == "op01-face1: 12 passes along u, cutting length 480 mm"
+    assert titles[1] == "torus:12x1, axis (+0.000, +0.280, +0.960)"
+    labels = [text.get_text() for ax in made.axes for text in ax.get_legend().get_texts()]
+    assert {"face", "contact line", "machined face", "cutter", "shank", "holder"} <= set(labels)
+    assert len(colours_of(made, tmp_path / "op.png")) > 20
+
+
+def test_cutting_lines_are_the_uninterrupted_cuts() -> None:
+    op = planned()[1]
+    assert op.path is not None
+    lines = cutting_lines(op.path)
+    assert len(lines) == 12 and all(len(line) == 19 for line in lines)
+
+
+@pytest.mark.parametrize("angle", [0.0, 10.0, 45.0, 90.0, 120.0])
+def test_equal_area_projection_keeps_areas(angle: float) -> None:
+    pole = np.array([0.48, -0.6, 0.64])
+    rng = np.random.default_rng(0)
+    axes = rng.normal(size=(200_000, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    radius = np.linalg.norm(equal_area(axes, pole), axis=1)
+    edge = np.sqrt(1 - np.cos(np.radians(angle)))
+    inside = float((axes @ pole >= np.cos(np.radians(angle))).mean())
+    assert float((radius <= edge).mean()) == pytest.approx(inside, abs=1e-5)
+    assert np.allclose(equal_area(pole, pole), 0.0)
+
+
+def example_map() -> AxisMap:
+    rng = np.random.default_rng(1)
+    axes = rng.normal(size=(300, 3))
+    axes[:, 2] = np.abs(axes[:, 2])
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    reason = np.where(axes[:, 2] > 0.6, 0, 1 + np.arange(300) % (len(REASONS) - 1)).astype(np.int8)
+    length = np.where(reason == 0, 500 / axes[:, 2], np.inf)
+    return AxisMap(axes, length / 40, length, reason, np.zeros(300))
+
+
+def test_hemisphere_names_axes_and_reasons(tmp_path: Path) -> None:
+    found = example_map()
+    made = hemisphere_picture(found, 1200.0, [0, 0, 1], {
+        "chosen": AXIS, "mean normal": [0, 0, 1], "Roman's rule": [0.6, 0, 0.8], "sectors [zhu2016]": [0, 0.6, 0.8],
+        "other lobes": np.array([[0.0, -0.6, 0.8]])}, "op01")
+    side = made.axes[0]
+    named = [text.get_text().replace("\n", " ") for legend in (*side.artists, side.get_legend())
+             for text in legend.get_texts()]
+    marks = {"chosen", "mean normal", "Roman's rule", "sectors [zhu2016]", "other lobes"}
+    assert set(REASONS[1:]) | marks <= set(named)
+    made.savefig(tmp_path / "axes.png", dpi=60)
+    made.canvas.draw()
+    for legend in (*side.artists, side.get_legend()):
+        box = legend.get_window_extent()
+        assert box.x0 >= 0 and box.y0 >= 0, "a legend is cut off"
+
+
+def test_hemisphere_without_a_free_axis(tmp_path: Path) -> None:
+    found = example_map()
+    none = AxisMap(found.axis, np.full(300, np.inf), np.full(300, np.inf), np.full(300, 4, dtype=np.int8), np.ones(300))
+    hemisphere_picture(none, 1200.0, [0, 0, 1], {"mean normal": [0, 0, 1]}, "op01").savefig(tmp_path / "a.png")
+
+
+def judged(remaining: float, gouge: float) -> SurfaceMap:
+    face = surface()
+    uv = face.grid(40, 30)
+    point = face.evaluate(uv).point
+    left = np.full(len(uv), 0.01)
+    left[100:140] = remaining
+    deep = np.zeros(len(uv))
+    deep[300] = gouge
+    none = np.full(len(uv), -1)
+    return SurfaceMap(face, uv, point, np.ones(len(uv)), np.zeros(len(uv), dtype=bool), left, deep, none, none, 1.0,
+                      None, None)
+
+
+def test_maps_show_what_is_beyond_the_limits(tmp_path: Path) -> None:
+    good = colours_of(map_picture([judged(0.015, 0.0)], 0.02, 0.002, "op01", AXIS), tmp_path / "good.png")
+    high = map_picture([judged(0.05, 0.004)], 0.02, 0.002, "op01", AXIS)
+    lost = map_picture([judged(np.inf, 0.0)], 0.02, 0.002, "op01", AXIS)
+    assert high.axes[1].get_title() == "op01: gouge, greatest 4.00 µm, allowed 2 µm"
+    assert len(colours_of(high, tmp_path / "high.png")) > 0 and len(good) > 0
+    assert [t.get_text() for t in lost.axes[0].get_legend().get_texts()] == ["above 1.1 times the limit", "not reached"]
+    assert [t.get_text() for t in high.axes[0].get_legend().get_texts()] == ["above 1.1 times the limit"]
+
+
+def test_study_and_widths(tmp_path: Path) -> None:
+    angle = np.linspace(0.3, 1.0, 5)
+    study_picture(WidthStudy(angle, angle * 1.01, angle, angle, 0.4), "op01").savefig(tmp_path / "study.png", dpi=50)
+    face = surface()
+    lines = []
+    for v in (0.2, 0.5, 0.8):
+        uv = np.stack([np.linspace(0, 1, 15), np.full(15, v)], axis=1)
+        lines.append((face.evaluate(uv).point, 2 + v * uv[:, 0]))
+    made = widths_picture(lines, (face, TOOL), "op01")
+    made.savefig(tmp_path / "widths.png", dpi=50)
+    assert made.axes[1].get_ylabel() == "strip width, mm"
