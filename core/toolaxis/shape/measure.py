@@ -55,11 +55,14 @@ def _cuts(knots: Array, extra: Array) -> Array:
 
 
 def _breaks(v0: float, v1: float, knots: Array, loops: tuple[Array, ...]) -> Array:
-    """Ends of the panels in v: closer towards the ends of the range, at knots, and at corners unless there are many."""
-    even = 0.5 * (v0 + v1) - 0.5 * (v1 - v0) * np.cos(np.linspace(0.0, np.pi, PANELS + 1))
+    """Ends of the panels in v: at knots, at corners unless there are many, and closer towards where a loop ends."""
+    ends = np.unique(np.clip([v for loop in loops for v in (loop[:, 1].min(), loop[:, 1].max())] + [v0, v1], v0, v1))
+    parts = []
+    for a, b in pairwise(ends.tolist()):
+        count = max(4, round(PANELS * (b - a) / (v1 - v0)))
+        parts.append(0.5 * (a + b) - 0.5 * (b - a) * np.cos(np.linspace(0.0, np.pi, count + 1)))
     corners = np.concatenate([loop[:, 1] for loop in loops])
-    ends = np.concatenate([[loop[:, 1].min(), loop[:, 1].max()] for loop in loops])
-    return _cuts(knots, np.unique(np.clip(np.concatenate([even, ends, corners if len(corners) <= 64 else []]), v0, v1)))
+    return _cuts(knots, np.unique(np.clip(np.concatenate([*parts, corners if len(corners) <= 64 else []]), v0, v1)))
 
 
 def _pieces(cuts: Array, low: float, high: float) -> list[tuple[float, float]]:
