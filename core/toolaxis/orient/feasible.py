@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import Found, bounded, motions
 from toolaxis.contact.placing import tips
 from toolaxis.machine.limits import AxisLimits
@@ -31,11 +30,9 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 FREE, LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER = range(8)
-COMPONENTS = ("cutter", "shank", "holder")
-
 #: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
 FINE, COARSE = 0.0003, 0.002
-_DENSE = 40
+_DENSE = 32
 
 
 class Verdicts(NamedTuple):
@@ -68,14 +65,18 @@ class Trouble(NamedTuple):
 
 
 class Witness(NamedTuple):
-    """The one place that decides against an axis: reason, amount (mm or rad), label of the face in the way ("" if
-    none), point (3,) at which it happens, uv (2,) of the contact."""
+    """The one place that decides against an axis.
+
+    reason : index into `REASONS`;  amount : by how much the limit is missed, mm or rad;  label : of the face in the
+    way;  point : (3,) where it happens;  uv : (2,) of the contact;  distance : its component's signed distance, mm.
+    """
 
     reason: int
     amount: float
-    label: str
-    point: Array
-    uv: Array
+    label: str = ""
+    point: Array = np.zeros(3)
+    uv: Array = np.zeros(2)
+    distance: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,7 +287,7 @@ class Feasibility:
         """
         t = unit(as_rows(axis, 3, "axis")[0])
         if self.limits is not None and not self.limits.allowed(t)[0]:
-            return Witness(LIMITS, float(self.limits.excess(t)[0]), "", np.zeros(3), np.zeros(2))
+            return Witness(LIMITS, float(self.limits.excess(t)[0]))
         spread = self.field.range_of_angles(t, self.least_angle, self.greatest_angle)
         for code, amount, uv in ((BACK, spread.high - self.greatest_angle, spread.greatest),
                                  (WANDERS, self.least_angle - spread.low, spread.least)):
@@ -320,9 +321,10 @@ class Feasibility:
         if not bad.any():
             return None
         i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
-        faces = self.groups[int(trouble.group[i])].faces
-        label = faces[int(trouble.face[i])].label if trouble.face[i] >= 0 else ""
-        return Witness(int(trouble.reason[i]), float(trouble.amount[i]), label, trouble.point[i], uv[i])
+        group, amount = self.groups[int(trouble.group[i])], float(trouble.amount[i])
+        label = group.faces[int(trouble.face[i])].label if trouble.face[i] >= 0 else ""
+        distance = float(group.required[max(int(trouble.reason[i]) - CUTTER, 0)]) - amount
+        return Witness(int(trouble.reason[i]), amount, label, trouble.point[i], uv[i], distance)
 
     def unreached(self, axis: ArrayLike) -> float:
         """Share of the area that is left to a clean-up tool, from the dense contacts.
@@ -355,48 +357,24 @@ class Feasibility:
         good[good] = self.trouble(t, some).reason == FREE
         return np.asarray(good)
 
-    def clearances(self, path: ToolPath, most: float = 20.0) -> tuple[float, dict[str, float]]:
-        """Gouge and clearances of a path, bounds that hold on every motion.
+    def room(self, axis: ArrayLike, most: float = 10.0) -> float:
+        """How much more clearance than required an axis leaves at the screening contacts, mm, at most `most`.
 
         Parameters
         ----------
-        path : ToolPath
+        axis : (3,) array_like
         most : float
-            Greater clearances are not told apart, mm.
-
-        Returns
-        -------
-        gouge : float
-            Upper bound, mm.
-        clearance : dict of str to float
-            Lower bound per component, mm; the cutter's is to what is not the machined skin nor meets it harmlessly.
+            mm
         """
-        moves, _ = path_motions(path)
-        known = {"cutter", *self.tool.outlines}
-        gouge = 0.0
-        clearance: dict[str, float] = {}
+        t, some, least = unit(as_rows(axis, 3, "axis")[0]), self.sparse, most
+        moves = motions(tips(some.point, some.normal, t, self.tool, self.allowance), t)
         for group in self.groups:
-            found = bounded(group.cells, self.tool, moves, np.full(3, most), FINE if group.role == SKIN else COARSE)
-            least = found.lower.min(axis=0)
-            if group.role == SKIN:
-                gouge = max(self.allowance - float(least[0]), 0.0)
-            for c, name in enumerate(COMPONENTS):
-                if name in known and (c > 0 or group.role == OTHER):
-                    clearance[name] = min(clearance.get(name, most), float(least[c]))
-        return gouge, clearance
-
-
-def path_motions(path: ToolPath) -> tuple[Array, NDArray[np.intp]]:
-    """Every motion of a path within its passes, (m, 3, 3), and the row at which each one arrives, (m,).
-
-    Parameters
-    ----------
-    path : ToolPath
-    """
-    arrives = np.arange(1, len(path.cl))
-    moves = np.stack([(path.cl[1:] + path.cl[:-1]) / 2, (path.cl[1:] - path.cl[:-1]) / 2,
-                      np.broadcast_to(path.axis[-1], path.cl[1:].shape)], axis=1)
-    return moves, arrives
+            if group.role != OTHER and not self.tool.outlines:
+                continue
+            left_out = None if group.role == OTHER else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
+            found = bounded(group.cells, self.tool, moves, group.required + most, 10 * COARSE, left_out)
+            least = min(least, float((found.lower - group.required).min()))
+        return least
 
 
 def _around(face: Face, count: int) -> Array:

@@ -106,10 +106,14 @@ class NormalField:
         return np.concatenate([self.face.grid(24, 24), *loops])
 
     @cached_property
+    def kept(self) -> Array:
+        """Those of `uv` at which there is a normal, (n, 2)."""
+        return np.asarray(self.uv[np.linalg.norm(self.face.normal(self.uv), axis=1) > 0.5])
+
+    @cached_property
     def samples(self) -> Array:
-        """Unit normals at `uv`, (n, 3); degenerate points are left out."""
-        n = self.face.normal(self.uv)
-        return np.asarray(n[np.linalg.norm(n, axis=1) > 0.5])
+        """Unit normals at `kept`, (n, 3)."""
+        return self.face.normal(self.kept)
 
     @cached_property
     def cap(self) -> Cap:

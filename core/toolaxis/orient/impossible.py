@@ -1,0 +1,60 @@
+"""Proofs that no axis at all can machine a face with a tool."""
+
+from math import degrees
+
+import numpy as np
+
+from toolaxis.contact.distances import bounded, motions
+from toolaxis.orient.feasible import FINE, Feasibility
+from toolaxis.orient.reasons import place
+from toolaxis.orient.setting import SKIN
+from toolaxis.tools.assembly import Tool
+
+
+def spread_too_wide(feasibility: Feasibility) -> str:
+    """Whether the normals spread too far for any axis to see them all; the sentence that says so, or "".
+
+    Parameters
+    ----------
+    feasibility : Feasibility
+
+    Notes
+    -----
+    Exact for the sampled normals, each of which is a contact that has to be made: an axis within the greatest angle of
+    all of them exists only if they fit into a cap of that radius.
+    """
+    cap, most = feasibility.field.cap, feasibility.greatest_angle
+    if cap.centre.any() and cap.radius <= most + 1e-9:
+        return ""
+    rim = feasibility.face.evaluate(feasibility.field.kept[cap.rim]).point
+    size = f"a cap of {degrees(cap.radius):.1f} deg" if cap.centre.any() else "more than a hemisphere"
+    return (f"the normals of face {feasibility.face.label} fill {size}, and no axis is within {degrees(most):.1f} deg "
+            f"of those at {', '.join(place(p) for p in rim)}")
+
+
+def corner_too_large(feasibility: Feasibility) -> str:
+    """Whether the corner's ball alone, which every cutter holds at its contact, gouges; the sentence, or "".
+
+    Parameters
+    ----------
+    feasibility : Feasibility
+
+    Notes
+    -----
+    Whatever the axis, the cutter contains the ball of the corner radius that touches the surface at the contact.
+    """
+    tool, skin = feasibility.tool, feasibility.groups[0]
+    radius, limit = tool.corner_radius, feasibility.tolerance.gouge
+    if radius <= 0 or skin.role != SKIN or tool.flute_length < 2 * radius:
+        return ""
+    some = feasibility.dense
+    centre = some.point + (radius + feasibility.allowance) * some.normal
+    ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
+    slack = max(face.tolerance for face in skin.faces) + 2 * FINE
+    found = bounded(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE)
+    depth = -found.lower[:, 0] - slack
+    i = int(np.argmax(depth))
+    if depth[i] <= limit:
+        return ""
+    return (f"a ball of the corner radius {radius:g} mm gouges face {feasibility.face.label} by {depth[i]:.3f} mm in "
+            f"the contact at {place(some.point[i])}, and every position of the cutter there contains it")

@@ -1,0 +1,311 @@
+"""The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.machine.limits import AllOf, AxisLimits, parse_limits
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.orient.feasible import Feasibility
+from toolaxis.orient.impossible import corner_too_large, spread_too_wide
+from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.proof import Proof, prove
+from toolaxis.orient.reasons import direction, sentence, tally, why_none
+from toolaxis.orient.sector import sectors
+from toolaxis.orient.setting import Group, Obstacles, grouped
+from toolaxis.orient.sphere import Candidate, repaired, search
+from toolaxis.orient.worth import FEEDS, Worth
+from toolaxis.path.isoparametric import passes
+from toolaxis.plan.orientation import Orientation
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+METHODS = {"sphere": search, "sectors": sectors}
+
+#: What the search keeps to itself of each clearance, mm, so that motions between its contacts pass the proof.
+MARGIN = 0.01
+_ATTEMPTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One face to be machined, and everything that decides about an axis for it.
+
+    Attributes
+    ----------
+    feasibility : Feasibility
+        With the distances that the search keeps: a little more than required.
+    worth : Worth
+    groups : tuple of Group
+        The same surroundings with the required distances, for the proof.
+    progress : Progress
+    """
+
+    feasibility: Feasibility
+    worth: Worth
+    groups: tuple[Group, ...]
+    progress: Progress = NO_PROGRESS
+
+    @property
+    def box(self) -> Array:
+        """Corners of the box around everything, (2, 3) mm."""
+        boxes = np.array([face.box for group in self.groups for face in group.faces])
+        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+    def made(self, axis: Array, feed: str) -> ToolPath:
+        """The passes with an axis, cut out where the tool must not go.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        worth, feasibility = self.worth, self.feasibility
+        return passes(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
+                      reach=lambda uv: feasibility.reach(uv, axis), tolerance=feasibility.tolerance, box=self.box,
+                      progress=self.progress)
+
+
+def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
+         objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
+         surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None, allowance: float = 0.0,
+         progress: Progress = NO_PROGRESS) -> Task:
+    """Gather what decides about an axis for a face.
+
+    Parameters
+    ----------
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, progress
+        As for `best_axis`.
+    limits : AxisLimits, optional
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+    """
+    given = Tolerance() if tolerance is None else tolerance
+    worth = Worth(face, tool, scallop, allowance, objective)
+    chord = min(given.chord_for(scallop), given.gouge / 2)
+    kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
+                   shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
+    strict, groups = (grouped(face, limit, allowance, part=part, skin=skin, surroundings=surroundings,
+                              obstacles=obstacles) for limit in (kept, given))
+    return Task(Feasibility(face, tool, strict, given, limits, allowance), worth, groups, progress)
+
+
+def combined(machine: object, limits: AxisLimits | str | None) -> AxisLimits | None:
+    """Limits from a machine (whatever answers `excess` and `allowed`, or the short form) and from further limits.
+
+    Parameters
+    ----------
+    machine, limits : AxisLimits, str or None
+
+    Raises
+    ------
+    InvalidInput
+        When one of them is no limit.
+    """
+    found: list[AxisLimits] = []
+    for one in (machine, limits):
+        if isinstance(one, str):
+            found.append(parse_limits(one))
+        elif one is not None:
+            if not (hasattr(one, "excess") and hasattr(one, "allowed")):
+                raise InvalidInput(f"machine is a {type(one).__name__}: give limits such as Cone or RotaryRanges, or "
+                                   "their short form")
+            found.append(one)
+    return AllOf(tuple(found)) if len(found) > 1 else found[0] if found else None
+
+
+def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, obstacles: Obstacles = None,
+              method: str = "sphere", objective: str = "length", *, part: Part | None = None,
+              skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
+              allowance: float = 0.0, limits: AxisLimits | str | None = None,
+              progress: Progress = NO_PROGRESS) -> Orientation:
+    """The fixed tool axis that machines a face with the least cutting length, or in the fewest passes.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    scallop : float
+        Scallop height, mm.
+    machine : AxisLimits or str, optional
+        What the machine allows; see `toolaxis.machine.limits`.
+    obstacles : Part, Face or sequence of Face, optional
+        What the tool must keep away from besides the part.
+    method : str
+        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors.
+    objective : str
+        "length" or "passes": what is to be least.
+    part : Part, optional
+        The part that the face belongs to, by its number: its skin and its other faces are looked after.
+    skin, surroundings : sequence of Face
+        Faces that continue this one smoothly, and others, where there is no part.
+    tolerance : Tolerance, optional
+    allowance : float
+        Stock left on the face, mm.
+    limits : AxisLimits or str, optional
+        Further limits.
+    progress : Progress
+
+    Returns
+    -------
+    Orientation
+        "feasible" with axis, passes made and what was proven of them; "infeasible" only where it is proven that no
+        axis exists; "not_found" where none was found; "cancelled" with what is known so far.
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+
+    Notes
+    -----
+    **Source**: [zhu2016] Eq. (8): greatest strip width under gouge and interference constraints, here with bounds.
+
+    **Properties**: 1. the result does not depend on the number of threads or on earlier calls; 2. moving face and
+    surroundings together moves the axis; 3. no motion of the passes breaks a limit.
+    """
+    if method not in METHODS:
+        raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
+    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
+    ledger = Ledger(job.feasibility, job.worth, progress)
+    try:
+        impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
+        if impossible:
+            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
+        return settled(job, ledger, METHODS[method](ledger))
+    except Cancelled:
+        return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
+                           evaluations=ledger.evaluations, map=ledger.map())
+
+
+def settled(job: Task, ledger: Ledger, found: list[Candidate]) -> Orientation:
+    """The best candidate that the proof accepts, or why there is none.
+
+    Parameters
+    ----------
+    job : Task
+    ledger : Ledger
+    found : list of Candidate
+        The best of each lobe, best first.
+    """
+    refused: list[str] = []
+    for k in range(len(found)):
+        accepted = _accepted(job, ledger, found[k], refused)
+        if accepted is not None:
+            others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
+            return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
+                           evaluations=ledger.evaluations, lobes=others)
+    if ledger.proven:
+        outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
+    else:
+        outcome, lead = "not_found", "no axis found"
+    if not found:
+        refused = [f"{lead}: {why_none(ledger)}"]
+    return Orientation(None, outcome=outcome, reasons=(*refused, tally(ledger)), map=ledger.map(),
+                       evaluations=ledger.evaluations)
+
+
+def _sound(job: Task, one: Candidate) -> bool:
+    return job.feasibility.witness(one.axis) is None
+
+
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str]) -> Orientation | None:
+    """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
+    candidate: Candidate | None = one
+    for _ in range(_ATTEMPTS):
+        if candidate is None:
+            return None
+        witness = ledger.feasibility.witness(candidate.axis)
+        if witness is None:
+            result, proof = finished(job, candidate)
+            if proof.witness is None:
+                return result
+            witness = proof.witness
+        refused.append(f"refused {direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
+        candidate = repaired(ledger, candidate, witness)
+    return None
+
+
+def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
+    """Passes made and proven for one candidate.
+
+    Parameters
+    ----------
+    job : Task
+    one : Candidate
+    """
+    feed = FEEDS[one.feed]
+    path = job.made(one.axis, feed)
+    proof = prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
+    unreached = job.feasibility.unreached(one.axis)
+    length = path.length(Motion.CUT)
+    area = job.worth.face.area * (1 - unreached)
+    notes = () if unreached == 0 else (f"{100 * unreached:.1f} % of the area lies at walls and is left to clean-up",)
+    return Orientation(one.axis, feed, path.passes, one.passes, length, area / length if length > 0 else 0.0,
+                       proof.gouge, proof.clearance, "feasible", notes, unreached=unreached), proof
+
+
+def _other(job: Task, one: Candidate) -> Orientation:
+    """The best axis of another lobe; its passes were not made."""
+    return Orientation(one.axis, FEEDS[one.feed], 0, one.passes, one.length,
+                       job.worth.face.area / one.length, outcome="feasible", unreached=one.unreached)
+
+
+def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machine: object = None,
+                  obstacles: Obstacles = None, feed: str | None = None, objective: str = "length", *,
+                  part: Part | None = None, skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
+                  tolerance: Tolerance | None = None, allowance: float = 0.0, limits: AxisLimits | str | None = None,
+                  progress: Progress = NO_PROGRESS) -> Orientation:
+    """What one given axis comes to, judged as `best_axis` judges its own.
+
+    Parameters
+    ----------
+    face, tool, scallop, machine, obstacles, objective, part, skin, surroundings, tolerance, allowance, limits, progress
+        As for `best_axis`.
+    axis : (3,) array_like
+        From tip to spindle.
+    feed : "u" or "v", optional
+        The better one unless given.
+
+    Returns
+    -------
+    Orientation
+        "infeasible" with the reason where the axis breaks a limit; count and length are given all the same.
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+    """
+    if feed not in (None, *FEEDS):
+        raise InvalidInput(f"feed is {feed!r}: it must be 'u' or 'v'")
+    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
+    t = unit(as_rows(axis, 3, "axis")[0])
+    ledger = Ledger(job.feasibility, job.worth, progress)
+    try:
+        feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]
+        best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
+        witness = job.feasibility.witness(t)
+        if witness is None:
+            result, proof = finished(job, best)
+            if proof.witness is None:
+                return replace(result, evaluations=len(feeds))
+            witness = proof.witness
+    except Cancelled:
+        return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",))
+    return Orientation(None, FEEDS[best.feed], 0, best.passes, best.length, outcome="infeasible",
+                       reasons=(f"infeasible: {sentence(witness, job.feasibility)}",), evaluations=len(feeds))

@@ -1,0 +1,118 @@
+"""The last word on an axis: every motion of the passes really made, judged by bounds that hold along it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.contact.distances import bounded, judged, segment_motions
+from toolaxis.orient.feasible import COARSE, CUTTER, FINE, GOUGE, Witness
+from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+COMPONENTS = ("cutter", "shank", "holder")
+_BATCH = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Proof:
+    """What is known of a path.
+
+    Attributes
+    ----------
+    witness : Witness or None
+        The first motion that breaks a limit; None when every motion keeps them all.
+    gouge : float
+        Upper bound of the depth below the skin, mm.
+    clearance : dict of str to float
+        Lower bound per component that is known, mm; the cutter's is to what it does not machine or touch harmlessly.
+    """
+
+    witness: Witness | None
+    gouge: float = 0.0
+    clearance: dict[str, float] = field(default_factory=dict)
+
+
+def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: float = 0.0, *, most: float = 20.0,
+          progress: Progress = NO_PROGRESS) -> Proof:
+    """Judge every motion of a path with one fixed axis.
+
+    Parameters
+    ----------
+    path : ToolPath
+    tool : Tool
+    groups : tuple of Group
+        From `toolaxis.orient.setting.grouped`, with the distances to keep.
+    allowance : float
+        Stock left on the skin, mm.
+    most : float
+        Clearances beyond this are not told apart, mm.
+    progress : Progress
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    moves = segment_motions(path.cl, path.axis[0])
+    for number, group in enumerate(groups):
+        progress.report("proof", number, 2 * len(groups))
+        found = _broken(tool, group, moves)
+        if found is not None:
+            return Proof(found)
+    gouge = 0.0
+    clearance: dict[str, float] = {}
+    known = {"cutter", *tool.outlines}
+    for number, group in enumerate(groups):
+        progress.report("proof", len(groups) + number, 2 * len(groups))
+        if group.role == SKIN:
+            depth = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
+            gouge = max(allowance - float(depth), 0.0)
+        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
+        for c, value in _least(tool, group, moves, asked, most).items():
+            name = COMPONENTS[c]
+            clearance[name] = min(clearance.get(name, most), value)
+    return Proof(None, gouge, clearance)
+
+
+def _only(group: Group, components: tuple[int, ...]) -> Array:
+    """Required table that asks for some components only, (faces, 3)."""
+    row = np.full(3, -np.inf)
+    row[list(components)] = 0.0
+    return np.tile(row, (len(group.faces), 1))
+
+
+def _broken(tool: Tool, group: Group, moves: Array) -> Witness | None:
+    """The worst motion that is not proven to keep its distances from a group, or None."""
+    blocked = judged(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
+    rows = np.flatnonzero(blocked >= 0)
+    if not len(rows):
+        return None
+    fine = FINE if group.role != OTHER else COARSE
+    found = bounded(group.cells, tool, moves[rows], group.required + 2 * fine, fine)
+    amount = group.required - found.lower
+    i, c = np.unravel_index(int(np.argmax(amount)), amount.shape)
+    code = GOUGE if group.role == SKIN and c == 0 else CUTTER + int(c)
+    k = int(found.face[i, c])
+    return Witness(code, max(float(amount[i, c]), 0.0), group.faces[k].label if k >= 0 else "", found.point[i, c],
+                   distance=float(found.lower[i, c]))
+
+
+def _least(tool: Tool, group: Group, moves: Array, components: tuple[int, ...], most: float) -> dict[int, float]:
+    """Least distance of components to a group over all motions; the bound found so far cuts the search short."""
+    if not components:
+        return {}
+    asked, best = _only(group, components), np.full(3, most)
+    order = np.argsort(-(moves[:, 0] @ moves[0, 2]), kind="stable")[::-1]
+    for first in range(0, len(order), _BATCH):
+        found = bounded(group.cells, tool, moves[order[first:first + _BATCH]], best, 10 * COARSE, asked)
+        best = np.minimum(best, found.lower.min(axis=0))
+    return {c: float(best[c]) for c in components}

@@ -1,0 +1,93 @@
+"""Why an axis is refused, in sentences: which face, where, which constraint, and by how much."""
+
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.orient.feasible import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Feasibility, Witness
+from toolaxis.orient.ledger import Ledger
+from toolaxis.plan.orientation import REASONS
+
+Array = NDArray[np.float64]
+
+COUNTED = ("free", "outside the limits", "on the back of the surface",
+           "with a contact that wanders over the flat bottom", "with a gouge", "with a collision of the cutter",
+           "with a collision of the shank", "with a collision of the holder")
+
+
+def place(point: Array) -> str:
+    """A point as messages write it, mm."""
+    return "(" + ", ".join(f"{round(float(x), 2) + 0.0:g}" for x in point) + ")"
+
+
+def direction(axis: Array) -> str:
+    """An axis as messages write it."""
+    return "(" + ", ".join(f"{round(float(x), 4) + 0.0:g}" for x in axis) + ")"
+
+
+def sentence(found: Witness, feasibility: Feasibility) -> str:
+    """What one witness says.
+
+    Parameters
+    ----------
+    found : Witness
+    feasibility : Feasibility
+    """
+    own, tolerance = feasibility.face.label, feasibility.tolerance
+    at = f"at {place(found.point)}"
+    if found.reason == LIMITS:
+        return f"the axis is {degrees(found.amount):.2f} deg outside the limits"
+    if found.reason == BACK:
+        return (f"the axis leans {degrees(found.amount):.2f} deg farther than "
+                f"{degrees(feasibility.greatest_angle):.1f} deg from the normal of face {own} {at}: the cutter's "
+                "bottom does not reach there")
+    if found.reason == WANDERS:
+        return (f"the axis comes {degrees(found.amount):.2f} deg nearer than {degrees(feasibility.least_angle):.2f} "
+                f"deg to a normal of face {own} {at}: the contact wanders over the flat bottom")
+    if found.reason == GOUGE:
+        return f"the cutter gouges face {found.label or own} by {-found.distance:.3f} mm {at}"
+    name = ("cutter", "shank", "holder")[found.reason - CUTTER]
+    needed = (tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)[found.reason - CUTTER]
+    how = f"meets face {found.label} by {-found.distance:.2g} mm" if found.distance <= 0 else (
+        f"comes within {found.distance:.2g} mm of face {found.label}, less than the required {needed:g} mm,")
+    return f"the {name} {how} {at}"
+
+
+def tally(ledger: Ledger) -> str:
+    """How many axes were refused, and for what.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    counts = np.bincount(ledger.reason, minlength=len(REASONS))
+    parts = [f"{counts[k]} {COUNTED[k]}" for k in range(1, len(REASONS)) if counts[k]]
+    return f"of {len(ledger.axes)} axes " + (", ".join(parts) if parts else "none was refused")
+
+
+def closest(ledger: Ledger) -> int | None:
+    """Row of the forbidden axis that comes closest to being free: past the normals if any is, then by the amount."""
+    for early in (GOUGE, WANDERS, BACK, LIMITS):
+        rows = np.flatnonzero(ledger.reason >= early)
+        if len(rows):
+            return int(rows[np.argmin(ledger.amount[rows])])
+    return None
+
+
+def why_none(ledger: Ledger) -> str:
+    """The constraint that stops the axis which comes closest.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    row = closest(ledger)
+    if row is None:
+        return "no axis was looked at"
+    axis = ledger.axes[row]
+    feasibility = ledger.feasibility
+    found = feasibility.witness(axis)
+    if found is None:
+        found = Witness(int(ledger.reason[row]), float(ledger.amount[row]))
+    return f"{sentence(found, feasibility)}, for the axis {direction(axis)} that comes closest"

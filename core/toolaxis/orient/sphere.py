@@ -1,0 +1,372 @@
+"""The whole hemisphere, coarse to fine: a spiral of axes, rings around the promising ones, exact counts for the best.
+
+Optima lie on the border of the free region, and there are often several.  So rings are laid around the best free axes
+and around forbidden ones next to free ones that would be better; all lobes are followed; and what decides is the exact
+count, because the screening value is least true just where it is best.
+"""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.orient.feasible import BACK, FREE, LIMITS, WANDERS, Witness
+from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.normals import NormalField
+from toolaxis.orient.spiral import COVER, own_frame, ring, spiral
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+#: Spacing of the first axes, rad.
+SPACING = radians(7.5)
+#: Axes around which rings are laid, level by level.
+_BEAM = (14, 10, 8)
+#: Lobes are at least so far apart, rad.
+APART = radians(12)
+_LOBES = 5
+_POLISHED = 4
+#: Lobes whose first exact value is this much worse than the best are not polished.
+_HOPELESS = 0.02
+#: Values closer than this are ties.
+TIE = 0.001
+_FINEST = radians(0.12)
+_MOST_EVALUATIONS = 1400
+#: Free axes so near a refused one are not tried, rad.
+_REPELLED = radians(0.15)
+#: Clearances closer than this are the same, mm.
+_SHARES = 0.25
+#: Seven discs of this share of a disc's radius, one in the middle, cover it on the sphere too.
+_SHRINK = 0.52
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An axis with its exact value.
+
+    Attributes
+    ----------
+    axis : (3,) array
+    feed : int
+        0 for "u", 1 for "v".
+    value : float
+        What is to be least, charged for what stays.
+    passes, length : float
+        Exact count and cutting length, mm, over the whole face.
+    unreached : float
+        Share of the area left to a clean-up tool, from screening.
+    """
+
+    axis: Array
+    feed: int
+    value: float
+    passes: float
+    length: float
+    unreached: float
+
+
+def search(ledger: Ledger) -> list[Candidate]:
+    """Search the hemisphere of axes that see the face.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Empty; holds everything that was looked at afterwards.
+
+    Returns
+    -------
+    list of Candidate, the best axis of each lobe, best first; empty when no free axis was found.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    field = ledger.feasibility.field
+    frame = frame_of(field)
+    ledger.look(np.concatenate([[field.mean, frame[2]], spiral(frame, SPACING)]))
+    if not np.isfinite(ledger.price).any():
+        ledger.proven = hunt(ledger)
+    if not np.isfinite(ledger.price).any():
+        return []
+    if indifferent(ledger):
+        return ties(ledger)
+    spacing = SPACING
+    for width in _BEAM:
+        refine(ledger, spacing, width)
+        spacing /= 2
+    return polished(ledger, spacing)
+
+
+def frame_of(field: NormalField) -> Array:
+    """The frame that the spiral lies in, (3, 3): it moves with the face, with z in the middle of its normals.
+
+    Parameters
+    ----------
+    field : NormalField
+    """
+    return own_frame(field.samples, field.cap.centre if field.cap.centre.any() else field.mean)
+
+
+def indifferent(ledger: Ledger) -> bool:
+    """Whether all free axes cost the same, as with a ball end."""
+    price = ledger.price[np.isfinite(ledger.price)]
+    return ledger.feasibility.tool.flat_radius == 0 and bool(price.max() <= price.min() * (1 + TIE))
+
+
+def ties(ledger: Ledger) -> list[Candidate]:
+    """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most."""
+    free = np.flatnonzero(np.isfinite(ledger.price))
+    away = angle_between(ledger.axes[free], ledger.feasibility.field.mean)
+    free = free[np.argsort(away, kind="stable")][:48]
+    room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
+    order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
+    best = ledger.values[order[0]].argmin()
+    value, passes, length = ledger.count(ledger.axes[order[0]], int(best), float(ledger.unreached[order[0]]))
+    return [Candidate(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
+
+
+def refine(ledger: Ledger, spacing: float, width: int) -> None:
+    """Lay rings of half the spacing around the most promising axes.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    spacing : float
+        Of the axes so far, rad.
+    width : int
+        Number of axes to lay rings around: best free ones, and forbidden ones next to free ones, half and half.
+    """
+    price, all_values = ledger.price, ledger.values.min(axis=1)
+    free = np.flatnonzero(np.isfinite(price))
+    best = _spread(ledger.axes, free[np.argsort(price[free], kind="stable")], 0.6 * spacing, width - width // 2)
+    border = np.flatnonzero((ledger.reason > BACK) & np.isfinite(all_values) & (all_values < 1.02 * price.min()))
+    if len(border):
+        near = angle_between(ledger.axes[border][:, None], ledger.axes[free][None]).min(axis=1) <= 1.4 * spacing
+        border = border[near]
+        border = border[np.argsort(_next_to(ledger, border, free, spacing), kind="stable")]
+    chosen = [*best, *_spread(ledger.axes, border, 0.6 * spacing, width // 2)]
+    turn = spacing
+    for i in chosen:
+        around = ring(ledger.axes[i], spacing / 2, turn)
+        new = angle_between(around[:, None], ledger.axes[None]).min(axis=1) > 0.35 * spacing / 2
+        ledger.look(around[new])
+
+
+def _next_to(ledger: Ledger, border: Index, free: Index, spacing: float) -> Array:
+    """Price of the best free axis near each forbidden one, (k,)."""
+    near = angle_between(ledger.axes[border][:, None], ledger.axes[free][None]) <= 1.4 * spacing
+    return np.asarray(np.where(near, ledger.price[free], np.inf).min(axis=1))
+
+
+def _spread(axes: Array, order: Index, apart: float, most: int) -> list[int]:
+    """The first rows of an order that keep apart from those before them."""
+    chosen: list[int] = []
+    for i in order:
+        if len(chosen) == most:
+            break
+        if not chosen or angle_between(axes[i], axes[chosen]).min() > apart:
+            chosen.append(int(i))
+    return chosen
+
+
+def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
+    """The best axis of each lobe by exact count, best first.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    spacing : float
+        First step, rad.
+    """
+    starts = []
+    price = ledger.price
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    for i in lobes(ledger.axes, price, order)[:_LOBES]:
+        start = _first_sound(ledger, ledger.axes[i], order)
+        if start is not None:
+            starts.append(start)
+    starts.sort(key=lambda c: c.value)
+    done: list[Candidate] = []
+    for k, start in enumerate(starts):
+        hopeless = start.value > starts[0].value * (1 + _HOPELESS) or k >= _POLISHED
+        done.append(start if hopeless else polish(ledger, start, spacing))
+    done.sort(key=lambda c: c.value)
+    return distinct(done)
+
+
+def distinct(found: list[Candidate]) -> list[Candidate]:
+    """Candidates of different lobes: those that ended within half the lobes' distance of a better one are dropped."""
+    kept: list[Candidate] = []
+    for one in found:
+        if all(float(angle_between(one.axis, other.axis)) > APART / 2 for other in kept):
+            kept.append(one)
+    return kept
+
+
+def lobes(axes: Array, price: Array, order: Index) -> list[int]:
+    """Rows that are the best within the lobes' distance of themselves, best first.
+
+    Parameters
+    ----------
+    axes : (n, 3) array
+    price : (n,) array
+    order : (k,) array of int
+        Free rows by price.
+    """
+    chosen: list[int] = []
+    for i in order:
+        near = order[angle_between(axes[i], axes[order]) <= APART]
+        if price[i] <= price[near].min() and (not chosen or angle_between(axes[i], axes[chosen]).min() > APART):
+            chosen.append(int(i))
+    return chosen
+
+
+def _first_sound(ledger: Ledger, top: Array, order: Index) -> Candidate | None:
+    """The best axis of a lobe that also stands the closer look at the skin, counted; None when a dozen do not."""
+    near = [i for i in order if float(angle_between(ledger.axes[i], top)) <= APART][:12]
+    for i in near:
+        if ledger.reason[i] == FREE and sound(ledger, int(i)):
+            return counted(ledger, int(i))
+    return None
+
+
+def sound(ledger: Ledger, row: int) -> bool:
+    """Whether an axis stands the closer look at the skin; the ledger is corrected where it does not.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    row : int
+    """
+    ledger.closer += 1
+    reason, amount, _ = ledger.feasibility.stand(ledger.axes[row], ledger.feasibility.sparse)
+    if reason != FREE:
+        ledger.forbid(row, reason, amount)
+    return reason == FREE
+
+
+def counted(ledger: Ledger, row: int, feed: int | None = None) -> Candidate:
+    """Exact value of a row, in the better feed; both are counted when screening cannot tell.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    row : int
+    feed : int, optional
+        The one that is known to be better.
+    """
+    axis, unreached = ledger.axes[row], float(ledger.unreached[row])
+    values = ledger.values[row]
+    feeds = [int(values.argmin()) if feed is None else feed]
+    if feed is None and values.max() < 1.04 * values.min():
+        feeds = [0, 1]
+    return min((Candidate(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
+               key=lambda c: c.value)
+
+
+def polish(ledger: Ledger, start: Candidate, step: float, finest: float = _FINEST) -> Candidate:
+    """Walk to a local optimum by exact counts: rings of eight, turned from ring to ring, halved where none is better.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    start : Candidate
+    step : float
+        First radius of the rings, rad.
+    finest : float
+        Last one, rad.
+    """
+    best, turn = start, 0.0
+    screened = _screened(ledger, best)
+    while step >= finest:
+        turn += 2.399963
+        rows = ledger.look(ring(best.axis, step, turn, 8))
+        better = _better(ledger, rows, best, best.value / screened)
+        if better is None:
+            step /= 2
+            continue
+        row, best = better
+        screened = float(ledger.values[row, best.feed])
+    return best
+
+
+def _screened(ledger: Ledger, one: Candidate) -> float:
+    """Screening value of a candidate in its feed."""
+    found = ledger.worth.screen(one.axis[None])
+    table = found.length if ledger.worth.objective == "length" else found.passes
+    return float(table[0, one.feed]) * ledger.worth.charge(float(found.length[0].min()), one.unreached)
+
+
+def _better(ledger: Ledger, rows: slice, best: Candidate, ratio: float) -> tuple[int, Candidate] | None:
+    """The first row, in the order of what screening promises, that is sound and counts better than the best."""
+    hope = np.where(ledger.reason[rows] == FREE, ledger.values[rows, best.feed] * ratio, np.inf)
+    for k in np.argsort(hope, kind="stable")[:3]:
+        if not hope[k] < best.value * (1 + 0.25 * TIE):
+            return None
+        row = rows.start + int(k)
+        if not sound(ledger, row):
+            continue
+        found = counted(ledger, row, best.feed)
+        if found.value < best.value * (1 - 0.1 * TIE):
+            return row, found
+    return None
+
+
+def repaired(ledger: Ledger, refused: Candidate, found: Witness) -> Candidate | None:
+    """Another axis of the same lobe after the proof refused one: what it found is watched from now on.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    refused : Candidate
+    found : Witness
+
+    Returns
+    -------
+    Candidate, or None when the lobe holds no other free axis.
+    """
+    if found.uv.any():
+        ledger.feasibility = ledger.feasibility.watching(found.uv[None])
+    apart = angle_between(ledger.axes, refused.axis)
+    for i in np.flatnonzero((apart <= _REPELLED) & (ledger.reason == FREE)):
+        ledger.forbid(int(i), found.reason, found.amount)
+    price = ledger.price
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    start = _first_sound(ledger, refused.axis, order)
+    return None if start is None else polish(ledger, start, 4 * _REPELLED, 2 * _REPELLED)
+
+
+def hunt(ledger: Ledger) -> bool:
+    """Divide the hemisphere where no axis was free, dropping what limits and normals forbid for certain.
+
+    Limits and angles to normals change no faster than the axis turns: a disc of axes is dropped when its middle misses
+    one of them by more than the disc's radius.
+
+    Parameters
+    ----------
+    ledger : Ledger
+
+    Returns
+    -------
+    bool
+        Whether it is proven that limits and normals leave no axis at all.
+    """
+    rows, radius, complete = np.arange(2, len(ledger.axes)), COVER * SPACING, True
+    while len(ledger.axes) < _MOST_EVALUATIONS and radius > radians(0.05):
+        certain = np.isin(ledger.reason[rows], (LIMITS, BACK, WANDERS)) & (ledger.amount[rows] > radius)
+        rows = rows[~certain]
+        if not len(rows):
+            return complete
+        order = np.lexsort((np.arange(len(rows)), ledger.amount[rows], ledger.reason[rows] <= BACK))
+        room = (_MOST_EVALUATIONS - len(ledger.axes)) // 12 + 1
+        complete &= len(rows) <= room
+        rows = rows[order[:room]]
+        found = ledger.look(np.concatenate([ring(axis, radius * 3**0.5 / 2) for axis in ledger.axes[rows]]))
+        rows = np.concatenate([rows, np.arange(found.start, found.stop)])
+        radius *= _SHRINK
+        if np.isfinite(ledger.price).any():
+            return False
+    return False

@@ -1,0 +1,103 @@
+"""What an axis is worth: passes and cutting length of a face, screened or counted exactly."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.path.chart import Cut, IsoChart
+from toolaxis.path.count import measure
+from toolaxis.path.estimate import Estimates, Estimator
+from toolaxis.path.sampling import Samples
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+OBJECTIVES = ("length", "passes")
+FEEDS = ("u", "v")
+
+
+@dataclass(frozen=True, eq=False)
+class Worth:
+    """The price of machining a face with a tool.
+
+    Attributes
+    ----------
+    face : Face
+    tool : Tool
+    scallop : float
+        Scallop height, mm.
+    allowance : float
+        Stock left on the face, mm.
+    objective : str
+        "length" or "passes": what is to be least.
+
+    Raises
+    ------
+    InvalidInput
+        When the objective is neither, or scallop or allowance are out of range.
+    """
+
+    face: Face
+    tool: Tool
+    scallop: float
+    allowance: float = 0.0
+    objective: str = "length"
+
+    def __post_init__(self) -> None:
+        if self.objective not in OBJECTIVES:
+            raise InvalidInput(f"objective is {self.objective!r}: it must be one of {', '.join(OBJECTIVES)}")
+        Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance)
+
+    @cached_property
+    def estimator(self) -> Estimator:
+        """The face made ready for estimates with many axes."""
+        return Estimator.of(self.face, self.tool, self.scallop, self.allowance)
+
+    @property
+    def samples(self) -> Samples:
+        """Sample points of the face."""
+        return self.estimator.samples
+
+    def screen(self, axes: Array) -> Estimates:
+        """Passes and length of axes in both feed directions, from second-order widths corrected for the lean.
+
+        Parameters
+        ----------
+        axes : (k, 3) array
+            Unit vectors.
+        """
+        return self.estimator.many(axes, exact=False)
+
+    def counted(self, axis: Array, feed: str) -> tuple[float, float]:
+        """Exact count of passes and cutting length, mm, of one axis and feed; inf where it leaves no strip.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        found = measure(IsoChart(self.face, feed), Cut(self.tool, axis, self.scallop, self.allowance))
+        return found.passes, found.length
+
+    def charge(self, length: float, unreached: float) -> float:
+        """Factor on passes and length for what is left to a clean-up tool.
+
+        What stays is charged at the strip width of a ball that fits into the corner: of the cutter's corner radius, or
+        of a quarter of its radius if that is larger.
+
+        Parameters
+        ----------
+        length : float
+            Cutting length over the whole face, mm.
+        unreached : float
+            Share of the area left.
+        """
+        if unreached <= 0 or not np.isfinite(length):
+            return 1.0
+        radius = max(self.tool.corner_radius, self.tool.radius / 4)
+        strip = 2 * float(np.sqrt(2 * radius * self.scallop - min(self.scallop, radius) ** 2))
+        return 1 - unreached + unreached * (self.face.area / length) / strip
