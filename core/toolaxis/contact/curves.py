@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in, compiled
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Nodes: TypeAlias = tuple[Array, Ints]
 Curve: TypeAlias = tuple[int, float, Array, Array, Ints]
 Scratch: TypeAlias = tuple[Array, Array, Array, Array]
 
@@ -24,31 +25,30 @@ ALONG_U, ALONG_V, SECTION = 0, 1, 2
 NODES = 128
 
 
-@compiled
+@built_in
 def normal_rates(d: Array, sign: float, rates: Array) -> None:
     """Unit normal and its derivatives in u and v into rates (3, 3), from the six derivatives d (6, 3)."""
-    su, sv, suu, suv, svv = d[1], d[2], d[3], d[4], d[5]
-    size = 0.0
-    for c in range(3):
-        a, b = (c + 1) % 3, (c + 2) % 3
-        rates[0, c] = sign * (su[a] * sv[b] - su[b] * sv[a])
-        rates[1, c] = sign * (suu[a] * sv[b] - suu[b] * sv[a] + su[a] * suv[b] - su[b] * suv[a])
-        rates[2, c] = sign * (suv[a] * sv[b] - suv[b] * sv[a] + su[a] * svv[b] - su[b] * svv[a])
-        size += rates[0, c] ** 2
-    size = sqrt(size)
-    uu = su[0] ** 2 + su[1] ** 2 + su[2] ** 2
-    vv = sv[0] ** 2 + sv[1] ** 2 + sv[2] ** 2
+    a0, a1, a2, b0, b1, b2 = d[1, 0], d[1, 1], d[1, 2], d[2, 0], d[2, 1], d[2, 2]
+    m0, m1, m2 = d[4, 0], d[4, 1], d[4, 2]
+    n0, n1, n2 = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    size = sqrt(n0 * n0 + n1 * n1 + n2 * n2)
+    uu, vv = a0 * a0 + a1 * a1 + a2 * a2, b0 * b0 + b1 * b1 + b2 * b2
     if size <= 1e-10 * max(uu, vv):
         _limit_normal(d, uu < vv, sign, rates)
         return
-    along_u = along_v = 0.0
-    for c in range(3):
-        rates[0, c] /= size
-        along_u += rates[0, c] * rates[1, c]
-        along_v += rates[0, c] * rates[2, c]
-    for c in range(3):
-        rates[1, c] = (rates[1, c] - along_u * rates[0, c]) / size
-        rates[2, c] = (rates[2, c] - along_v * rates[0, c]) / size
+    share = sign / size
+    n0, n1, n2 = n0 * share, n1 * share, n2 * share
+    rates[0, 0], rates[0, 1], rates[0, 2] = n0, n1, n2
+    for row in range(1, 3):
+        if row == 1:
+            p0, p1, p2, q0, q1, q2 = d[3, 0], d[3, 1], d[3, 2], m0, m1, m2
+        else:
+            p0, p1, p2, q0, q1, q2 = m0, m1, m2, d[5, 0], d[5, 1], d[5, 2]
+        r0 = share * (p1 * b2 - p2 * b1 + a1 * q2 - a2 * q1)
+        r1 = share * (p2 * b0 - p0 * b2 + a2 * q0 - a0 * q2)
+        r2 = share * (p0 * b1 - p1 * b0 + a0 * q1 - a1 * q0)
+        along = n0 * r0 + n1 * r1 + n2 * r2
+        rates[row, 0], rates[row, 1], rates[row, 2] = r0 - along * n0, r1 - along * n1, r2 - along * n2
 
 
 @compiled
@@ -67,44 +67,7 @@ def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
         rates[2, c] = 0.0
 
 
-@compiled
-def _rates_unknown(surface: SurfaceData, curve: Curve, u: float, v: float) -> bool:
-    """Whether the closed form of the normal's rate fails: on moves along a border beyond the domain."""
-    knots_u, knots_v, _, pu, pv, _ = surface
-    u_out = u < knots_u[pu] or u > knots_u[knots_u.shape[0] - pu - 1]
-    v_out = v < knots_v[pv] or v > knots_v[knots_v.shape[0] - pv - 1]
-    if curve[0] == ALONG_U:
-        return bool(v_out)
-    if curve[0] == ALONG_V:
-        return bool(u_out)
-    return bool(u_out or v_out)
-
-
-@compiled
-def _differenced_rates(surface: SurfaceData, sign: float, scratch: Scratch) -> None:
-    """Rate of the normal along the curve at `place` by central differences, into the last row of rates.
-
-    Where the surface is continued beyond its domain its second derivatives across the border are not known, so the
-    closed form does not hold for moves along the border.
-    """
-    d, basis, rates, place = scratch
-    knots_u, knots_v = surface[0], surface[1]
-    size = max(abs(place[2]) / (knots_u[-1] - knots_u[0]), abs(place[3]) / (knots_v[-1] - knots_v[0]))
-    step = 1e-5 / size
-    n0, n1, n2 = rates[0, 0], rates[0, 1], rates[0, 2]
-    surface_derivatives(surface, place[0] + step * place[2], place[1] + step * place[3], d, basis)
-    normal_rates(d, sign, rates)
-    a0, a1, a2 = rates[0, 0], rates[0, 1], rates[0, 2]
-    surface_derivatives(surface, place[0] - step * place[2], place[1] - step * place[3], d, basis)
-    normal_rates(d, sign, rates)
-    half = 0.5 / step
-    rates[2, 0] = (a0 - rates[0, 0]) * half
-    rates[2, 1] = (a1 - rates[0, 1]) * half
-    rates[2, 2] = (a2 - rates[0, 2]) * half
-    rates[0, 0], rates[0, 1], rates[0, 2] = n0, n1, n2
-
-
-@compiled
+@built_in
 def curve_point(surface: SurfaceData, sign: float, curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
     """Point, tangent, normal and its rate at parameter w of a curve.
 
@@ -136,10 +99,6 @@ def curve_point(surface: SurfaceData, sign: float, curve: Curve, w: float, state
         state[1, c] = du * d[1, c] + dv * d[2, c]
         state[2, c] = rates[0, c]
         state[3, c] = du * rates[1, c] + dv * rates[2, c]
-    if _rates_unknown(surface, curve, place[0], place[1]):
-        _differenced_rates(surface, sign, scratch)
-        for c in range(3):
-            state[3, c] = rates[2, c]
 
 
 @compiled
@@ -149,27 +108,36 @@ def new_scratch() -> Scratch:
 
 
 @compiled
-def iso_curve(along: int, fixed: float) -> Curve:
-    """The iso-curve along u (0) or v (1) on which the other parameter is fixed."""
-    return along, fixed, np.empty(3), np.empty((0, 10)), np.empty(2, dtype=np.int64)
+def new_nodes() -> Nodes:
+    """Room for the nodes of a plane section, and their numbers ahead of and behind the start."""
+    return np.empty((2 * NODES + 1, 10)), np.zeros(2, dtype=np.int64)
+
+
+@built_in
+def iso_curve(along: int, fixed: float, frame: Array, nodes: Nodes) -> Curve:
+    """The iso-curve along u (0) or v (1) on which the other parameter is fixed; frame and nodes are not used."""
+    return along, fixed, frame[0], nodes[0], nodes[1]
 
 
 @compiled
-def plane_section(surface: SurfaceData, u: float, v: float, ahead: tuple[Array, Array, float],
+def plane_section(surface: SurfaceData, start: tuple[float, float, float], ahead: tuple[Array, Array], nodes: Nodes,
                   scratch: Scratch) -> Curve:
     """The section of a surface by a plane through a point of it.
 
     Parameters
     ----------
     surface : tuple
-    u, v : float
-        The point, w = 0.
-    ahead : (tangent, plane, spacing)
-        Unit tangent of increasing w, unit normal of the plane, and length between nodes, mm.
-    scratch : tuple
+    start : (u, v, spacing)
+        The point, w = 0, and the length between nodes, mm.
+    ahead : (tangent, plane)
+        Unit tangent of increasing w, and unit normal of the plane.
+    nodes, scratch : tuple
+        Room; the section lives in `nodes`.
     """
-    tangent, plane, spacing = ahead
-    curve = (SECTION, spacing, plane, np.empty((2 * NODES + 1, 10)), np.zeros(2, dtype=np.int64))
+    u, v, spacing = start
+    tangent, plane = ahead
+    curve = (SECTION, spacing, plane, nodes[0], nodes[1])
+    nodes[1][0] = nodes[1][1] = 0
     surface_derivatives(surface, u, v, scratch[0], scratch[1])
     scratch[3][0] = u
     scratch[3][1] = v
@@ -178,7 +146,7 @@ def plane_section(surface: SurfaceData, u: float, v: float, ahead: tuple[Array, 
     return curve
 
 
-@compiled
+@built_in
 def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
     """Rates of u and v that keep in the plane and make unit progress along the tangent."""
     d, _, _, place = scratch
@@ -193,7 +161,7 @@ def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
     place[3] = -p / det if det != 0.0 else 0.0
 
 
-@compiled
+@built_in
 def _store_node(curve: Curve, index: int, scratch: Scratch) -> None:
     d, _, _, place = scratch
     row = curve[3][index]

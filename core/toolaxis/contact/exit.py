@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.curves import Curve, Scratch
-from toolaxis.contact.swept import Setting, gap_rates, lifted_point, pass_tip, scan_pass, signed_distance
-from toolaxis.numeric.compiled import compiled
+from toolaxis.contact.newton import exit_step
+from toolaxis.contact.swept import Setting, gap_rates, lifted_point, pair_of, pass_tip, scan_pass, signed_distance
+from toolaxis.numeric.compiled import built_in, compiled
 
 Array = NDArray[np.float64]
 Job: TypeAlias = tuple[Setting, Curve, Curve]
@@ -27,7 +28,7 @@ Lengths: TypeAlias = tuple[float, float, float, float]
 
 
 @compiled
-def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, float], second: Array,
+def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, float], room: Array,
                 memory: Memory) -> tuple[bool, float, float]:
     """Solve F = 0, dF/dw = 0.
 
@@ -36,8 +37,8 @@ def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, fl
     job, lengths, memory
     start : (s0, w0, s, w)
         Contact and first guess.
-    second : (3,) array
-        Estimate of the second derivative of the tip along the pass; improved on the way.
+    room : (3, 3) array
+        Its first row holds an estimate of the second derivative of the tip along the pass, improved on the way.
 
     Returns
     -------
@@ -46,29 +47,25 @@ def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, fl
     setting, road, cross = job
     lift, radius, _, _ = lengths
     s0, w0, s, w = start
-    tip, point = memory[1], memory[2]
+    tip, point, second, old = memory[1], memory[2], room[0], room[2]
     w_old = w0
-    o0 = o1 = o2 = 0.0
-    for step in range(14):
+    for step in range(12):
         lifted_point(setting, cross, s, lift, memory)
         pass_tip(setting, road, w, memory)
         travel = sqrt(tip[1, 0] ** 2 + tip[1, 1] ** 2 + tip[1, 2] ** 2)
-        if step > 0 and abs(w - w_old) * travel > 1e-6 * radius:
-            second[0] = (tip[1, 0] - o0) / (w - w_old)
-            second[1] = (tip[1, 1] - o1) / (w - w_old)
-            second[2] = (tip[1, 2] - o2) / (w - w_old)
-        w_old, o0, o1, o2 = w, tip[1, 0], tip[1, 1], tip[1, 2]
-        f, f_s, f_w, f_ww, f_ws, g0, g1, g2 = gap_rates(setting[2], setting[3], point, tip)
-        f_ww -= g0 * second[0] + g1 * second[1] + g2 * second[2]
-        det = f_s * f_ww - f_w * f_ws
-        if not (f_ww > 0.0 and f_s * (s - s0) > 0.0 and det * (s - s0) > 0.0):
-            return False, s, w
-        ds = (f_w * f_w - f * f_ww) / det
-        dw = (f * f_ws - f_s * f_w) / det
         pace = sqrt(point[1, 0] ** 2 + point[1, 1] ** 2 + point[1, 2] ** 2)
-        if abs(ds) * pace <= 1e-9 * radius and abs(dw) * travel <= 1e-6 * radius:
-            return True, s + ds, w + dw
-        share = max(abs(ds) / (0.5 * abs(s - s0)), abs(dw) * travel / (0.5 * radius), 1.0)
+        for c in range(3):
+            if step > 0 and abs(w - w_old) * travel > 1e-6 * radius:
+                second[c] = (tip[1, c] - old[c]) / (w - w_old)
+            old[c] = tip[1, c]
+        w_old = w
+        ds, dw, leaving, valid = exit_step(setting[2], setting[3], pair_of(point), pair_of(tip),
+                                           (second[0], second[1], second[2]))
+        if not abs(ds) + abs(dw) < inf:
+            return False, s, w
+        if abs(ds) * pace <= 1e-8 * radius and abs(dw) * travel <= 1e-7 * radius:
+            return valid and leaving * (s - s0) > 0.0, s + ds, w + dw
+        share = max(abs(ds) / (0.6 * abs(s - s0)), abs(dw) * travel / (0.5 * radius), 1.0)
         s += ds / share
         w += dw / share
     return False, s, w
@@ -79,40 +76,51 @@ def least_between(job: Job, point: Array, ends: tuple[int, int], road: Road,
                   memory: Memory) -> tuple[float, float, float]:
     """The least distance of a point to the cutter between two nodes of the pass.
 
-    The distance is (all but) convex in w there: two tangents bound it from below, and the search, by secants of the
-    slope and by intersections of the tangents in turn, ends when the bound is met.
+    The distance to a cutter is convex; moving it along the pass bends a tangent by half the second derivative of the
+    tip at most.  The search, by secants of the slope and by intersections of the two tangents in turn, ends when the
+    bound from the tangents is met, or at a smooth minimum.
 
     Returns
     -------
     F, w, F_s
     """
     setting, way, _ = job
-    table = road[0]
-    tip = memory[1]
-    lo, hi = table[ends[0], 0], table[ends[1], 0]
-    tip[0], tip[1] = table[ends[0], 1:4], table[ends[0], 4:7]
-    f_lo, s_lo, d_lo, _, _, _, _, _ = gap_rates(setting[2], setting[3], point, tip)
-    tip[0], tip[1] = table[ends[1], 1:4], table[ends[1], 4:7]
-    f_hi, s_hi, d_hi, _, _, _, _, _ = gap_rates(setting[2], setting[3], point, tip)
+    table, tip = road[0], memory[1]
+    left, right = ends
+    lo, hi = table[left, 0], table[right, 0]
+    bend = 0.0
+    for k in range(left, right):
+        for c in range(4, 7):
+            bend += abs(table[k + 1, c] - table[k, c]) / (table[k + 1, 0] - table[k, 0])
+    tip[0], tip[1] = table[left, 1:4], table[left, 4:7]
+    f_lo, s_lo, d_lo, _, _, _, _, _ = gap_rates(setting[2], setting[3], pair_of(point), pair_of(tip))
+    tip[0], tip[1] = table[right, 1:4], table[right, 4:7]
+    f_hi, s_hi, d_hi, _, _, _, _, _ = gap_rates(setting[2], setting[3], pair_of(point), pair_of(tip))
     best, place, slope = (f_lo, lo, s_lo) if f_lo <= f_hi else (f_hi, hi, s_hi)
     weak_lo, weak_hi = d_lo, d_hi
-    for step in range(80):
+    enough = 1e-12 * setting[2][4]
+    for step in range(100):
         if not (d_lo < 0.0 < d_hi):
             break
         meet = (f_hi - f_lo + d_lo * lo - d_hi * hi) / (d_lo - d_hi)
-        if best - (f_lo + d_lo * (meet - lo)) <= 1e-12 * setting[2][4]:
+        size = hi - lo
+        if best - (f_lo + d_lo * (meet - lo)) + 0.5 * bend * size * size <= enough:
             break
-        w = meet
         if step % 2 == 0:
-            w = lo - weak_lo * (hi - lo) / (weak_hi - weak_lo)
+            w = lo - weak_lo * size / (weak_hi - weak_lo)
+        else:
+            shift = bend * size * size / (d_hi - d_lo)
+            w = meet + shift if meet - lo < hi - meet else meet - shift
         if step % 5 == 4 or not lo < w < hi:
             w = 0.5 * (lo + hi)
         if not lo < w < hi:
             break
         pass_tip(setting, way, w, memory)
-        f, f_s, d, _, _, _, _, _ = gap_rates(setting[2], setting[3], point, tip)
+        f, f_s, d, curved, _, _, _, _ = gap_rates(setting[2], setting[3], pair_of(point), pair_of(tip))
         if f < best:
             best, place, slope = f, w, f_s
+        if d * d <= enough * (curved - bend):
+            break
         if d < 0.0:
             lo, f_lo, d_lo, weak_lo, weak_hi = w, f, d, d, 0.5 * weak_hi
         else:
@@ -149,23 +157,47 @@ def swept_distance(job: Job, lengths: Lengths, s: float, road: Road, memory: Mem
     return _deepest(job, lengths, road, memory)
 
 
+@built_in
+def _tip_between(table: Array, rows: tuple[int, int], w: float, tip: Array) -> None:
+    """The tip at w by cubic interpolation between the nodes, into tip[0]."""
+    k = rows[0]
+    high = rows[1]
+    while high - k > 1:
+        middle = (k + high) // 2
+        if table[middle, 0] <= w:
+            k = middle
+        else:
+            high = middle
+    size = table[k + 1, 0] - table[k, 0]
+    t = (w - table[k, 0]) / size
+    p, q = t * t * (3.0 - 2.0 * t), t * (1.0 - t) * size
+    for c in range(3):
+        tip[0, c] = (table[k, 1 + c] * (1.0 - p) + table[k + 1, 1 + c] * p
+                     + q * ((1.0 - t) * table[k, 4 + c] - t * table[k + 1, 4 + c]))
+
+
 @compiled
 def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, float], road: Road,
-               memory: Memory) -> bool:
-    """Whether an exit is the first one, and not covered from elsewhere on the pass; found = (s0, w0, s, w)."""
+              memory: Memory) -> bool:
+    """Whether an exit is the first one, and not covered from elsewhere on the pass; found = (s0, w0, s, w).
+
+    Points a third and two thirds of the way must be covered, and the exit must be free of the cutter everywhere else.
+    """
     s0, w0, s, w = found
-    setting, way, cross = job
+    setting, _, cross = job
     tip, point = memory[1], memory[2]
-    for k in range(1, 4):
-        share = 0.25 * k
+    table, gaps, first, last = road
+    if not table[first, 0] < w < table[last, 0]:
+        return False
+    for k in range(1, 3):
+        share = k / 3.0
         lifted_point(setting, cross, s0 + share * (s - s0), lengths[0], memory)
-        pass_tip(setting, way, w0 + share * (w - w0), memory)
+        _tip_between(table, (first, last), w0 + share * (w - w0), tip)
         if signed_distance(setting[2], setting[3], point[0, 0] - tip[0, 0], point[0, 1] - tip[0, 1],
                            point[0, 2] - tip[0, 2]) >= 0.0:
             return False
     lifted_point(setting, cross, s, lengths[0], memory)
-    scan_pass(setting, road[0], (road[2], road[3]), point, road[1])
-    table, gaps, first, last = road
+    scan_pass(setting, table, (first, last), point, gaps)
     for k in range(first, last + 1):
         left, right = max(k - 1, first), min(k + 1, last)
         if gaps[k] > lengths[3] or gaps[k] > gaps[left] or gaps[k] > gaps[right]:
@@ -174,7 +206,7 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
             continue
         if least_between(job, point, (left, right), road, memory)[0] < -1e-9 * lengths[1]:
             return False
-    return bool(table[first, 0] <= w <= table[last, 0])
+    return True
 
 
 @compiled

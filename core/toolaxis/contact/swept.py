@@ -13,18 +13,21 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.curves import Curve, Scratch, curve_point
 from toolaxis.numeric.bspline import SurfaceData
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import built_in, compiled
 
 Array = NDArray[np.float64]
 Setting: TypeAlias = tuple[SurfaceData, float, Array, Array]
 """Surface, sign of its normal, cutter, unit axis."""
+Vector: TypeAlias = Array | tuple[float, float, float]
+Pair: TypeAlias = tuple[float, float, float, float, float, float]
+"""A point and its derivative."""
 Gap: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 
 SIDE_NODES = 96
 UPRIGHT = 1e-12
 
 
-@compiled
+@built_in
 def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float, float, float]:
     """Signed distance from a point of the meridian half plane to the cutter, its gradient, and its bend.
 
@@ -56,7 +59,7 @@ def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float
     return z - top, 0.0, 1.0, 0.0
 
 
-@compiled
+@built_in
 def signed_distance(cutter: Array, axis: Array, x: float, y: float, z: float) -> float:
     """Signed distance from a point, relative to the tip, to the cutter, mm."""
     height = x * axis[0] + y * axis[1] + z * axis[2]
@@ -66,7 +69,7 @@ def signed_distance(cutter: Array, axis: Array, x: float, y: float, z: float) ->
     return meridian_distance(cutter, sqrt(x * x + y * y + z * z), height)[0]
 
 
-@compiled
+@built_in
 def tip_rates(cutter: Array, axis: Array, state: Array, tip: Array) -> None:
     """Tool tip and its derivative along a curve into tip (2, 3), from the curve's state (4, 3).
 
@@ -91,47 +94,49 @@ def tip_rates(cutter: Array, axis: Array, state: Array, tip: Array) -> None:
         tip[1, c] = state[1, c] + offset * state[3, c] + reach * (change - turn * across)
 
 
-@compiled
-def gap_rates(cutter: Array, axis: Array, point: Array, tip: Array) -> Gap:
+@built_in
+def pair_of(rows: Array) -> Pair:
+    """The six numbers of a (2, 3) array."""
+    return rows[0, 0], rows[0, 1], rows[0, 2], rows[1, 0], rows[1, 1], rows[1, 2]
+
+
+@built_in
+def gap_rates(cutter: Array, axis: Vector, point: Pair, tip: Pair) -> Gap:
     """Distance F(s, w) of a moving point q(s) to the cutter at tip(w), and derivatives.
 
     Parameters
     ----------
     cutter : (6,) array
-    axis : (3,) array
-    point, tip : (2, 3) array
+    axis : three numbers
+    point, tip : six numbers
         q and dq/ds; tip and dtip/dw.
 
     Returns
     -------
     F, F_s, F_w, F_ww without the tip's second derivative, F_ws, and the gradient's three components
     """
-    x0, x1, x2 = point[0, 0] - tip[0, 0], point[0, 1] - tip[0, 1], point[0, 2] - tip[0, 2]
-    z = x0 * axis[0] + x1 * axis[1] + x2 * axis[2]
-    x0 -= z * axis[0]
-    x1 -= z * axis[1]
-    x2 -= z * axis[2]
+    t0, t1, t2 = axis[0], axis[1], axis[2]
+    _, _, _, m0, m1, m2 = tip
+    _, _, _, p0, p1, p2 = point
+    x0, x1, x2 = point[0] - tip[0], point[1] - tip[1], point[2] - tip[2]
+    z = x0 * t0 + x1 * t1 + x2 * t2
+    x0, x1, x2 = x0 - z * t0, x1 - z * t1, x2 - z * t2
     rho = sqrt(x0 * x0 + x1 * x1 + x2 * x2)
     value, g_rho, g_z, bend = meridian_distance(cutter, rho, z)
     inverse = 1.0 / rho if rho > 1e-300 else 0.0
-    x0 *= inverse
-    x1 *= inverse
-    x2 *= inverse
+    x0, x1, x2 = x0 * inverse, x1 * inverse, x2 * inverse
     ring = g_rho * inverse if rho > 1e-300 else bend
-    g0, g1, g2 = g_rho * x0 + g_z * axis[0], g_rho * x1 + g_z * axis[1], g_rho * x2 + g_z * axis[2]
-    tr = x0 * tip[1, 0] + x1 * tip[1, 1] + x2 * tip[1, 2]
-    tz = axis[0] * tip[1, 0] + axis[1] * tip[1, 1] + axis[2] * tip[1, 2]
-    tt = tip[1, 0] ** 2 + tip[1, 1] ** 2 + tip[1, 2] ** 2
-    pr = x0 * point[1, 0] + x1 * point[1, 1] + x2 * point[1, 2]
-    pz = axis[0] * point[1, 0] + axis[1] * point[1, 1] + axis[2] * point[1, 2]
-    tp = tip[1, 0] * point[1, 0] + tip[1, 1] * point[1, 1] + tip[1, 2] * point[1, 2]
+    tr, tz = x0 * m0 + x1 * m1 + x2 * m2, t0 * m0 + t1 * m1 + t2 * m2
+    pr, pz = x0 * p0 + x1 * p1 + x2 * p2, t0 * p0 + t1 * p1 + t2 * p2
+    beside = m0 * m0 + m1 * m1 + m2 * m2 - tr * tr - tz * tz
+    across = m0 * p0 + m1 * p1 + m2 * p2 - tr * pr - tz * pz
     t_bent, p_bent = g_rho * tz - g_z * tr, g_rho * pz - g_z * pr
-    f_ww = bend * t_bent * t_bent + ring * (tt - tr * tr - tz * tz)
-    f_ws = -bend * t_bent * p_bent - ring * (tp - tr * pr - tz * pz)
-    return value, g_rho * pr + g_z * pz, -(g_rho * tr + g_z * tz), f_ww, f_ws, g0, g1, g2
+    return (value, g_rho * pr + g_z * pz, -(g_rho * tr + g_z * tz), bend * t_bent * t_bent + ring * beside,
+            -bend * t_bent * p_bent - ring * across,
+            g_rho * x0 + g_z * t0, g_rho * x1 + g_z * t1, g_rho * x2 + g_z * t2)
 
 
-@compiled
+@built_in
 def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Array, Array, Scratch]) -> None:
     """Tip and its rate at w of a pass into memory[1]; memory = state (4, 3), tip (2, 3), point (2, 3), scratch."""
     surface, sign, cutter, axis = setting
@@ -139,7 +144,7 @@ def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Arra
     tip_rates(cutter, axis, memory[0], memory[1])
 
 
-@compiled
+@built_in
 def lifted_point(setting: Setting, curve: Curve, s: float, lift: float,
                  memory: tuple[Array, Array, Array, Scratch]) -> None:
     """The point lift above the surface at s of a curve, and its rate, into memory[2]."""
