@@ -58,11 +58,23 @@ class ToolPath:
             bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
             if bad.size:
                 raise InvalidInput(f"tool path {name} row {bad[0]} is {rows[bad[0]].tolist()}: it must be finite")
-        if self.kind.shape != (count,):
-            raise InvalidInput(f"tool path kind has shape {self.kind.shape}: ({count},) is needed")
+        self._check_kind(count)
+        length = np.linalg.norm(self.axis, axis=1)
+        if (np.abs(length - 1) > 1e-4).any():
+            i = int(np.argmax(np.abs(length - 1)))
+            raise InvalidInput(f"tool path axis row {i} has length {length[i]}: unit vectors are needed")
         ends = np.asarray(self.breaks)
         if len(ends) < 1 or ends[0] != 0 or ends[-1] != count or (np.diff(ends) < 0).any():
             raise InvalidInput(f"tool path breaks must run from 0 to {count} without decreasing")
+
+    def _check_kind(self, count: int) -> None:
+        kind = np.ascontiguousarray(self.kind, dtype=np.int8)
+        object.__setattr__(self, "kind", kind)
+        if kind.shape != (count,):
+            raise InvalidInput(f"tool path kind has shape {kind.shape}: ({count},) is needed")
+        bad = np.flatnonzero((kind < min(Motion)) | (kind > max(Motion)))
+        if bad.size:
+            raise InvalidInput(f"tool path kind {bad[0]} is {kind[bad[0]]}: 0 cut, 1 entry, 2 exit or 3 link is needed")
 
     @property
     def passes(self) -> int:

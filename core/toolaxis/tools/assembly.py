@@ -235,12 +235,12 @@ class Tool:
     @property
     def name(self) -> str:
         """The short form, as `parse` reads it."""
-        sizes = [2 * self.radius]
+        sizes = [repr(2 * self.radius)]
         if self.kind in ("torus", "tapered"):
-            sizes.append(self.corner_radius)
+            sizes.append(repr(self.corner_radius))
         if self.kind == "tapered":
-            sizes.append(degrees(self.half_angle))
-        return f"{self.kind}:" + "x".join(f"{size:.10g}" for size in sizes)
+            sizes.append(f"{degrees(self.half_angle):.12g}")
+        return f"{self.kind}:" + "x".join(size.removesuffix(".0") for size in sizes)
 
     @property
     def outlines(self) -> dict[str, Array]:
