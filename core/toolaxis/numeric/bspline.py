@@ -15,6 +15,8 @@ from toolaxis.numeric.compiled import built_in, compiled, fused
 
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]
+Four: TypeAlias = tuple[float, float, float, float]
+Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 MAX_DEGREE = 25
 WORK_SHAPE = (6, MAX_DEGREE + 1)
@@ -130,10 +132,13 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
     _basis(knots_u, (pu, span_u), uc, work, 0)
     _basis(knots_v, (pv, span_v), vc, work, 3)
     _patch(control, (span_u - pu, span_v - pv), (pu, pv), work, out)
+    weights = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if rational:
-        _divide(_weights(control, (span_u - pu, span_v - pv), (pu, pv), work), out)
+        weights = _weights(control, (span_u - pu, span_v - pv), (pu, pv), work)
+        _divide(weights, out)
     if u != uc or v != vc:
-        _extend(data, (span_u - pu, span_v - pv), (u - uc, v - vc), work, out)
+        thirds = _thirds(control, (span_u - pu, span_v - pv), (pu, pv), work)
+        _extend((u - uc, v - vc), weights, thirds, out)
 
 
 @built_in
@@ -176,8 +181,7 @@ def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work
 
 
 @built_in
-def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int],
-             work: Array) -> tuple[float, float, float, float, float, float]:
+def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> Six:
     """The weight and its five derivatives."""
     (i0, j0), (pu, pv) = first, degree
     w = wu = wv = wuu = wuv = wvv = 0.0
@@ -193,7 +197,7 @@ def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int],
 
 
 @built_in
-def _divide(weights: tuple[float, float, float, float, float, float], out: Array) -> None:
+def _divide(weights: Six, out: Array) -> None:
     w, wu, wv, wuu, wuv, wvv = weights
     share = 1.0 / w
     for c in range(3):
@@ -209,43 +213,33 @@ def _divide(weights: tuple[float, float, float, float, float, float], out: Array
 
 
 @built_in
-def _sum(data: SurfaceData, first: tuple[int, int], work: Array, rows: tuple[int, int], c: int) -> float:
-    """Contract one homogeneous coordinate with one row of the basis in u and one in v."""
-    total = 0.0
-    for i in range(data[3] + 1):
-        for j in range(data[4] + 1):
-            total += work[rows[0], i] * work[3 + rows[1], j] * data[2][first[0] + i, first[1] + j, c]
-    return total
+def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> tuple[Four, Four]:
+    """The mixed third derivatives uuv and uvv of the four homogeneous coordinates."""
+    (i0, j0), (pu, pv) = first, degree
+    x = y = z = w = x2 = y2 = z2 = w2 = 0.0
+    for i in range(pu + 1):
+        for j in range(pv + 1):
+            p, q = work[2, i] * work[4, j], work[1, i] * work[5, j]
+            a, b = control[i0 + i, j0 + j, 0], control[i0 + i, j0 + j, 1]
+            c, d = control[i0 + i, j0 + j, 2], control[i0 + i, j0 + j, 3]
+            x, y, z, w = x + p * a, y + p * b, z + p * c, w + p * d
+            x2, y2, z2, w2 = x2 + q * a, y2 + q * b, z2 + q * c, w2 + q * d
+    return (x, y, z, w), (x2, y2, z2, w2)
 
 
 @built_in
-def _mixed_third(data: SurfaceData, first: tuple[int, int], work: Array, out: Array, which: tuple[bool, int]) -> float:
-    """Suvv (with True, or else Suuv) of one coordinate, from the six vectors."""
-    second, c = which
-    rows = (1, 2) if second else (2, 1)
-    value = _sum(data, first, work, rows, c)
-    if data[5]:
-        w, wu, wv, wuu, wuv, wvv = _weights(data[2], first, (data[3], data[4]), work)
-        along, across, twice = (wu, wv, wvv) if second else (wv, wu, wuu)
-        s_along, s_across, s_twice = (out[1, c], out[2, c], out[5, c]) if second else (out[2, c], out[1, c], out[3, c])
-        value -= along * s_twice + 2.0 * (across * out[4, c] + wuv * s_across) + twice * s_along
-        value = (value - _sum(data, first, work, rows, 3) * out[0, c]) / w
-    return value
-
-
-@built_in
-def _extend(data: SurfaceData, first: tuple[int, int], beyond: tuple[float, float], work: Array, out: Array) -> None:
+def _extend(beyond: tuple[float, float], weights: Six, thirds: tuple[Four, Four], out: Array) -> None:
     """Carry the six vectors of the border on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
-    du, dv = beyond
+    (du, dv), (w, wu, wv, wuu, wuv, wvv), (uuv, uvv) = beyond, weights, thirds
     for c in range(3):
-        suuv = _mixed_third(data, first, work, out, (False, c)) if du == 0.0 else 0.0
-        suvv = _mixed_third(data, first, work, out, (True, c)) if dv == 0.0 else 0.0
-        su, sv, suv = out[1, c], out[2, c], out[4, c]
-        out[0, c] += du * su + dv * sv + du * dv * suv
+        s, su, sv, suu, suv, svv = out[0, c], out[1, c], out[2, c], out[3, c], out[4, c], out[5, c]
+        suuv = (uuv[c] - wv * suu - 2.0 * (wu * suv + wuv * su) - wuu * sv - uuv[3] * s) / w
+        suvv = (uvv[c] - wu * svv - 2.0 * (wv * suv + wuv * sv) - wvv * su - uvv[3] * s) / w
+        out[0, c] = s + du * su + dv * sv + du * dv * suv
         out[1, c] = su + dv * suv
         out[2, c] = sv + du * suv
-        out[3, c] = out[3, c] + dv * suuv if du == 0.0 else 0.0 * du
-        out[5, c] = out[5, c] + du * suvv if dv == 0.0 else 0.0 * dv
+        out[3, c] = suu + dv * suuv if du == 0.0 else 0.0 * du
+        out[5, c] = svv + du * suvv if dv == 0.0 else 0.0 * dv
 
 
 @compiled
