@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 WIDEST = np.pi / 2
+SLACK = 0.1
 
 
 def angle_breaks(low: float, high: float) -> Array:
@@ -60,11 +61,14 @@ def parameter_from_angle(breaks: Array, angle: Array) -> Array:
     ----------
     breaks : (k,) array
     angle : (n,) array
-        rad; up to half a turn beyond the ends is continued by the end spans.
+        rad; whole turns are added where that brings an angle in from outside.
 
     **Properties**: 1. breaks map to themselves; 2. `angle_from_parameter` is the inverse.
     """
     half = 0.5 * (breaks[1] - breaks[0])
+    turned = breaks[0] + np.mod(angle - breaks[0], 2 * np.pi)
+    outside = (angle < breaks[0] - SLACK) | (angle > breaks[-1] + SLACK)
+    angle = np.where(outside & (turned <= breaks[-1]), turned, angle)
     start = breaks[_span(breaks, angle)]
     quarter = np.tan(0.5 * (angle - start))
     return np.asarray(start + 2 * half * quarter / (np.sin(half) + quarter * (1 - np.cos(half))))

@@ -18,6 +18,7 @@ from toolaxis.cad.steptext import StepText, read_text
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.shape.part import Part
 
+COMMAND = ("-m", "toolaxis.cad.transfer")
 SMALLEST, LARGEST = 10.0, 5000.0
 OTHER_UNITS = (("m", 1000.0), ("inch", 25.4), ("cm", 10.0))
 
@@ -73,8 +74,8 @@ def _in_child(file: Path, text: StepText, limit: float) -> tuple[ShapeRecord, in
 def _run(arguments: list[str], file: Path, limit: float) -> "subprocess.CompletedProcess[bytes]":
     root = str(Path(toolaxis.__file__).parents[1])
     paths = [root, *filter(None, [os.environ.get("PYTHONPATH")])]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
-    command = [sys.executable, "-m", "toolaxis.cad.transfer", *arguments]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "TOOLAXIS_NUMBA": "0"}
+    command = [sys.executable, *COMMAND, *arguments]
     try:
         return subprocess.run(command, env=environment, capture_output=True, timeout=limit, check=False,
                               stdin=subprocess.DEVNULL)

@@ -98,7 +98,7 @@ def gaps(faces: Sequence[Face], borders: Sequence[Border]) -> Array:
     points = _on_both_sides({face.number: face for face in faces}, borders, lambda face, uv: face.evaluate(uv).point)
     off = [_beside(side - border.points, border.points)
            for side, border in zip(points, [*borders, *borders], strict=True)]
-    return np.array(off).reshape(2, -1).max(axis=0)
+    return np.asarray(np.array(off).reshape(2, -1).max(axis=0))
 
 
 def _beside(away: Array, curve: Array) -> float:

@@ -1,0 +1,83 @@
+"""Knot insertion and its uses: the spline must stay where it was."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.knots import distinct_inner, insert_knot, restricted, unrolled
+
+
+def spline(degree, clamped=True, seed=0):
+    rng = np.random.default_rng(seed)
+    inner = np.sort(rng.uniform(0, 5, 6))
+    inner[2] = inner[3]
+    run = np.zeros(degree + 1) if clamped else np.arange(degree + 1.0)
+    knots = np.concatenate([-run[::-1], inner, 5 + run])
+    return knots, rng.normal(size=(len(knots) - degree - 1, 2, 3))
+
+
+def value(knots, control, degree, t):
+    last = np.nextafter(knots[-degree - 1], -np.inf)
+    return BSpline(knots, control, degree, extrapolate=False)(np.clip(t, knots[degree], last))
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5])
+@pytest.mark.parametrize("clamped", [True, False])
+def test_inserting_a_knot_changes_nothing(degree, clamped):
+    knots, control = spline(degree, clamped)
+    t = np.linspace(0, 5, 97)
+    before = value(knots, control, degree, t)
+    for new in (0.7, 2.0, 2.0, 4.9, *((0.0, 5.0) if not clamped else ())):
+        knots, control = insert_knot(knots, control, degree, new)
+        assert (np.diff(knots) >= 0).all()
+        assert np.abs(value(knots, control, degree, t) - before).max() < 1e-12
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5])
+@pytest.mark.parametrize("clamped", [True, False])
+@pytest.mark.parametrize("low, high", [(0.0, 5.0), (0.3, 4.1), (0.0, 1.7), (2.2, 5.0)])
+def test_a_piece_lies_on_the_whole_and_is_clamped(degree, clamped, low, high):
+    knots, control = spline(degree, clamped)
+    own_knots, own = restricted(knots, control, degree, low, high)
+    assert (own_knots[:degree + 1] == low).all()
+    assert (own_knots[-degree - 1:] == high).all()
+    t = np.linspace(low, high, 50)[:-1]
+    assert np.abs(value(own_knots, own, degree, t) - value(knots, control, degree, t)).max() < 1e-12
+    assert np.abs(own[0] - value(knots, control, degree, np.array([low]))[0]).max() < 1e-12
+
+
+def test_a_piece_that_begins_at_a_full_knot():
+    knots = np.array([0.0, 0, 0, 1, 1, 2, 2, 2])
+    control = np.random.default_rng(4).normal(size=(5, 3))
+    for low, high in ((0.0, 1.0), (1.0, 2.0)):
+        own_knots, own = restricted(knots, control, 2, low, high)
+        assert len(own) == 3
+        t = np.linspace(low, high, 9)[:-1]
+        assert np.abs(value(own_knots, own, 2, t) - value(knots, control, 2, t)).max() < 1e-13
+
+
+@pytest.mark.parametrize("low, high", [(1.0, 1.0), (2.0, 1.0), (-0.1, 1.0), (1.0, 5.1)])
+def test_a_piece_outside_the_range_is_refused(low, high):
+    knots, control = spline(3)
+    with pytest.raises(InvalidInput, match="must be a part of"):
+        restricted(knots, control, 3, low, high)
+
+
+@pytest.mark.parametrize("low, high", [(0.0, 4.0), (3.2, 4.7), (-9.3, -1.0), (1.0, 13.5)])
+def test_a_periodic_spline_repeats_itself_when_unrolled(low, high):
+    degree, n, period = 3, 5, 4.0
+    inner = np.array([0.0, 0.5, 1.7, 2.0, 3.1])
+    flat = np.array([inner[k % n] + period * (k // n) for k in range(-degree, n + degree + 1)])
+    control = np.random.default_rng(2).normal(size=(n, 3))
+    knots, own = unrolled(flat, control, degree, low, high)
+    wrapped = control[np.arange(n + degree) % n]
+    t = np.linspace(low, high, 60)[:-1]
+    assert np.abs(value(knots, own, degree, t) - value(flat, wrapped, degree, np.mod(t, period))).max() < 1e-12
+
+
+def test_distinct_inner_knots_and_their_counts():
+    values, counts = distinct_inner(np.array([0.0, 0, 0, 1, 1, 2, 3, 3, 3]), 2)
+    assert values.tolist() == [1.0, 2.0]
+    assert counts.tolist() == [2, 1]
+    assert distinct_inner(np.array([0.0, 0, 1, 1]), 1)[0].size == 0
