@@ -50,42 +50,35 @@ def basis_derivatives(knots: Array, degree: int, span: int, t: float, rows: Arra
 
 @built_in
 def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int) -> None:
-    """The same into rows[at:at+3]; a slice there would count references in the hot loop."""
+    """The same into rows[at:at+3]; a slice there would count references in the hot loop.
+
+    Slopes are differences of the recursion's own shares; those of the degree below wait in the last row.
+    """
     degree, span = place
     if degree == 3:
         _cubic(knots, span, t, rows, at)
         return
-    for k in range(degree + 1):
-        rows[at + 1, k] = 0.0
-        rows[at + 2, k] = 0.0
     rows[at, 0] = 1.0
+    rows[at + 2, 0] = 0.0
     for d in range(1, degree + 1):
-        if d == degree:
-            _differentiate(knots, (d, span), rows, at, at + 1)
-            if degree > 1:
-                _differentiate(knots, (d, span), rows, at + 2, at + 2)
-        elif d == degree - 1:
-            _differentiate(knots, (d, span), rows, at, at + 2)
-        saved = 0.0
+        saved = previous = previous_slope = 0.0
         for r in range(d):
-            upper = knots[span + 1 + r]
-            lower = knots[span + 1 + r - d]
-            share = rows[at, r] / (upper - lower)
+            upper, lower = knots[span + 1 + r], knots[span + 1 + r - d]
+            inverse = 1.0 / (upper - lower)
+            share = rows[at, r] * inverse
+            if d == degree:
+                slope = rows[at + 2, r] * inverse
+                rows[at + 1, r], previous = d * (previous - share), share
+                rows[at + 2, r], previous_slope = d * (previous_slope - slope), slope
+            elif d == degree - 1:
+                rows[at + 2, r], previous = d * (previous - share), share
             rows[at, r] = saved + (upper - t) * share
             saved = (t - lower) * share
         rows[at, d] = saved
-
-
-@built_in
-def _differentiate(knots: Array, place: tuple[int, int], rows: Array, source: int, target: int) -> None:
-    d, span = place
-    previous = 0.0
-    for k in range(d + 1):
-        value = 0.0
-        if k < d:
-            value = rows[source, k] / (knots[span + 1 + k] - knots[span + 1 + k - d])
-        rows[target, k] = d * (previous - value)
-        previous = value
+        if d == degree:
+            rows[at + 1, d], rows[at + 2, d] = d * previous, d * previous_slope
+        elif d == degree - 1:
+            rows[at + 2, d] = d * previous
 
 
 @built_in
