@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.orient.setting import OTHER, grouped
+from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.verdict import OperationVerdict, Task, Verdict
@@ -62,11 +63,13 @@ def _task(plan: Plan, op: Operation) -> Task:
     assert op.path is not None
     around = grouped(op.face, plan.inputs.tolerance, part=plan.part,
                      obstacles=[face for body in plan.obstacles for face in body.faces])
-    skin = tuple(face for group in around if group.role != OTHER for face in group.faces
-                 if (face.number, face.label) != (op.face.number, op.face.label))
-    surroundings = tuple(face for group in around if group.role == OTHER for face in group.faces)
+
+    def of(*roles: str) -> tuple[Face, ...]:
+        return tuple(face for group in around if group.role in roles for face in group.faces
+                     if (face.number, face.label) != (op.face.number, op.face.label))
+
     return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
-                plan.inputs.allowance, skin, surroundings, plan.tool.outlines, plan.inputs.tolerance,
+                plan.inputs.allowance, of(SKIN), of(TOUCHING), of(OTHER), plan.tool.outlines, plan.inputs.tolerance,
                 min(1.0, op.orientation.unreached))
 
 
