@@ -91,6 +91,13 @@ class Chart(Protocol):
     def face(self) -> Face:
         """The face."""
 
+    @property
+    def rectangular(self) -> bool:
+        """Whether the face fills its bounds."""
+
+    def closed(self, step: Array) -> NDArray[np.bool_]:
+        """Whether passes at these steps end where they began, (n,): then there is nowhere to run out to."""
+
     def uv(self, along: Array, step: Array) -> Array:
         """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""
 
@@ -149,6 +156,18 @@ class IsoChart:
         knots = [np.unique(surface.knots_u), np.unique(surface.knots_v)]
         along, step = (knots[i] for i in self._order)
         return along[(along > a0) & (along < a1)], step[(step > s0) & (step < s1)]
+
+    @property
+    def rectangular(self) -> bool:
+        """Whether the face fills its bounds."""
+        return not self.face.trims
+
+    def closed(self, step: Array) -> NDArray[np.bool_]:
+        """Whether passes at these steps end where they began, (n,): then there is nowhere to run out to."""
+        a0, a1, _, _ = self.bounds
+        low, middle, high = (self.face.evaluate(self.uv(np.full(len(step), a), step)).point
+                             for a in (a0, (a0 + a1) / 2, a1))
+        return np.asarray(np.linalg.norm(high - low, axis=1) < 1e-6 * np.linalg.norm(middle - low, axis=1))
 
     def uv(self, along: Array, step: Array) -> Array:
         """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""

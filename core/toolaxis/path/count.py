@@ -161,7 +161,7 @@ class _Scale:
                                               fill_value=None)
         self._chart, self._cut = chart, cut
         self._along = np.linspace(a0, a1, _ROW_GAPS + 1)
-        self._material = table(columns(chart, self._along), len(self._along)) if chart.face.trims else None
+        self._material = None if chart.rectangular else table(columns(chart, self._along), len(self._along))
 
     def widths(self, along: Array, step: Array) -> Array:
         """Approximate strip widths (n,)."""

@@ -117,18 +117,10 @@ def _extended(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Interva
     ends = (found.low, found.high)
     reach = [chart.run_outs(cut, np.clip(end, a0, a1), step)[:, side] for side, end in enumerate(ends)]
     before, after = (_RUN_OUT * np.where(np.isfinite(r) & (r > 0), r, 0.0) for r in reach)
-    closed = _closed(chart, step)
+    closed = chart.closed(step)
     before = np.where(closed & (found.low <= a0), 0.0, before)
     after = np.where(closed & (found.high >= a1), 0.0, after)
     return joined(Intervals(found.line, found.low - before, found.high + after))
-
-
-def _closed(chart: Chart, step: Array) -> Bools:
-    """Whether passes at these steps end where they began, so that there is nowhere to run out to."""
-    a0, a1, _, _ = chart.bounds
-    low, high = (chart.face.evaluate(chart.uv(np.full(len(step), a), step)).point for a in (a0, a1))
-    middle = chart.face.evaluate(chart.uv(np.full(len(step), (a0 + a1) / 2), step)).point
-    return np.asarray(np.linalg.norm(high - low, axis=1) < 1e-6 * np.linalg.norm(middle - low, axis=1))
 
 
 def _reachable(chart: Chart, along: Array, column: Intervals, reach: Reach) -> Intervals:

@@ -4,6 +4,8 @@ Near the normal a cutter's flat bottom, not its curvature, limits the strip.  On
 depends on the lean alone, so one table serves all contacts and axes of a tool and a scallop height.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +34,12 @@ def lean_table(tool: Tool, scallop: float) -> Array:
     (25, 17) array over the square roots of the sine of the angle between axis and normal and of the cosine between
     its lean and the feed, both even from 0 to 1; 1 where the contact is not on the cutter's bottom or arc.
     """
+    return _table(tool.kind, tool.radius, tool.corner_radius, tool.half_angle, scallop)
+
+
+@lru_cache(maxsize=64)
+def _table(kind: str, radius: float, corner_radius: float, half_angle: float, scallop: float) -> Array:
+    tool = Tool.build(kind, radius, corner_radius, half_angle)
     size = 40 * tool.radius
     corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
     plane = Face.from_bspline(corners, (1, 1))
@@ -42,7 +50,9 @@ def lean_table(tool: Tool, scallop: float) -> Array:
     axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
     exact = size * step_widths(plane, tool, np.full((len(s), 2), 0.5), axes, scallop).sum(axis=1)
     second = 2 * np.sqrt(2 * scallop * (tool.corner_radius + tool.flat_radius * c**2 / s))
-    return np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
+    table = np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
+    table.setflags(write=False)
+    return table
 
 
 @compiled

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.path.chart import Chart, Cut
-from toolaxis.path.material import first_from, last_of
+from toolaxis.path.chart import Chart, Cut, columns
+from toolaxis.path.material import first_from, last_of, table
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
@@ -66,13 +66,15 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
     along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
     exact = chart.half_widths(cut, along, step).reshape(len(fine.measured), len(steps), 2)
+    found = table(columns(chart, fine.measured), len(fine.measured))[:, None]
+    counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
     for gaps in _GAPS[:-1]:
         coarse = _grid(chart, gaps)
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
             continue
         guess = _interpolated(coarse.measured, exact[where], fine.measured)
-        if (np.abs(guess - exact) <= _INTERPOLATION * exact).all():
+        if (np.abs(guess - exact) <= _INTERPOLATION * exact)[counts].all():
             return coarse
     return fine
 

@@ -1,0 +1,239 @@
+"""Passes along parallel planes that contain the tool axis."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.contact.second_order import contact_forms, screen_numpy
+from toolaxis.contact.strip import strip_width
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.path.chart import Cut
+from toolaxis.path.count import Count, measure
+from toolaxis.path.layout import Layout, Reach, lay_out
+from toolaxis.path.lean import lean_ratios
+from toolaxis.path.linking import Linking
+from toolaxis.path.tracing import trace
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_GRID = 64
+_EDGE = 256
+_ITERATIONS = 25
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneChart:
+    """A face seen along the tool axis: along = S . l, step = S . m, both mm, with l, m, T right-handed.
+
+    Attributes
+    ----------
+    face : Face
+    axis : (3,) array
+        Unit tool axis T.
+    direction : (3,) array
+        Feed direction; its part across the axis counts.
+
+    Raises
+    ------
+    InvalidInput
+        When the direction lies along the axis.
+    UnsupportedGeometry
+        When the face is not seen from its outer side everywhere along the axis.
+    """
+
+    face: Face
+    axis: Array
+    direction: Array
+
+    def __post_init__(self) -> None:
+        axis = unit(as_rows(self.axis, 3, "axis")[0])
+        feed = unit(as_rows(self.direction, 3, "direction")[0])
+        across = feed - (feed @ axis) * axis
+        if np.linalg.norm(across) < 1e-6:
+            raise InvalidInput(f"direction {feed.tolist()} lies along the axis {axis.tolist()}: give one across it")
+        object.__setattr__(self, "axis", axis)
+        object.__setattr__(self, "direction", unit(across))
+        facing = self.face.normal(self.face.grid(48, 48)) @ axis
+        if facing.size and facing.min() <= 1e-6:
+            raise UnsupportedGeometry(f"face {self.face.label} turns away from the axis (n . T = {facing.min():.3g}): "
+                                      "parallel planes need a face that is seen along the axis everywhere")
+
+    @cached_property
+    def frame(self) -> Array:
+        """Rows l, m: the directions of along and step."""
+        return np.stack([self.direction, np.cross(self.axis, self.direction)])
+
+    @cached_property
+    def loops(self) -> tuple[Array, ...]:
+        """Loops that bound the face, (m, 2) rows of (along, step)."""
+        u0, u1, v0, v1 = self.face.bounds
+        size = np.array([u1 - u0, v1 - v0]) / _EDGE
+        found = []
+        for loop in self.face.outline:
+            parts = np.maximum(np.ceil((np.abs(np.roll(loop, -1, axis=0) - loop) / size).max(axis=1)), 1).astype(int)
+            source = np.repeat(np.arange(len(loop)), parts)
+            share = (np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[source]
+            uv = loop[source] + share[:, None] * (np.roll(loop, -1, axis=0) - loop)[source]
+            found.append(self.face.evaluate(uv).point @ self.frame.T)
+        return tuple(found)
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Range of the face: along0, along1, step0, step1, mm."""
+        low, high = self.loops[0].min(axis=0), self.loops[0].max(axis=0)
+        return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+
+    @property
+    def breaks(self) -> tuple[Array, Array]:
+        """None: knots do not run along the planes."""
+        return np.empty(0), np.empty(0)
+
+    @property
+    def rectangular(self) -> bool:
+        """Whether the face fills its bounds."""
+        return False
+
+    def closed(self, step: Array) -> Bools:
+        """Whether passes end where they began: never."""
+        return np.zeros(len(step), dtype=bool)
+
+    @cached_property
+    def _grid(self) -> tuple[Array, cKDTree]:
+        u0, u1, v0, v1 = self.face.bounds
+        uv = np.stack(np.meshgrid(np.linspace(u0, u1, _GRID + 1), np.linspace(v0, v1, _GRID + 1), indexing="ij"), -1)
+        uv = uv.reshape(-1, 2)
+        return uv, cKDTree(self.face.evaluate(uv).point @ self.frame.T)
+
+    def uv(self, along: Array, step: Array) -> Array:
+        """Parameters (n, 2) of the face at along and step, (n,) each, by Newton's method; beyond the face too."""
+        target = np.column_stack([along, step])
+        start, tree = self._grid
+        uv = start[tree.query(target)[1]].copy()
+        todo = np.arange(len(uv))
+        (u0, u1), (v0, v1) = self.face.surface.domain
+        far = np.array([u1 - u0, v1 - v0])
+        for _ in range(_ITERATIONS):
+            d = self.face.evaluate(uv[todo])
+            miss = target[todo] - d.point @ self.frame.T
+            a, b = (d.su @ self.frame.T).T, (d.sv @ self.frame.T).T
+            det = a[0] * b[1] - a[1] * b[0]
+            det = np.where(np.abs(det) > 1e-300, det, 1e-300)
+            move = np.column_stack([miss[:, 0] * b[1] - miss[:, 1] * b[0], a[0] * miss[:, 1] - a[1] * miss[:, 0]])
+            move /= det[:, None]
+            move *= np.minimum(1.0, 0.5 / np.maximum((np.abs(move) / far).max(axis=1), 1e-300))[:, None]
+            uv[todo] += move
+            todo = todo[(np.abs(move) / far).max(axis=1) > 1e-13]
+            if not len(todo):
+                break
+        return np.asarray(uv)
+
+    def _clipped(self, along: Array, step: Array) -> tuple[Array, Array]:
+        """Parameters drawn back to the surface's own domain, and feeds along the planes there."""
+        uv = self.uv(along, step)
+        low, high = np.array(self.face.surface.domain).T
+        uv = np.clip(uv, low, high)
+        feed = np.cross(self.frame[1], self.face.normal(uv))
+        return np.asarray(uv), unit(feed)
+
+    def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Half widths (n, 2) in the step parameter, towards its lower and its upper end.
+
+        The strip's border is found in the section normal to the feed and then seen along the axis, with the bend of
+        the section to the second order.
+        """
+        uv, feed = self._clipped(along, step)
+        width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
+        forms = contact_forms(self.face, uv, feed, False)
+        lean, bend = forms[:, 3:6] @ self.frame[1], 0.5 * forms[:, 11] * (forms[:, 6:9] @ self.frame[1])
+        right, left = width[:, 1], width[:, 0]
+        return np.column_stack([right * lean - bend * right**2, left * lean + bend * left**2])
+
+    def screen(self, cut: Cut, along: Array, step: Array) -> Array:
+        """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
+        uv, feed = self._clipped(along, step)
+        forms = contact_forms(self.face, uv, feed, False)
+        half = np.empty((1, len(forms)))
+        screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
+        ratio = lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis)
+        return np.asarray(2 * half[0] * ratio * (forms[:, 3:6] @ self.frame[1]))
+
+    def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
+        """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
+        uv, feed = self._clipped(along, step)
+        across = np.cross(self.face.normal(uv), feed)
+        width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, across, cut.allowance)
+        return np.asarray(width * (feed @ self.frame[0])[:, None])
+
+
+def layout(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: ArrayLike, *, allowance: float = 0.0,
+           reach: Reach | None = None, progress: Progress = NO_PROGRESS) -> Layout:
+    """Place parallel passes without tracing them.
+
+    Parameters
+    ----------
+    face, tool, axis, scallop, direction, allowance, reach, progress
+        As for `passes`.
+    """
+    cut = Cut(tool, axis, scallop, allowance)  # type: ignore[arg-type]
+    return lay_out(PlaneChart(face, cut.axis, direction), cut, reach, progress)  # type: ignore[arg-type]
+
+
+def count(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: ArrayLike,
+          allowance: float = 0.0) -> Count:
+    """Real-valued number and length of parallel passes with exact strip widths.
+
+    Parameters
+    ----------
+    face, tool, axis, scallop, direction, allowance
+        As for `passes`.
+    """
+    cut = Cut(tool, axis, scallop, allowance)  # type: ignore[arg-type]
+    return measure(PlaneChart(face, cut.axis, direction), cut)  # type: ignore[arg-type]
+
+
+def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: ArrayLike, *, sense: str = "zigzag",
+           allowance: float = 0.0, reach: Reach | None = None, tolerance: Tolerance | None = None,
+           box: ArrayLike | None = None, linking: Linking | None = None, progress: Progress = NO_PROGRESS) -> ToolPath:
+    """Passes in which parallel planes that contain the axis cut the face.
+
+    Parameters
+    ----------
+    face : Face
+        Seen from outside along the axis everywhere.
+    tool : Tool
+    axis : (3,) array_like
+        From tip to spindle.
+    scallop : float
+        Scallop height, mm.
+    direction : (3,) array_like
+        Feed direction; its part across the axis counts.
+    sense : str
+        "zigzag", "climb" or "conventional".
+    allowance, reach, tolerance, box, linking, progress
+        As in `toolaxis.path.isoparametric.passes`.
+
+    Returns
+    -------
+    ToolPath
+
+    Raises
+    ------
+    InvalidInput, UnsupportedGeometry
+        When an argument is out of range, or the face turns away from the axis.
+
+    Notes
+    -----
+    **Properties**: (1) contacts of a pass lie in one plane; (2) the scallop height is kept.
+    """
+    placed = layout(face, tool, axis, scallop, direction, allowance=allowance, reach=reach, progress=progress)
+    return trace(placed, sense, tolerance, box, linking)
