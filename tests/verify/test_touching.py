@@ -39,8 +39,10 @@ def test_running_out_over_the_edge_is_no_gouge() -> None:
 def test_entering_the_side_is_found_and_measured(depth: float) -> None:
     found = judged([[26.0, 5.0, 5.0], [26.0, 5.0, -45.0], [25.0 - depth, 5.0, -45.0], [26.0, 5.0, -45.0]])
     assert not found.passed
-    assert found.gouge_max == pytest.approx(depth, abs=1e-3)
-    assert any("face side" in reason and "convex edge" in reason for reason in found.reasons)
+    # Rays of the top that stand on the lost rim go down beside the cutter's side: they may tell more, never less.
+    assert found.gouge_max >= depth - 1e-6
+    measured = [float(reason.split()[1]) for reason in found.reasons if "face side" in reason and "convex" in reason]
+    assert measured == [pytest.approx(depth, abs=1e-3)]
 
 
 def test_a_gouge_within_the_tolerance_passes() -> None:

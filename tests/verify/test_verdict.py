@@ -111,6 +111,24 @@ def test_gouge_into_the_skin_counts(plane_passes):
     assert found.share_within == 1.0
 
 
+def test_link_through_what_the_passes_leave_is_named(plane_passes):
+    gap = task(plane_passes, targets=(rectangle([-8, -8, 0], [16, 0, 0], [0, 32, 0], 7),), clean_up=0.45)
+    assert judge(gap, spacing=0.5).link_cut is None
+    home = gap.tips[-1:] + np.array([[0.0, 4.0, 0.0]])
+    # The lowest point of the corner is 5 sin 10 deg + 1 - cos 10 deg below the tip: here 0.3 mm above the face.
+    tip = 0.3 + 5 * np.sin(np.radians(10)) + 1 - np.cos(np.radians(10))
+    low = np.array([[home[0, 0] - 4, 15.0, tip], [home[0, 0] - 12, 15.0, tip]])
+    rapid = replace(gap, tips=np.vstack([gap.tips, home, low]), axes=np.vstack([gap.axes, gap.axes[:3]]),
+                    kind=np.append(gap.kind, [3, 3, 3]).astype(np.int8))
+    found = judge(rapid, spacing=0.5)
+    assert not found.passed
+    assert found.link_cut.face == "7"
+    # Heights are followed up to 1 mm; rays 0.5 mm apart miss the lowest line of the swept corner by up to 0.25 mm.
+    assert found.link_cut.value == pytest.approx(0.7, abs=5e-3)
+    assert found.gouge_max < 1e-6
+    assert any("link motion to point" in r and "into what the passes leave on face 7" in r for r in found.reasons)
+
+
 @pytest.mark.parametrize("deep", [0.0, 0.1])
 def test_back_of_a_thin_wall_is_not_taken_for_a_gouge(plane_passes, deep):
     back = rectangle([-8, -8, -0.4], [0, 16, 0], [16, 0, 0], 8)

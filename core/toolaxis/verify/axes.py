@@ -19,7 +19,7 @@ from toolaxis.verify.sweep import LOOK, least_over_motion, moment
 
 Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
-Pieces: TypeAlias = tuple[Array, Array, Array, Array]
+Body: TypeAlias = tuple[Array, tuple[Array, Array, Array, Array]]
 
 #: Side of the cells at the start, mm; error at which the search ends, mm, or as a share of the distance.
 CELL, RESOLUTION, SHARE = 3.0, 5e-4, 1e-3
@@ -63,9 +63,10 @@ class Clearance:
 
 
 @compiled
-def _clear_block(solids: Array, motion: Pieces, tables: tuple[Array, Index, Array], block: tuple[Array, int, int],
+def _clear_block(body: Body, tables: tuple[Array, Index, Array], block: tuple[Array, int, int],
                  out: tuple[Array, Index, Array], limit: float) -> None:
     """Distances of one block of points from all motions; those above the limit stay as they are."""
+    solids, motion = body
     groups, first, slack = tables
     ball, low, high = block
     value, by, point = out
@@ -90,11 +91,12 @@ def _clear_block(solids: Array, motion: Pieces, tables: tuple[Array, Index, Arra
                 middle, _, _ = moment(solids[j], motion, (k, 0.5), (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0), 0.0)
                 if middle - slack[k] - ball[3] <= lever:
                     for i in range(low, high):
-                        _approach(solids[j], motion, k, point, (value, by), i)
+                        _approach((solids[j], motion), k, point, (value, by), i)
 
 
 @compiled
-def _approach(solid: Array, motion: Pieces, k: int, point: Array, out: tuple[Array, Index], i: int) -> None:
+def _approach(body: Body, k: int, point: Array, out: tuple[Array, Index], i: int) -> None:
+    solid, motion = body
     value, by = out
     ray = (point[i, 0], point[i, 1], point[i, 2], 0.0, 0.0, 0.0)
     middle, slope, _ = moment(solid, motion, (k, 0.5), ray, 0.0)
@@ -106,14 +108,14 @@ def _approach(solid: Array, motion: Pieces, k: int, point: Array, out: tuple[Arr
 
 
 @compiled
-def _clear(solids: Array, motion: Pieces, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
+def _clear(body: Body, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
            out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float]) -> None:
     """Distances of blocks of points, as far as they may be among the least: within a margin of the least so far."""
     ball, first = blocks
     value, by, point, counts = out
     best, margin = levels
     for b in range(ball.shape[0]):
-        _clear_block(solids, motion, tables, (ball[b], first[b], first[b + 1]), (value, by, point), best + margin)
+        _clear_block(body, tables, (ball[b], first[b], first[b + 1]), (value, by, point), best + margin)
         for i in range(first[b], first[b + 1]):
             if counts[i] and value[i] < best:
                 best = value[i]
@@ -139,7 +141,7 @@ class _Search:
         motion = (self.motions.start, self.motions.step, self.motions.axis, self.motions.turn)
         out = (value, by, point, np.ascontiguousarray(cells.on_face[order]))
         kernel = _clear if _compiled.available else clear_numpy
-        kernel(self.solids, motion, self.tables, balls(point), out, (best, margin))
+        kernel((self.solids, motion), self.tables, balls(point), out, (best, margin))
         result, which = np.empty_like(value), np.empty_like(by)
         result[order], which[order] = value, by
         return result, which
@@ -149,8 +151,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
               enough: float = np.inf, progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
-    Points all over the faces and their borders are measured against the swept solids; around the nearest ones the
-    points are made denser.  At a distance d, points of spacing e miss the nearest place of a smooth face by about
+    Points all over the faces and their borders are measured against the swept solids, more densely around the nearest.
+     At a distance d, points of spacing e miss the nearest place of a smooth face by about
     e^2 / d, of any face by e; the search ends where the lesser of both is `RESOLUTION`, or `SHARE` of d.
 
     Parameters

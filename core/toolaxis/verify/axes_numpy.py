@@ -12,15 +12,14 @@ Index = NDArray[np.int64]
 _PAIRS = 200_000
 
 
-def clear_numpy(solids: Array, motion: Motion, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
+def clear_numpy(body: tuple[Array, Motion], tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
                 out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float]) -> None:
     """Distances of blocks of points from all motions, as far as they may be among the least.
 
     Parameters
     ----------
-    solids : (k, 7) array
-    motion : four (n, 3) arrays
-        Start, step, axis, turn.
+    body : (k, 7) array, and four (n, 3) arrays
+        The solids; start, step, axis and turn of their motions.
     tables : groups and their beginnings (not used here), slack (n,)
     blocks : ball (b, 4), first (b + 1,)
     out : value, by, point, counts; the first two are changed in place
@@ -29,6 +28,7 @@ def clear_numpy(solids: Array, motion: Motion, tables: tuple[Array, Index, Array
     ball, first = blocks
     value, by, point, counts = out
     best, margin = levels
+    solids, motion = body
     start, step, axis, turn = motion
     middle, lean = start + 0.5 * step, axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
@@ -43,15 +43,15 @@ def clear_numpy(solids: Array, motion: Motion, tables: tuple[Array, Index, Array
             for k in np.array_split(order, max(1, len(order) * len(i) // _PAIRS)):
                 k = k[bound[k] <= min(float(value[i].max()), best + margin)]
                 if len(k):
-                    _approach(solid, motion, (i, k), point, (value, by))
+                    _approach((solid, motion), (i, k), point, (value, by))
         best = min(best, float(value[i][counts[i]].min(initial=np.inf)))
 
 
-def _approach(solid: Array, motion: Motion, pair: tuple[Index, Index], point: Array, out: tuple[Array, Index]) -> None:
+def _approach(body: tuple[Array, Motion], pair: tuple[Index, Index], point: Array, out: tuple[Array, Index]) -> None:
     i, k = pair
+    solid, (start, step, axis, turn) = body
     row, column = np.repeat(i, len(k)), np.tile(k, len(i))
     ray = np.hstack([point[row], np.zeros((len(row), 3))])
-    start, step, axis, turn = motion
     pairs = (solid, (start[column], step[column], axis[column], turn[column]), ray)
     least = least_over_motion_numpy(pairs, np.zeros(len(row)))[0].reshape(len(i), len(k))
     pick = np.argmin(least, axis=1)

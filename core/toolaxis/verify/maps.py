@@ -151,7 +151,7 @@ class SurfaceMap:
                 break
             apart = (np.linalg.norm(np.subtract(p.point, self.point[i])) >= 8 * self.spacing for p in found)
             if all(apart):
-                found.append(_place(self.face, self.uv[i], self.point[i], (float(value[i]), int(by[i]))))
+                found.append(place_at(self.face, self.uv[i], self.point[i], (float(value[i]), int(by[i]))))
         return tuple(found)
 
     def zones(self, limit: float) -> tuple[Zone, ...]:
@@ -187,7 +187,18 @@ def _triple(row: Array) -> tuple[float, float, float]:
     return float(row[0]), float(row[1]), float(row[2])
 
 
-def _place(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> Place:
+def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> Place:
+    """A place from rows of arrays.
+
+    Parameters
+    ----------
+    face : Face
+    uv : (2,) array
+    point : (3,) array
+        mm
+    found : (float, int)
+        Value, mm, and index of the cutter location; -1 where none did it.
+    """
     return Place(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
 
 
@@ -218,7 +229,7 @@ def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
     rows = np.argsort(-value, kind="stable")[:_STARTS]
     if value[rows[0]] <= 0:
         return None
-    best = _place(face, rays.uv[rows[0]], rays.point[rows[0]], (float(value[rows[0]]), int(by[rows[0]])))
+    best = place_at(face, rays.uv[rows[0]], rays.point[rows[0]], (float(value[rows[0]]), int(by[rows[0]])))
     starts, size = rays.uv[rows[value[rows] > 0]], rays.spacing
     for _ in range(_ROUNDS):
         uv = patch_around(face, starts, size)
@@ -231,6 +242,6 @@ def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
         order = np.argsort(-height, kind="stable")
         if height[order[0]] > best.value:
             i = order[0]
-            best = _place(face, uv[i], point[i], (float(height[i]), int(index[i])))
+            best = place_at(face, uv[i], point[i], (float(height[i]), int(index[i])))
         starts, size = uv[order[:_STARTS]], size * _SHRINK
     return best

@@ -49,6 +49,16 @@ class Motions:
     def __len__(self) -> int:
         return len(self.start)
 
+    def rows(self, which: NDArray[np.bool_]) -> "Motions":
+        """Some of the motions.
+
+        Parameters
+        ----------
+        which : (n,) array of bool
+        """
+        return Motions(self.start[which], self.step[which], self.axis[which], self.turn[which], self.arrival[which],
+                       self.kind[which], self.bow)
+
     @property
     def uncertainty(self) -> float:
         """How far the least over a piece may be missed because the axis turns, mm."""

@@ -24,6 +24,7 @@ from toolaxis.verify.sweep import LOOK, first_entry, moment
 Array = NDArray[np.float64]
 Counts: TypeAlias = NDArray[np.int64]
 Pieces: TypeAlias = tuple[Array, Array, Array, Array]
+Body: TypeAlias = tuple[Array, Pieces]
 Found: TypeAlias = tuple[Array, Array, Counts, Counts]
 Tables: TypeAlias = tuple[Array, Counts, Array, NDArray[np.bool_], Counts]
 
@@ -57,9 +58,9 @@ class Remains:
 
 
 @compiled
-def _meet(solid: Array, motion: Pieces, which: tuple[int, bool, int], ray: Array, out: Found,
-          place: tuple[int, float]) -> None:
+def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, place: tuple[int, float]) -> None:
     """Let motion which[0] (cutting or not, arriving at which[2]) act on ray place[0], outside until t = place[1]."""
+    solid, motion = body
     k, cutting, arrival = which
     i, start = place
     remaining, gouge, cut_by, gouged_by = out
@@ -92,13 +93,13 @@ def _turns(motion: Pieces, k: int) -> bool:
 
 
 @compiled
-def _meet_group(solid: Array, motion: Pieces, tables: Tables, ray: Array, out: Found,
-                near: tuple[Counts, int, Array, int]) -> None:
+def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[Counts, int, Array, int]) -> None:
     """Let the motions near[0][:near[1]] act on ray near[3]: the closest first, then those it does not rule out.
 
     One look at the middle of each motion, at height t, tells that the solid's function over the whole motion and ray
     is at least rest + along (t' - t); that rules most of them out, and bounds the root of the others from below.
     """
+    solid, motion = body
     which, count, look, i = near
     cutting, arrival = tables[3], tables[4]
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
@@ -120,7 +121,7 @@ def _meet_group(solid: Array, motion: Pieces, tables: Tables, ray: Array, out: F
             continue
         if along < 0.0 and not _turns(motion, which[n]):
             start = max(start, level - rest / along)
-        _meet(solid, motion, (which[n], cutting[which[n]], arrival[which[n]]), ray, out, (i, start))
+        _meet(body, (which[n], cutting[which[n]], arrival[which[n]]), ray, out, (i, start))
 
 
 @compiled
@@ -135,9 +136,10 @@ def _bounds(solid: Array, groups: Array, ball: Array, reach: float, bound: Array
 
 
 @compiled
-def _remove_block(solid: Array, motion: Pieces, tables: Tables,
-                  ball: Array, ray: Array, rows: tuple[int, int], out: Found) -> None:
+def _remove_block(body: Body, tables: Tables, ray: Array, out: Found, block: tuple[Array, int, int]) -> None:
     """Let all motions act on one block of rays, nearest groups first."""
+    solid, motion = body
+    ball, low, high = block
     groups, first, slack, _, _ = tables
     bound = np.empty(groups.shape[0])
     _bounds(solid, groups, ball, np.sqrt(solid[5] ** 2 + max(solid[0] + solid[1], solid[6]) ** 2), bound)
@@ -145,7 +147,7 @@ def _remove_block(solid: Array, motion: Pieces, tables: Tables,
     which, look = np.empty(GROUP, dtype=np.int64), np.empty((GROUP, 3))
     for g in np.argsort(bound):
         lever = 0.0
-        for i in range(rows[0], rows[1]):
+        for i in range(low, high):
             lever = max(lever, ray[i, 6], min(out[0][i], ray[i, 7]))
         if bound[g] > lever:
             break
@@ -156,16 +158,15 @@ def _remove_block(solid: Array, motion: Pieces, tables: Tables,
                 which[count] = k
                 count += 1
         if count:
-            for i in range(rows[0], rows[1]):
-                _meet_group(solid, motion, tables, ray, out, (which, count, look, i))
+            for i in range(low, high):
+                _meet_group(body, tables, ray, out, (which, count, look, i))
 
 
 @compiled
-def _remove(solid: Array, motion: Pieces, tables: Tables,
-            rays: tuple[Array, Array, Counts], out: Found, part: tuple[int, int]) -> None:
+def _remove(body: Body, tables: Tables, rays: tuple[Array, Array, Counts], out: Found, part: tuple[int, int]) -> None:
     ray, ball, first = rays
     for b in range(part[0], part[1]):
-        _remove_block(solid, motion, tables, ball[b], ray, (first[b], first[b + 1]), out)
+        _remove_block(body, tables, ray, out, (ball[b], first[b], first[b + 1]))
 
 
 def _checked_rays(points: ArrayLike, normals: ArrayLike, depth: ArrayLike, height: ArrayLike) -> Array:
@@ -192,22 +193,22 @@ def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]]
     count, (threads, progress) = len(rays[0]), workers
     out = (np.full(count, np.inf), np.zeros(count), np.full(count, -1, dtype=np.int64),
            np.full(count, -1, dtype=np.int64))
-    motion = (motions.start, motions.step, motions.axis, motions.turn)
+    body = (solid, (motions.start, motions.step, motions.axis, motions.turn))
     stage, blocks = "material removal", len(rays[1])
     if not _compiled.available:
         for low, high in _chunks(blocks):
             part = (rays[0], rays[1][low:high], rays[2][low:high + 1])
-            remove_numpy(solid, motion, (slack, cutting, motions.arrival), part, out)
+            remove_numpy(body, (slack, cutting, motions.arrival), part, out)
             progress.report(stage, high, blocks)
         return out
     full = (*grouped(motions), slack, cutting, motions.arrival)
     if threads <= 1:
         for part_ in _chunks(blocks):
-            _remove(solid, motion, full, rays, out, part_)
+            _remove(body, full, rays, out, part_)
             progress.report(stage, part_[1], blocks)
         return out
     with ThreadPoolExecutor(threads) as pool:
-        jobs = [pool.submit(_remove, solid, motion, full, rays, out, part_) for part_ in _chunks(blocks)]
+        jobs = [pool.submit(_remove, body, full, rays, out, part_) for part_ in _chunks(blocks)]
         try:
             for done, job in enumerate(jobs):
                 job.result()
@@ -221,7 +222,7 @@ def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]]
 
 def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: tuple[ArrayLike, ArrayLike], *,
             depth: ArrayLike = 1.0, height: ArrayLike = 10.0, cutting: tuple[int, ...] = (Motion.CUT,),
-            threads: int = 1, progress: Progress = NO_PROGRESS) -> Remains:
+            among: tuple[int, ...] | None = None, threads: int = 1, progress: Progress = NO_PROGRESS) -> Remains:
     """Remove material with a cutter along cutter location data and measure what is left along rays.
 
     Parameters
@@ -237,6 +238,8 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
         How far to look inwards and outwards, mm.
     cutting : tuple of int
         Kinds of motion that count for what remains; all kinds count for gouges.
+    among : tuple of int, optional
+        Kinds of motion that are looked at; all of them unless given.
     threads : int
         Threads of the compiled kernel; the result does not depend on it.
     progress : Progress
@@ -259,6 +262,8 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
     solid = cutter_solid(profile)
     reach = reach_of(solid)
     motions = motions_from_cl(*cl, reach)
+    if among is not None:
+        motions = motions.rows(np.isin(motions.kind, among))
     ray = _checked_rays(*rays, depth, height)
     if not len(ray):
         raise InvalidInput("there is no ray: give at least one point of the face")
@@ -266,6 +271,9 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
     sorted_ray = np.ascontiguousarray(ray[order])
     lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
     slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
+    if not len(motions):
+        nothing = np.full(len(ray), -1, dtype=np.int64)
+        return Remains(np.full(len(ray), np.inf), np.zeros(len(ray)), nothing, nothing.copy(), NUMERICAL)
     cuts = np.isin(motions.kind, cutting)
     out = _run(solid[0], motions, (slack, cuts), (sorted_ray, *balls(sorted_ray[:, :3])), (threads, progress))
     back = np.empty_like(order)

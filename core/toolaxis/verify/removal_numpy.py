@@ -105,13 +105,13 @@ def first_entry_numpy(pairs: Pairs, low: Array, high: Array) -> Array:
     return entry
 
 
-def _update(solid: Array, motion: Motion, pair: tuple[Index, Index], ray: Array,
+def _update(body: tuple[Array, Motion], pair: tuple[Index, Index], ray: Array,
             out: tuple[Array, Array, Index, Index], kinds: tuple[NDArray[np.bool_], Index]) -> None:
     """Meet pairs (rays, motions) and lower what remains, deepen what is gouged."""
     i, k = pair
     remaining, gouge, cut_by, gouged_by = out
     cutting, arrival = kinds
-    start, step, axis, turn = motion
+    solid, (start, step, axis, turn) = body
     pairs = (solid, (start[k], step[k], axis[k], turn[k]), ray[i])
     level = np.where(cutting[k] & (remaining[i] > 0), np.minimum(remaining[i], ray[i, 7]), -gouge[i])
     value, slope, along = _moment(pairs, np.full(len(i), 0.5), level)
@@ -132,22 +132,21 @@ def _update(solid: Array, motion: Motion, pair: tuple[Index, Index], ray: Array,
     cut_by[i[lowest]] = arrival[k[lowest]]
 
 
-def remove_numpy(solid: Array, motion: Motion, tables: tuple[Array, NDArray[np.bool_], Index],
+def remove_numpy(body: tuple[Array, Motion], tables: tuple[Array, NDArray[np.bool_], Index],
                  rays: tuple[Array, Array, Index], out: tuple[Array, Array, Index, Index]) -> None:
     """Meet every ray with every motion near it.
 
     Parameters
     ----------
-    solid : (7,) array
-    motion : four (n, 3) arrays
-        Start, step, axis, turn.
+    body : (7,) array, and four (n, 3) arrays
+        The solid; start, step, axis and turn of its motions.
     tables : slack (n,), cutting (n,), arrival (n,)
     rays : ray (m, 8), ball (b, 4), first (b + 1,)
     out : remaining, gouge, cut_by, gouged_by, each (m,); changed in place
     """
     slack, cutting, arrival = tables
     ray, ball, first = rays
-    start, step, axis, turn = motion
+    solid, (start, step, axis, turn) = body
     middle, lean = start + 0.5 * step, axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
     kinds = (cutting, arrival)
@@ -166,4 +165,4 @@ def remove_numpy(solid: Array, motion: Motion, tables: tuple[Array, NDArray[np.b
                 k = np.flatnonzero(chosen[j] & (bound[j] <= lever))
                 if len(k):
                     pair = (np.repeat(i, len(k)), np.tile(k, len(i)))
-                    _update(solid, motion, pair, ray, out, kinds)
+                    _update(body, pair, ray, out, kinds)

@@ -1,6 +1,6 @@
 """The verdict: per operation what was measured, against what is allowed, and in sentences why it fails."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import isfinite
@@ -15,7 +15,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
-from toolaxis.verify.maps import Place, SurfaceMap, Zone, surface_map
+from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.rays import Rays, face_rays
 from toolaxis.verify.removal import Remains, removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
@@ -49,7 +49,11 @@ class Task:
     allowance : float
         Stock to be left on the targets and the skin, mm.
     skin : tuple of Face
-        Faces next to the targets that the cutter may touch but not cut: judged for gouge.
+        Faces that continue the targets and that the cutter may touch but not cut: judged for gouge.
+    touching : tuple of Face
+        Faces behind a convex edge of targets or skin: the cutter may touch them where it runs out over the edge, and
+        must not enter them by more than the allowed gouge.  Their own normals leave the part at the edge, so they are
+        judged by distance; shank and holder keep their clearance from them.
     surroundings : tuple of Face
         Everything else, further bodies included: judged for the clearance of all components.
     outlines : dict of str to (k, 2) array
@@ -70,6 +74,7 @@ class Task:
     scallop: float
     allowance: float = 0.0
     skin: tuple[Face, ...] = ()
+    touching: tuple[Face, ...] = ()
     surroundings: tuple[Face, ...] = ()
     outlines: dict[str, Array] = field(default_factory=dict)
     tolerance: Tolerance = field(default_factory=Tolerance)
@@ -108,6 +113,8 @@ class OperationVerdict:
         For "cutter", "shank" and "holder".
     worst_scallop, worst_gouge : tuple of Place
         The worst first; the gouge's only where it exceeds the judge's uncertainty.
+    link_cut : Place or None
+        Where a link goes deepest into what the cutting motions leave; None where none does.
     zones : tuple of Zone
         Connected zones left above the limit, the largest first.
     area : float
@@ -135,6 +142,7 @@ class OperationVerdict:
     clearance: dict[str, Clearance | str]
     worst_scallop: tuple[Place, ...]
     worst_gouge: tuple[Place, ...]
+    link_cut: Place | None
     zones: tuple[Zone, ...]
     area: float
     rays: int
@@ -227,9 +235,11 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
 
     targets = tuple(surface_map(face, measure, spacing) for face in task.targets)
     skin = tuple(surface_map(face, measure, spacing) for face in task.skin)
-    rooms = _rooms(task, progress)
+    link_cut = _link_cut(task, targets, partial(cut, cutting=(Motion.LINK,), among=(Motion.LINK,)))
+    edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
+                     enough=task.tolerance.gouge, progress=progress)
     uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
-    return _summed(task, targets, skin, (rooms, uncertainty))
+    return _summed(task, (targets, skin), (_rooms(task, progress), edge, link_cut), uncertainty)
 
 
 def _needed(task: Task, name: str) -> float:
@@ -240,7 +250,7 @@ def _needed(task: Task, name: str) -> float:
 
 def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
     """Clearance of every component: the cutter from the surroundings, shank and holder from all faces."""
-    everything = (*task.targets, *task.skin, *task.surroundings)
+    everything = (*task.targets, *task.skin, *task.touching, *task.surroundings)
     parts = {name: (frustum_solids(outline, name), everything) for name, outline in task.outlines.items()}
     if task.surroundings:
         parts["cutter"] = (cutter_solid(task.profile), task.surroundings)
@@ -251,14 +261,27 @@ def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
     return rooms
 
 
+def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Remains]) -> Place | None:
+    """Where a link goes deepest into what the cutting motions leave above the targets."""
+    worst: Place | None = None
+    for one in maps:
+        left = links((one.point + task.allowance * one.face.normal(one.uv), one.face.normal(one.uv)), depth=task.depth)
+        depth = np.minimum(one.remaining, max(1.0, 20 * task.scallop)) - left.remaining
+        i = int(np.argmax(depth))
+        if depth[i] > task.tolerance.gouge and (worst is None or depth[i] > worst.value):
+            worst = place_at(one.face, one.uv[i], one.point[i], (float(depth[i]), int(left.cut_by[i])))
+    return worst
+
+
 def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[Place, ...]:
     places = [place for one in maps for place in one.worst(what) if place.value > least]
     return tuple(sorted(places, key=lambda place: -place.value)[:10])
 
 
-def _summed(task: Task, targets: tuple[SurfaceMap, ...], skin: tuple[SurfaceMap, ...],
-            found: tuple[dict[str, Clearance | str], float]) -> OperationVerdict:
-    rooms, uncertainty = found
+def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, ...]],
+            room: tuple[dict[str, Clearance | str], Clearance, Place | None], uncertainty: float) -> OperationVerdict:
+    targets, skin = found
+    rooms, edge, link_cut = room
     limit, maps = FACTOR * task.scallop, (*targets, *skin)
     area = sum(one.area for one in targets)
     share = sum(one.share_within(limit) * one.area for one in targets) / area if area > 0 else 0.0
@@ -267,13 +290,14 @@ def _summed(task: Task, targets: tuple[SurfaceMap, ...], skin: tuple[SurfaceMap,
     gouges = _worst(maps, "gouge", uncertainty)
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
+    gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
-                *_room_reasons(task, rooms)]
+                *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms)]
     notes = [f"{name} not checked" for name, room in rooms.items() if room == NOT_CHECKED]
     return OperationVerdict(
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
-        max(reached, default=0.0 if touched else float("inf")), share, gouge, task.tolerance.gouge, rooms,
-        _worst(targets, "remaining", 0.0), gouges, zones, area, sum(len(one.uv) for one in maps),
+        reached_max, share, gouge_max, task.tolerance.gouge, rooms,
+        _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, sum(len(one.uv) for one in maps),
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes), maps)
 
 
@@ -306,6 +330,20 @@ def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[
     deep = f"{gouge:.4f} mm" if gouge < task.depth else f"{gouge:.3f} mm or more"
     return [f"gouge {deep} at face {worst.face} {_at(worst.point)}, allowed {task.tolerance.gouge} mm, by the "
             f"{_motion(task, worst.motion)}"]
+
+
+def _edge_reasons(task: Task, edge: Clearance) -> list[str]:
+    if -edge.distance <= task.tolerance.gouge:
+        return []
+    return [f"gouge {-edge.distance:.4f} mm at face {edge.face} {_at(edge.point)} behind a convex edge, allowed "
+            f"{task.tolerance.gouge} mm, by the {_motion(task, edge.motion)}"]
+
+
+def _link_reasons(task: Task, place: Place | None) -> list[str]:
+    if place is None:
+        return []
+    return [f"a {_motion(task, place.motion)} goes {place.value:.4f} mm into what the passes leave on face "
+            f"{place.face} at {_at(place.point)}: links must stay clear of it"]
 
 
 def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
