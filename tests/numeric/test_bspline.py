@@ -133,12 +133,14 @@ def test_the_continuation_is_straight_and_smooth_at_the_border() -> None:
     assert np.all(corner[1, [3, 5]] == 0.0)
 
 
-def test_one_point_outside_changes_no_other() -> None:
+@pytest.mark.parametrize("beyond", [[9.0, 0.0], [0.0, 9.0], [-9.0, 0.0], [0.0, -9.0]])
+def test_one_point_outside_changes_no_other(beyond: list[float]) -> None:
     data = surface((3, 3), False)
     uv = inside(data)
     alone = surface_derivatives_many(data, uv)
-    together = surface_derivatives_many(data, np.vstack([uv, [[9.0, 0.0]]]))
+    together = surface_derivatives_many(data, np.vstack([uv, [beyond]]))
     assert_close(together[:-1], alone, 1e-13)
+    assert_close(together[-1:], surface_derivatives_many_numpy(data, np.array([beyond])), 1e-12)
 
 
 def test_nan_stays_nan_and_nothing_comes_of_nothing() -> None:
@@ -169,6 +171,7 @@ def test_spans_at_ends_and_at_repeated_knots() -> None:
     knots = np.array([0.0, 0, 0, 1, 1, 2, 3, 3, 3])
     at = (-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 2.9, 3.0, 4.0)
     assert [find_span(knots, 2, t) for t in at] == [2, 2, 2, 4, 4, 5, 5, 5, 5]
+    assert [find_span(np.array([0.0, 0, 0, 1, 2, 2, 2, 2]), 2, t) for t in (1.5, 2.0, 3.0)] == [3, 3, 3]
 
 
 def test_reparametrised_knots_scale_derivatives() -> None:

@@ -51,6 +51,13 @@ def test_affine_maps_and_swaps_are_followed() -> None:
     assert other.point == pytest.approx(d.point, abs=1e-12) and other.suu == pytest.approx(d.svv, abs=1e-9)
 
 
+def test_swapping_exchanges_degrees() -> None:
+    surface = NurbsSurface.from_points(np.random.default_rng(3).normal(0, 10, (6, 5, 3)), (4, 1))
+    d, other = surface.evaluate(UV), surface.swapped().evaluate(UV[:, ::-1])
+    assert surface.swapped().degree == (1, 4)
+    assert other.point == pytest.approx(d.point, abs=1e-12) and other.svv == pytest.approx(d.suu, abs=1e-9)
+
+
 def test_scalar_rows_and_empty_parameters() -> None:
     assert cubic().evaluate(np.array([0.5, 0.5])).point.shape == (1, 3)
     assert cubic().evaluate(np.empty((0, 2))).svv.shape == (0, 3)
