@@ -169,7 +169,7 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
 
 
 @compiled
-def _new_bench() -> Bench:
+def new_bench() -> Bench:
     road = (np.empty((2 * SIDE_NODES + 1, 7)), np.empty(2 * SIDE_NODES + 1), 0, 0)
     return road, new_memory(new_scratch()), np.empty((3, 3)), np.empty((3, 3)), (new_nodes(), new_nodes())
 
@@ -177,7 +177,7 @@ def _new_bench() -> Bench:
 @compiled
 def section_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
     """Half widths at n contacts into out (n, 2), towards lower and upper parameter of the cross curves."""
-    bench = _new_bench()
+    bench = new_bench()
     for k in range(contacts.shape[0]):
         out[k, 0], out[k, 1] = contact_widths(geometry, contacts[k], axes[k], sizes, bench)
 
@@ -190,7 +190,7 @@ def step_half_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Si
     """
     surface, sign, cutter = geometry
     h, lift, radius = sizes
-    bench = _new_bench()
+    bench = new_bench()
     d, frame = bench[1][3][0], bench[3]
     road, bank = np.empty((ROWS, 13)), np.empty((ROWS, 8))
     tables = (cutter, road, bank, np.empty((6, 3)), np.empty((6, 26)))

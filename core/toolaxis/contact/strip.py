@@ -26,7 +26,7 @@ def _checked(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[
     return (face.surface.data, -1.0 if face.flip else 1.0, cutter), (scallop, scallop + allowance, tool.radius)
 
 
-def _contacts(uv: ArrayLike, feed: Feed, sections: bool) -> Array:
+def contact_rows(uv: ArrayLike, feed: Feed, sections: bool) -> Array:
     """Rows of u, v, feed code, feed vector, and whether widths are taken along normal sections."""
     rows = as_rows(uv, 2, "uv")
     table = np.zeros((len(rows), 7))
@@ -86,7 +86,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     h -> 0 the sum tends to `second_order_width`.
     """
     geometry, sizes = _checked(face, tool, scallop, allowance)
-    contacts = _contacts(uv, feed, True)
+    contacts = contact_rows(uv, feed, True)
     axes = np.ascontiguousarray(np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(contacts), 3)))
     out = np.empty((len(contacts), 2))
     section_widths(geometry, contacts, axes, sizes, out)
@@ -157,4 +157,4 @@ def _step_job(face: Face, tool: Tool, uv: ArrayLike, feed: str,
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
     geometry, sizes = _checked(face, tool, *heights)
-    return geometry, sizes, _contacts(uv, feed, False)
+    return geometry, sizes, contact_rows(uv, feed, False)
