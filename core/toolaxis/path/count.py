@@ -196,7 +196,9 @@ def _narrowest(chart: Chart, cut: Cut, scale: _Scale, steps: Array) -> tuple[Arr
     line = found.line[points.interval]
     step, along = steps[line], points.along
     guess = scale.widths(along, step)
-    place, row = _candidates(*scale.with_beyond(points, line, guess, steps))
+    second = _candidates(points, line, chart.screen(cut, along, step))
+    place, row = (np.concatenate(pair) for pair in zip(
+        _candidates(*scale.with_beyond(points, line, guess, steps)), second, strict=True))
     exact = np.maximum(chart.half_widths(cut, place, steps[row]), 0.0)
     width = np.full(len(steps), np.inf)
     np.minimum.at(width, row, np.where((exact > 0).all(axis=1), exact.sum(axis=1), 0.0))
