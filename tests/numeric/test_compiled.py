@@ -39,6 +39,17 @@ print("fine", round(face.area, 6))
     assert "fine" in without and without == run("import sys; sys.argv.append('with')\n" + script, tmp_path)
 
 
+def test_the_core_loads_without_numba(tmp_path: Path) -> None:
+    script = """
+import importlib, pkgutil, sys, toolaxis
+for module in pkgutil.walk_packages(toolaxis.__path__, "toolaxis."):
+    if not module.name.startswith("toolaxis.cad."):
+        importlib.import_module(module.name)
+assert "numba" not in sys.modules
+"""
+    run(script, tmp_path, TOOLAXIS_NUMBA="0")
+
+
 def test_a_broken_numba_gives_one_notice(tmp_path: Path) -> None:
     (tmp_path / "numba.py").write_text("raise SystemError('made for another numpy')")
     path = os.pathsep.join([str(tmp_path), str(CORE)])

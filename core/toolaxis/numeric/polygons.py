@@ -133,7 +133,7 @@ def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
     Parameters and result as there.
     """
     odd, on = np.zeros((2, len(points)), dtype=bool)
-    finite = np.isfinite(points).all(axis=1)
+    finite = np.asarray(np.isfinite(points).all(axis=1))
     x, y = np.where(finite[:, None], points, 0.0).T
     for x0, y0, x1, y1 in table.edges:
         touched = (y >= min(y0, y1)) & (y <= max(y0, y1))

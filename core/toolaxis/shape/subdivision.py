@@ -107,7 +107,7 @@ def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
 def _halved(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array]) -> _Level:
     """Both halves of some nodes, cut across their longer side at a base line or, in one base cell, in the middle."""
     count = level.base[rows, 1::2] - level.base[rows, 0::2]
-    several = (count > 1).any(axis=1)
+    several = np.asarray((count > 1).any(axis=1))
     across = np.argmax(np.where(several[:, None] & (count == 1), -1.0, size[rows]), axis=1)
     k = np.arange(len(rows))
     at = (level.base[rows, 2 * across] + level.base[rows, 2 * across + 1]) // 2
