@@ -37,7 +37,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         from toolaxis.job.run import plan
 
         with shown_progress(asked) as progress:
-            made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.inputs.limits or None, faces=spec.numbers,
+            made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.inputs.limits, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, progress=progress)

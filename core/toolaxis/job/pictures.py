@@ -8,8 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
+from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import unit
+from toolaxis.orient.indexed import task
+from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import smallest_cap
+from toolaxis.orient.sector import roman_axis, sectors
 from toolaxis.path.count import count
 from toolaxis.path.estimate import estimate
 from toolaxis.path.isoparametric import layout
@@ -31,7 +35,10 @@ _POINTS = 60
 
 
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
-    """Draw every operation: passes and tool, hemisphere, strip widths; and one study of estimate and count.
+    """Draw every operation: passes and tool, hemisphere, strip widths.
+
+    The operation on the largest face also gets what takes longer: the study of estimate and count, and the axis of the
+    paper's sectors marked on its hemisphere.
 
     Parameters
     ----------
@@ -44,7 +51,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     for index, op in enumerate(plan.operations):
         progress.report("pictures", index, len(plan.operations))
         if op.orientation.map is not None:
-            hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), _marks(op),
+            marks = {**_marks(op), **_baselines(plan, op, op is largest, progress)}
+            hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
             operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
@@ -85,6 +93,20 @@ def _marks(op: Operation) -> Mapping[str, ArrayLike]:
     if lobes:
         marks["other lobes"] = np.array(lobes)
     marks["mean normal"] = _mean_normal(op.face)
+    return marks
+
+
+def _baselines(plan: Plan, op: Operation, sectors_too: bool, progress: Progress) -> Mapping[str, ArrayLike]:
+    """Axes that other rules choose: Roman's, and that of projection planes and sectors."""
+    words = plan.inputs.limits
+    limits = parse_limits(words) if ":" in words else None
+    job = task(op.face, plan.tool, plan.inputs.scallop, limits,
+               [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
+               part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance, progress=progress)
+    marks: dict[str, ArrayLike] = {"Roman's rule": roman_axis(Ledger(job.feasibility, job.worth, progress))}
+    if sectors_too and plan.inputs.method != "sectors":
+        found = sectors(Ledger(job.feasibility, job.worth, progress))
+        marks |= {"sectors [zhu2016]": found[0].axis} if found else {}
     return marks
 
 

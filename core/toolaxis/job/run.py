@@ -14,7 +14,8 @@ from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
-from toolaxis.orient.indexed import best_axis
+from toolaxis.numeric.vectors import as_rows
+from toolaxis.orient.indexed import best_axis, combined
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.path.isoparametric import passes
 from toolaxis.plan.operation import Operation
@@ -46,7 +47,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     scallop : float
         Greatest scallop height, mm.
     machine : AxisLimits or str, optional
-        Limits of the axis, or their short form ("cone:0,0,1,45").
+        Limits of the axis, or their short form ("cone:0,0,1,45"); see `toolaxis.machine.limits`.
     faces : sequence of int, "all" or text such as "3,5-8", optional
         The sculptured faces unless given.
     regions, orientations : None
@@ -83,15 +84,15 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     """
     _refuse_later(regions=regions, orientations=orientations, strategy=None if strategy == "indexed" else strategy)
     limits = parse_limits(machine) if isinstance(machine, str) and machine else machine or None
-    inputs = Inputs(float(scallop), float(allowance), method, objective, direction,
-                    machine if isinstance(machine, str) else "" if limits is None else repr(limits),
-                    float(feedrate), float(spindle), tolerance or Tolerance())
+    words = machine if isinstance(machine, str) else "" if limits is None else f"a {type(limits).__name__}"
+    inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
+                    float(spindle), tolerance or Tolerance())
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
     loaded = load(part)
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
-    job = _Job(loaded, cutter, inputs, limits, bodies, np.asarray(datum, dtype=float))  # type: ignore[arg-type]
+    job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0])
     return job.carried_out(targets, progress)
 
 

@@ -37,7 +37,7 @@ class Inputs:
     method, objective, direction : str
         One of `METHODS`, `OBJECTIVES`, `DIRECTIONS`.
     limits : str
-        Limits of the axis in the short form of the command; empty for none.
+        Limits of the axis in the short form of the command, or what was given instead ("a Cone"); empty for none.
     feedrate : float
         mm/min
     spindle : float

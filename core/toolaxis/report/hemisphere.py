@@ -93,8 +93,8 @@ def hemisphere_picture(found: AxisMap, area: float, pole: ArrayLike, marks: Mapp
     if free.any():
         colour = np.where(on_disc, width[nearest], np.nan).reshape(_SIZE, _SIZE)
         image = ax.imshow(colour, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", interpolation="nearest",
-                          norm=Normalize(float(np.nanmin(width)), float(np.nanmax(width))))
-        made.colorbar(image, ax=ax, shrink=0.75).set_label("average strip width (screening), mm")
+                          norm=Normalize(float(np.nanpercentile(width, 3)), float(np.nanmax(width))))
+        made.colorbar(image, ax=ax, shrink=0.75, extend="min").set_label("average strip width (screening), mm")
     place = equal_area(found.axis, centre, right)
     inside = np.linalg.norm(place, axis=1) <= 1.0
     ax.plot(*place[inside].T, ".", color="black", markersize=1.0, alpha=0.35)
