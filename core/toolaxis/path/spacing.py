@@ -22,8 +22,9 @@ Bools = NDArray[np.bool_]
 #: Numbers of gaps between measured lines that are tried in turn; all lines together are about this many.
 _GAPS = (24, 48, 96, 192)
 _FINE = 1024
-#: Relative error of interpolated half widths that is accepted.
-_INTERPOLATION = 5e-4
+#: Relative error of interpolated half widths that is accepted at the narrowest places of a pass, and elsewhere.
+_INTERPOLATION, _ELSEWHERE = 5e-4, 3e-3
+_NARROW = 1.1
 #: Strips overlap by up to this share of the narrowest one, half as much on average.
 _ACCURACY = 4e-4
 _MOST_PASSES = 20_000
@@ -68,13 +69,15 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     exact = chart.half_widths(cut, along, step).reshape(len(fine.measured), len(steps), 2)
     found = table(columns(chart, fine.measured), len(fine.measured))[:, None]
     counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
+    width = np.where(counts, exact.sum(axis=2), np.inf)
+    allowed = np.where(width <= _NARROW * width.min(axis=0), _INTERPOLATION, _ELSEWHERE)[..., None] * exact
     for gaps in _GAPS[:-1]:
         coarse = _grid(chart, gaps)
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
             continue
         guess = _interpolated(coarse.measured, exact[where], fine.measured)
-        if (np.abs(guess - exact) <= _INTERPOLATION * exact)[counts].all():
+        if (np.abs(guess - exact) <= allowed)[counts].all():
             return coarse
     return fine
 
