@@ -96,6 +96,12 @@ def test_rigid_motion_and_mirror_change_nothing():
     assert moved.distance == pytest.approx(here.distance, abs=2e-4)
 
 
+def test_result_does_not_depend_on_threads():
+    solids = frustum_solids(HOLDER, "holder")
+    one, three = (clearance(row(-5.5, 0.02), ("holder", solids), (WALL, FLOOR), threads=n) for n in (1, 3))
+    assert one == three
+
+
 def brute_force(cl, outline, faces):
     """Nearest of many points to many still tools, by distance to a fine polygon of the meridian."""
     tips, axes, _ = cl

@@ -1,6 +1,8 @@
 """Room around the tool: the least distance of each of its components from faces, along all motions."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -11,7 +13,7 @@ from toolaxis.numeric.compiled import compiled
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes_numpy import clear_numpy
-from toolaxis.verify.blocks import balls, curve_order
+from toolaxis.verify.blocks import balls, curve_order, in_chunks
 from toolaxis.verify.cells import Cells, face_cells, split
 from toolaxis.verify.motions import Motions, grouped, motions_from_cl
 from toolaxis.verify.solids import meridian, reach_of
@@ -109,12 +111,12 @@ def _approach(body: Body, k: int, point: Array, out: tuple[Array, Index], i: int
 
 @compiled
 def _clear(body: Body, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
-           out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float]) -> None:
-    """Distances of blocks of points, as far as they may be among the least: within a margin of the least so far."""
+           out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
+    """Distances of the points of blocks levels[2] up to levels[3], true where within a margin of the least so far."""
     ball, first = blocks
     value, by, point, counts = out
-    best, margin = levels
-    for b in range(ball.shape[0]):
+    best, margin, low, high = levels
+    for b in range(low, high):
         _clear_block(body, tables, (ball[b], first[b], first[b + 1]), (value, by, point), best + margin)
         for i in range(first[b], first[b + 1]):
             if counts[i] and value[i] < best:
@@ -124,8 +126,8 @@ def _clear(body: Body, tables: tuple[Array, Index, Array], blocks: tuple[Array, 
 class _Search:
     """Distances of points from one component along the motions."""
 
-    def __init__(self, solids: Array, motions: Motions) -> None:
-        self.solids, self.motions = solids, motions
+    def __init__(self, solids: Array, motions: Motions, workers: tuple[int, Callable[[float, float], None]]) -> None:
+        self.solids, self.motions, self.workers = solids, motions, workers
         reach = reach_of(solids)
         lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
         slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
@@ -141,14 +143,19 @@ class _Search:
         motion = (self.motions.start, self.motions.step, self.motions.axis, self.motions.turn)
         out = (value, by, point, np.ascontiguousarray(cells.on_face[order]))
         kernel = _clear if _compiled.available else clear_numpy
-        kernel((self.solids, motion), self.tables, balls(point), out, (best, margin))
+        blocks = balls(point)
+
+        def work(part: tuple[int, int]) -> None:
+            kernel((self.solids, motion), self.tables, blocks, out, (best, margin, *part))
+
+        in_chunks(work, len(blocks[0]), *self.workers)
         result, which = np.empty_like(value), np.empty_like(by)
         result[order], which[order] = value, by
         return result, which
 
 
 def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
-              enough: float = np.inf, progress: Progress = NO_PROGRESS) -> Clearance:
+              enough: float = np.inf, threads: int = 1, progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
     Points all over the faces and their borders are measured against the swept solids, more densely around the nearest.
@@ -164,6 +171,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     faces : tuple of Face
     enough : float
         Distance that is asked for, mm: where the tool stays `AMPLE` times as far away, the search ends early.
+    threads : int
+        Threads of the compiled kernel; the result does not depend on it.
     progress : Progress
 
     Raises
@@ -181,13 +190,13 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, motions.uncertainty)
     if not faces:
         return nothing
-    search, cells = _Search(solids, motions), face_cells(faces, CELL)
+    search = _Search(solids, motions, (threads, partial(progress.report, f"{name} clearance")))
+    cells = face_cells(faces, CELL)
     best, found, error = FAR, None, 0.0
     few = cells.rows(np.arange(0, len(cells), 16))
     value, _ = search.distances(few, best, 0.0)
     best = float(value[few.on_face].min(initial=FAR))
-    for turn in range(_ROUNDS):
-        progress.report(f"{name} clearance", turn, _ROUNDS)
+    for _ in range(_ROUNDS):
         margin = float(cells.radius.max())
         value, by = search.distances(cells, best, margin)
         here = np.where(cells.on_face, value, np.inf)

@@ -13,7 +13,7 @@ _PAIRS = 200_000
 
 
 def clear_numpy(body: tuple[Array, Motion], tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
-                out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float]) -> None:
+                out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
     """Distances of blocks of points from all motions, as far as they may be among the least.
 
     Parameters
@@ -23,16 +23,16 @@ def clear_numpy(body: tuple[Array, Motion], tables: tuple[Array, Index, Array], 
     tables : groups and their beginnings (not used here), slack (n,)
     blocks : ball (b, 4), first (b + 1,)
     out : value, by, point, counts; the first two are changed in place
-    levels : least known distance, and margin above it within which distances are wanted, mm
+    levels : least known distance, and margin above it within which distances are wanted, mm; blocks from and to
     """
     ball, first = blocks
     value, by, point, counts = out
-    best, margin = levels
+    best, margin, low, high = levels
     solids, motion = body
     start, step, axis, turn = motion
     middle, lean = start + 0.5 * step, axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
-    for b in range(len(ball)):
+    for b in range(low, high):
         w = ball[b, :3] - middle
         z = np.einsum("ij,ij->i", w, lean)
         rho = np.linalg.norm(w - z[:, None] * lean, axis=1)

@@ -1,12 +1,15 @@
 """Points in blocks: neighbours along a space-filling curve, with a ball around each block."""
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Points in a block.
-BLOCK = 32
+#: Points in a block, and blocks that one call of a kernel works off.
+BLOCK, CHUNK = 32, 32
 
 _BITS = 16
 
@@ -58,3 +61,35 @@ def balls(points: Array) -> tuple[Array, NDArray[np.int64]]:
     owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
     far = np.maximum.reduceat(np.linalg.norm(points - centre[owner], axis=1), first[:-1])
     return np.ascontiguousarray(np.column_stack([centre, far])), first
+
+
+def in_chunks(work: Callable[[tuple[int, int]], None], blocks: int, threads: int,
+              report: Callable[[float, float], None]) -> None:
+    """Work off blocks in chunks, which are the same whatever the number of threads.
+
+    Parameters
+    ----------
+    work : callable
+        Called with the first block of a chunk and the one behind its last.
+    blocks : int
+        Number of blocks.
+    threads : int
+    report : callable
+        Called with the blocks done and the blocks in all; may raise to stop.
+    """
+    chunks = [(b, min(b + CHUNK, blocks)) for b in range(0, blocks, CHUNK)]
+    if threads <= 1:
+        for chunk in chunks:
+            work(chunk)
+            report(chunk[1], blocks)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        jobs = [pool.submit(work, chunk) for chunk in chunks]
+        try:
+            for chunk, job in zip(chunks, jobs, strict=True):
+                job.result()
+                report(chunk[1], blocks)
+        except BaseException:
+            for job in jobs:
+                job.cancel()
+            raise

@@ -1,8 +1,7 @@
 """What the cutter leaves: height of the material above each point of a face, and depth of the cut below it."""
 
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -15,7 +14,7 @@ from toolaxis.numeric.compiled import compiled
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.blocks import balls, curve_order
+from toolaxis.verify.blocks import balls, curve_order, in_chunks
 from toolaxis.verify.motions import GROUP, Motions, grouped, motions_from_cl
 from toolaxis.verify.removal_numpy import remove_numpy
 from toolaxis.verify.solids import cutter_solid, meridian, reach_of
@@ -30,8 +29,6 @@ Tables: TypeAlias = tuple[Array, Counts, Array, NDArray[np.bool_], Counts]
 
 #: Bound of the rounding and root-finding errors of a height, mm.
 NUMERICAL = 1e-6
-
-_CHUNK = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,11 +178,6 @@ def _checked_rays(points: ArrayLike, normals: ArrayLike, depth: ArrayLike, heigh
     return np.ascontiguousarray(np.hstack([foot, unit(direction), span]))
 
 
-def _chunks(blocks: int) -> Iterator[tuple[int, int]]:
-    for b in range(0, blocks, _CHUNK):
-        yield b, min(b + _CHUNK, blocks)
-
-
 def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]], rays: tuple[Array, Array, Counts],
          workers: tuple[int, Progress]) -> Found:
     """Hand blocks of rays to the kernel, or to its twin."""
@@ -194,29 +186,16 @@ def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]]
     out = (np.full(count, np.inf), np.zeros(count), np.full(count, -1, dtype=np.int64),
            np.full(count, -1, dtype=np.int64))
     body = (solid, (motions.start, motions.step, motions.axis, motions.turn))
-    stage, blocks = "material removal", len(rays[1])
-    if not _compiled.available:
-        for low, high in _chunks(blocks):
-            part = (rays[0], rays[1][low:high], rays[2][low:high + 1])
-            remove_numpy(body, (slack, cutting, motions.arrival), part, out)
-            progress.report(stage, high, blocks)
-        return out
     full = (*grouped(motions), slack, cutting, motions.arrival)
-    if threads <= 1:
-        for part_ in _chunks(blocks):
-            _remove(body, full, rays, out, part_)
-            progress.report(stage, part_[1], blocks)
-        return out
-    with ThreadPoolExecutor(threads) as pool:
-        jobs = [pool.submit(_remove, body, full, rays, out, part_) for part_ in _chunks(blocks)]
-        try:
-            for done, job in enumerate(jobs):
-                job.result()
-                progress.report(stage, done + 1, len(jobs))
-        except BaseException:
-            for job in jobs:
-                job.cancel()
-            raise
+
+    def work(part: tuple[int, int]) -> None:
+        if _compiled.available:
+            _remove(body, full, rays, out, part)
+        else:
+            some = (rays[0], rays[1][slice(*part)], rays[2][part[0]:part[1] + 1])
+            remove_numpy(body, (slack, cutting, motions.arrival), some, out)
+
+    in_chunks(work, len(rays[1]), threads, partial(progress.report, "material removal"))
     return out
 
 

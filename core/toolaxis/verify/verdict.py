@@ -237,9 +237,9 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     skin = tuple(surface_map(face, measure, spacing) for face in task.skin)
     link_cut = _link_cut(task, targets, partial(cut, cutting=(Motion.LINK,), among=(Motion.LINK,)))
     edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
-                     enough=task.tolerance.gouge, progress=progress)
+                     enough=task.tolerance.gouge, threads=threads, progress=progress)
     uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
-    return _summed(task, (targets, skin), (_rooms(task, progress), edge, link_cut), uncertainty)
+    return _summed(task, (targets, skin), (_rooms(task, threads, progress), edge, link_cut), uncertainty)
 
 
 def _needed(task: Task, name: str) -> float:
@@ -248,7 +248,7 @@ def _needed(task: Task, name: str) -> float:
     return needed.get(name, task.tolerance.holder_clearance)
 
 
-def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
+def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance | str]:
     """Clearance of every component: the cutter from the surroundings, shank and holder from all faces."""
     everything = (*task.targets, *task.skin, *task.touching, *task.surroundings)
     parts = {name: (frustum_solids(outline, name), everything) for name, outline in task.outlines.items()}
@@ -257,7 +257,7 @@ def _rooms(task: Task, progress: Progress) -> dict[str, Clearance | str]:
     rooms: dict[str, Clearance | str] = {"cutter": NOT_CHECKED, "shank": NOT_CHECKED, "holder": NOT_CHECKED}
     for name, (solids, faces) in parts.items():
         rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=_needed(task, name),
-                                progress=progress)
+                                threads=threads, progress=progress)
     return rooms
 
 
