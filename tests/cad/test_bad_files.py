@@ -2,12 +2,13 @@
 
 import hashlib
 import re
+import subprocess
 import time
 
 import numpy as np
 import pytest
 
-from toolaxis.cad import load
+from toolaxis.cad import load, transfer
 from toolaxis.cad.steptext import read_text
 from toolaxis.errors import InvalidInput, ToolAxisError
 
@@ -32,6 +33,16 @@ def write(tmp_path):
     return file
 
 
+@pytest.fixture
+def same_process(monkeypatch):
+    """Let the kernel read in this process, for tests that ask what comes out and not where."""
+
+    def run(arguments, file, limit):
+        return subprocess.CompletedProcess(arguments, transfer.main(arguments), b"", b"")
+
+    monkeypatch.setattr("toolaxis.cad.step._run", run)
+
+
 def refused(path, sentence, **options):
     start = time.perf_counter()
     with pytest.raises(InvalidInput, match=sentence) as caught:
@@ -49,7 +60,7 @@ def test_missing_folder_and_empty(tmp_path, write):
     refused(write(" \n\n"), "is empty")
 
 
-def test_other_content(write, text):
+def test_other_content(write, text, same_process):
     refused(write("solid cube\nfacet normal 0 0 1\n"), "not a STEP file")
     refused(write(bytes(range(256)) * 20), "not a STEP file")
     refused(write("IGES" + text), "not a STEP file")
@@ -79,17 +90,17 @@ def test_numbers_that_are_not_finite(write, text, number):
     assert refused(write(broken), f"{re.escape(number)} in entity #[0-9]+: every number must be finite") < 1.0
 
 
-def test_names_like_nan_are_no_numbers(write, text):
+def test_names_like_nan_are_no_numbers(write, text, same_process):
     named = text.replace("ADVANCED_FACE(''", "ADVANCED_FACE('(nan, inf)'", 1)
     assert named != text
     assert len(load(write(named)).faces) == 7
 
 
-def test_a_byte_order_mark_does_no_harm(write, text):
+def test_a_byte_order_mark_does_no_harm(write, text, same_process):
     assert len(load(write(b"\xef\xbb\xbf" + text.encode())).faces) == 7
 
 
-def test_dangling_references_and_lost_faces(write, text):
+def test_dangling_references_and_lost_faces(write, text, same_process):
     number = re.search(r"#(\d+) = CYLINDRICAL_SURFACE", text).group(1)
     path = write(re.sub(rf"#{number} = CYLINDRICAL_SURFACE[^;]*;", "", text))
     refused(path, rf"lost 1 of its 7 faces in transfer \(its text refers to #{number}")
@@ -143,7 +154,7 @@ def test_a_kernel_that_crashes_is_survived(write, text, monkeypatch):
     refused(write(text), r"crashed the CAD kernel \(signal 11\)")
 
 
-def test_hash_and_source_are_kept(write, text):
+def test_hash_and_source_are_kept(write, text, same_process):
     path = write(text)
     part = load(path)
     assert part.sha256 == hashlib.sha256(text.encode()).hexdigest()
@@ -151,7 +162,7 @@ def test_hash_and_source_are_kept(write, text):
 
 
 @pytest.mark.parametrize("unit, factor", [("SI_UNIT($,.METRE.)", 1000.0), ("SI_UNIT(.CENTI.,.METRE.)", 10.0)])
-def test_declared_units_become_millimetres(write, text, unit, factor):
+def test_declared_units_become_millimetres(write, text, unit, factor, same_process):
     size = load(write(text)).diagonal
     part = load(write(text.replace("SI_UNIT(.MILLI.,.METRE.)", unit)))
     assert part.diagonal == pytest.approx(size * factor, rel=1e-9)
@@ -160,14 +171,14 @@ def test_declared_units_become_millimetres(write, text, unit, factor):
     assert len(warned) == (1 if factor == 1000.0 else 0)
 
 
-def test_a_part_too_small_for_its_unit_is_warned_about(write):
+def test_a_part_too_small_for_its_unit_is_warned_about(write, same_process):
     path = write("", "small.step")
     cq.exporters.export(cq.Workplane().box(0.2, 0.3, 0.1), str(path))
     warnings = load(path).warnings
     assert any("0.3742 mm across" in text and "374.2 mm if its numbers were m" in text for text in warnings)
 
 
-def test_damaged_geometry_is_warned_about(write, text):
+def test_damaged_geometry_is_warned_about(write, text, same_process):
     """A vertex moved by 5 mm: every face comes out, but the edges no longer lie on them."""
     moved, count = re.subn(r"(#\d+ = CIRCLE\('',#\d+,)5\.\)", r"\g<1>8.)", text, count=1)
     assert count == 1
