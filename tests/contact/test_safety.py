@@ -258,7 +258,7 @@ def test_gouges_are_never_missed():
 
 
 def test_collisions_are_never_missed():
-    _check_collisions(np.vstack([_judge_collisions(seed) for seed in SOME]))
+    _check_collisions(np.vstack([_judge_collisions(seed) for seed in SOME[:12]]))
 
 
 @pytest.mark.long

@@ -40,6 +40,18 @@ Item: TypeAlias = tuple[float, float, float, float, float, float]
 
 
 @built_in
+def close_enough(least: float, resolution: float) -> float:
+    """The bound that need not be improved: beyond a depth of 0.1 mm a twentieth of what is deeper may be lost.
+
+    Parameters
+    ----------
+    least, resolution : float
+        mm
+    """
+    return least - max(resolution, -0.05 * (least + 0.1))
+
+
+@built_in
 def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
             tag: tuple[int, int, bool, int, float, float], state: State) -> tuple[int, float]:
     """Which pieces are still open over one cell, and the lowest of their bounds.
@@ -73,7 +85,7 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         if wanted == -np.inf:
             continue
         if resolution >= 0.0:
-            wanted = found[0, k] - resolution
+            wanted = close_enough(found[0, k], resolution)
         if outside >= wanted:
             found[1, k] = min(found[1, k], outside)
             continue
@@ -252,7 +264,7 @@ def decided(tool: ToolData, state: State, mask: int, key: float) -> bool:
     if resolution < 0.0:
         return False
     for p in range(pieces.shape[0]):
-        if mask & (1 << p) and key < found[0, int(pieces[p, 7])] - resolution:
+        if mask & (1 << p) and key < close_enough(found[0, int(pieces[p, 7])], resolution):
             return False
     give_up(tool, state, mask, key)
     return True
