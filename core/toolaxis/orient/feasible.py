@@ -21,7 +21,7 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.orient.cloud import deepest
 from toolaxis.orient.normals import NormalField
-from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.orient.setting import OTHER, ROLES, SKIN, Group
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
@@ -221,7 +221,8 @@ class Feasibility:
         i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
         return int(trouble.reason[i]), float(trouble.amount[i]), unreached
 
-    def trouble(self, axis: Array, contacts: Contacts, thorough: bool = True) -> Trouble:
+    def trouble(self, axis: Array, contacts: Contacts, thorough: bool = True,
+                roles: tuple[str, ...] = ROLES) -> Trouble:
         """What is worst at each contact.
 
         Parameters
@@ -230,30 +231,20 @@ class Feasibility:
         contacts : Contacts
         thorough : bool
             Whether gouges of the skin are looked for too.
+        roles : tuple of str
+            Groups that are looked at.
         """
-        tip = tips(contacts.point, contacts.normal, axis, self.tool, self.allowance)
-        return self.trouble_at(motions(tip, axis), contacts.point, thorough)
-
-    def trouble_at(self, moves: Array, places: Array, thorough: bool = True) -> Trouble:
-        """What is worst on each motion of the tool.
-
-        Parameters
-        ----------
-        moves : (n, 3, 3) array
-            From `toolaxis.contact.distances.motions` or `segment_motions`.
-        places : (n, 3) array
-            Contacts, from which the distance to walls counts.
-        thorough : bool
-            Whether gouges of the skin are looked for too.
-        """
+        moves = motions(tips(contacts.point, contacts.normal, axis, self.tool, self.allowance), axis)
         n = len(moves)
         worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
                         np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
         for number, group in enumerate(self.groups):
+            if group.role not in roles:
+                continue
             fine = FINE if group.role != OTHER else COARSE
             left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
             found = bounded(group.cells, self.tool, moves, group.required + 2 * fine, fine, left_out)
-            worst = self._worse(worst, found, number, places)
+            worst = self._worse(worst, found, number, contacts.point)
         return worst
 
     def _worse(self, worst: Trouble, found: Found, number: int, places: Array) -> Trouble:
@@ -348,13 +339,20 @@ class Feasibility:
         Returns
         -------
         (n,) bool; what is False is cut out of passes.
+
+        Notes
+        -----
+        Contacts on the face are looked at for walls and obstacles only: for all else a free axis is free there.
         """
         rows, t = as_rows(uv, 2, "uv"), unit(as_rows(axis, 3, "axis")[0])
         normal, point = self.face.normal(rows), self.face.evaluate(rows).point
         angle = angle_between(np.broadcast_to(t, normal.shape), normal)
         good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
-        some = Contacts(rows[good], point[good], normal[good], np.zeros(int(good.sum())))
-        good[good] = self.trouble(t, some).reason == FREE
+        inside = self.face.contains(rows)
+        for part, roles in ((good & inside, (OTHER,)), (good & ~inside, ROLES)):
+            if part.any() and any(group.role in roles for group in self.groups):
+                some = Contacts(rows[part], point[part], normal[part], np.zeros(int(part.sum())))
+                good[part] = self.trouble(t, some, roles=roles).reason == FREE
         return np.asarray(good)
 
     def room(self, axis: ArrayLike, most: float = 10.0) -> float:

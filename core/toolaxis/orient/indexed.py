@@ -16,10 +16,11 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import sectors
-from toolaxis.orient.setting import Group, Obstacles, grouped
+from toolaxis.orient.setting import OTHER, Group, Obstacles, grouped
 from toolaxis.orient.sphere import Candidate, repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import passes
+from toolaxis.path.linking import Linking
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -33,6 +34,8 @@ METHODS = {"sphere": search, "sectors": sectors}
 
 #: What the search keeps to itself of each clearance, mm, so that motions between its contacts pass the proof.
 MARGIN = 0.01
+#: Height above everything at which links cross, mm.
+CROSSING = 5.0
 _ATTEMPTS = 3
 
 
@@ -64,15 +67,20 @@ class Task:
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The passes with an axis, cut out where the tool must not go.
 
+        Next to walls they begin and end without ramps: a ramp goes on along the feed, into the wall.
+
         Parameters
         ----------
         axis : (3,) array
         feed : str
         """
         worth, feasibility = self.worth, self.feasibility
+        low, high = self.box
+        height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
+        walls = any(group.role == OTHER for group in self.groups)
         return passes(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
-                      reach=lambda uv: feasibility.reach(uv, axis), tolerance=feasibility.tolerance, box=self.box,
-                      progress=self.progress)
+                      reach=lambda uv: feasibility.reach(uv, axis), tolerance=feasibility.tolerance,
+                      linking=Linking(height, run_in=0.0) if walls else Linking(height), progress=self.progress)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,

@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 
 COMPONENTS = ("cutter", "shank", "holder")
 _BATCH = 400
+#: Resolution of reported clearances, mm.
+_ROUGH = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,9 +112,9 @@ def _least(tool: Tool, group: Group, moves: Array, components: tuple[int, ...], 
     """Least distance of components to a group over all motions; the bound found so far cuts the search short."""
     if not components:
         return {}
-    asked, best = _only(group, components), np.full(3, most)
-    order = np.argsort(-(moves[:, 0] @ moves[0, 2]), kind="stable")[::-1]
+    asked, best = _only(group, components), np.full(3, most + _ROUGH)
+    order = np.argsort(moves[:, 0] @ moves[0, 2], kind="stable")
     for first in range(0, len(order), _BATCH):
-        found = bounded(group.cells, tool, moves[order[first:first + _BATCH]], best, 10 * COARSE, asked)
-        best = np.minimum(best, found.lower.min(axis=0))
-    return {c: float(best[c]) for c in components}
+        least = bounded(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH, asked).lower.min(axis=0)
+        best = np.where(least < best - _ROUGH, least, best)
+    return {c: float(best[c]) - _ROUGH for c in components}

@@ -43,8 +43,10 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
                 f"{degrees(feasibility.greatest_angle):.1f} deg from the normal of face {own} {at}: the cutter's "
                 "bottom does not reach there")
     if found.reason == WANDERS:
-        return (f"the axis comes {degrees(found.amount):.2f} deg nearer than {degrees(feasibility.least_angle):.2f} "
-                f"deg to a normal of face {own} {at}: the contact wanders over the flat bottom")
+        least = degrees(feasibility.least_angle)
+        angle = max(least - degrees(found.amount), 0.0)
+        return (f"the axis comes within {angle:.2f} deg of a normal of face {own} {at}, less than {least:.2f} "
+                "deg: the contact wanders over the flat bottom")
     if found.reason == GOUGE:
         return f"the cutter gouges face {found.label or own} by {-found.distance:.3f} mm {at}"
     name = ("cutter", "shank", "holder")[found.reason - CUTTER]

@@ -17,7 +17,7 @@ from toolaxis.tolerances import Tolerance
 Array = NDArray[np.float64]
 Obstacles: TypeAlias = Part | Face | Sequence[Face] | None
 
-SKIN, TOUCHING, OTHER = "skin", "touching", "other"
+ROLES = SKIN, TOUCHING, OTHER = "skin", "touching", "other"
 
 
 @dataclass(frozen=True, eq=False)

@@ -57,6 +57,11 @@ class Worth:
         """The face made ready for estimates with many axes."""
         return Estimator.of(self.face, self.tool, self.scallop, self.allowance)
 
+    @cached_property
+    def charts(self) -> tuple[IsoChart, IsoChart]:
+        """The face in its own parameters, for feed u and v."""
+        return IsoChart(self.face, "u"), IsoChart(self.face, "v")
+
     @property
     def samples(self) -> Samples:
         """Sample points of the face."""
@@ -80,7 +85,9 @@ class Worth:
         axis : (3,) array
         feed : str
         """
-        found = measure(IsoChart(self.face, feed), Cut(self.tool, axis, self.scallop, self.allowance))
+        cut = Cut(self.tool, axis, self.scallop, self.allowance)
+        cut.__dict__["leans"] = self.estimator.leans
+        found = measure(self.charts[FEEDS.index(feed)], cut)
         return found.passes, found.length
 
     def charge(self, length: float, unreached: float) -> float:
