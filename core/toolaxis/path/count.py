@@ -139,7 +139,8 @@ def _integrals(chart: Chart, cut: Cut, scale: "_Scale", low: Array, high: Array)
     half = (high - low) / 2
     steps = ((low + high) / 2)[:, None] + half[:, None] * nodes
     width, length = _narrowest(chart, cut, scale, steps.ravel())
-    rate = np.where(length > 0, 1.0, 0.0) / np.where(width > 0, width, np.where(length > 0, 0.0, 1.0))
+    strips = np.where(width > 0, 1.0 / np.where(width > 0, width, 1.0), np.inf)
+    rate = np.where(length > 0, strips, 0.0)
     table = np.stack([rate, rate * length], axis=1).reshape(len(low), len(nodes), 2) * half[:, None, None]
     fine, coarse = (np.einsum("k,nkc->nc", np.concatenate([w[:0:-1], w]), table) for w in (_KRONROD, _GAUSS))
     return fine, coarse
