@@ -58,7 +58,8 @@ def _swept(p: Array, start: Array, move: Array, axis: Array, tool: Tool) -> floa
     low, high, g = np.zeros(len(start)), np.ones(len(start)), (np.sqrt(5) - 1) / 2
     for _ in range(24):
         a, b = high - g * (high - low), low + g * (high - low)
-        left = _distance(p - start - a[:, None] * move, axis, tool) < _distance(p - start - b[:, None] * move, axis, tool)
+        near, far = (_distance(p - start - t[:, None] * move, axis, tool) for t in (a, b))
+        left = near < far
         low, high = np.where(left, low, a), np.where(left, b, high)
     return float(_distance(p - start - ((low + high) / 2)[:, None] * move, axis, tool).min())
 

@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placing import tips
 from toolaxis.contact.second_order import contact_forms, screen_numpy
-from toolaxis.contact.sizes import cutter_numbers
 from toolaxis.contact.strip import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.path.lean import lean_ratios, lean_table
+from toolaxis.path.lean import lean_ratios, lean_table, screening_cutter
 from toolaxis.path.material import Intervals, intervals
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -63,8 +62,8 @@ class Cut:
 
     @cached_property
     def numbers(self) -> Array:
-        """Sizes of the cutter as kernels take them."""
-        return cutter_numbers(self.tool, self.scallop, self.allowance)
+        """Sizes of the cutter as screening takes them."""
+        return screening_cutter(self.tool, self.scallop, self.allowance)
 
     @cached_property
     def leans(self) -> Array:

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.second_order import compliance, contact_forms, screen_numpy
-from toolaxis.contact.sizes import cutter_numbers
 from toolaxis.contact.strip import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
@@ -15,7 +14,7 @@ from toolaxis.numeric.compiled import compiled
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.chart import IsoChart, rows
 from toolaxis.path.count import panels
-from toolaxis.path.lean import lean_ratio, lean_ratios, lean_table
+from toolaxis.path.lean import lean_ratio, lean_ratios, lean_table, screening_cutter
 from toolaxis.path.material import row_points
 from toolaxis.path.sampling import Samples, sample_points
 from toolaxis.shape.face import Face
@@ -89,7 +88,7 @@ class Estimator:
         samples : Samples, optional
             Sample points; those of `sample_points` with its defaults unless given.
         """
-        cutter_numbers(tool, scallop, allowance)
+        screening_cutter(tool, scallop, allowance)
         chosen = samples or sample_points(face, tool)
         geometry = (_prepare(face, "u", chosen), _prepare(face, "v", chosen))
         return Estimator(face, tool, scallop, allowance, chosen, geometry, lean_table(tool, scallop))
@@ -144,7 +143,7 @@ class Estimator:
         return passes, length
 
     def _cutter(self) -> Array:
-        return cutter_numbers(self.tool, self.scallop, self.allowance)
+        return screening_cutter(self.tool, self.scallop, self.allowance)
 
     def _widths(self, axes: Array, feed: str) -> Array:
         """Exact strip widths (k, samples) in the step parameter."""

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.sizes import cutter_numbers
 from toolaxis.contact.strip import step_widths
 from toolaxis.numeric.compiled import compiled
 from toolaxis.shape.face import Face
@@ -18,10 +19,33 @@ Array = NDArray[np.float64]
 
 _LEANS, _TURNS = 25, 17
 _LEAST = 1e-3
+_BLUNT = 2.0
+
+
+def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> Array:
+    """The cutter's numbers with a corner radius of two scallop heights at least.
+
+    To the second order a sharp corner that leans across the feed leaves no strip at all; a slightly blunt one keeps
+    the ratio to the exact width within bounds.
+
+    Parameters
+    ----------
+    tool : Tool
+    scallop, allowance : float
+        mm
+
+    Returns
+    -------
+    (6,) array as of `toolaxis.contact.sizes.cutter_numbers`
+    """
+    numbers = cutter_numbers(tool, scallop, allowance)
+    corner = max(tool.corner_radius, min(_BLUNT * scallop, tool.radius))
+    numbers[:2] = tool.radius - corner, corner
+    return numbers
 
 
 def lean_table(tool: Tool, scallop: float) -> Array:
-    """Ratio of the exact to the second-order strip width on a plane.
+    """Ratio of the exact strip width on a plane to the second-order one of the `screening_cutter`.
 
     Parameters
     ----------
@@ -49,7 +73,8 @@ def _table(kind: str, radius: float, corner_radius: float, half_angle: float, sc
     k = np.sqrt(1 - c**2)
     axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
     exact = size * step_widths(plane, tool, np.full((len(s), 2), 0.5), axes, scallop).sum(axis=1)
-    second = 2 * np.sqrt(2 * scallop * (tool.corner_radius + tool.flat_radius * c**2 / s))
+    bottom, corner = screening_cutter(tool, scallop)[:2]
+    second = 2 * np.sqrt(2 * scallop * (corner + bottom * c**2 / s))
     table = np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
     table.setflags(write=False)
     return table
