@@ -51,5 +51,14 @@ class Progress:
         if self.on_report is not None:
             self.on_report(stage, done, total)
 
+    def within(self, name: str) -> "Progress":
+        """The same for a part of the work: stages are led by its name, cancellation is shared.
+
+        Parameters
+        ----------
+        name : str
+        """
+        return Progress(lambda stage, done, total: self.report(f"{name}: {stage}", done, total), self.cancelled)
+
 
 NO_PROGRESS = Progress()

@@ -11,20 +11,21 @@ _EVERY = 5.0
 
 
 class _Lines:
-    """One plain line when a stage begins and every few seconds after."""
+    """One plain line when a stage begins for the first time, and every few seconds after."""
 
     def __init__(self) -> None:
-        self._stage = ""
-        self._began = self._said = 0.0
+        self._began: dict[str, float] = {}
+        self._said = 0.0
 
     def report(self, stage: str, done: float, total: float) -> None:
+        """Say how far a stage is, with the time that remains."""
         now = time.monotonic()
-        if stage != self._stage:
-            self._stage, self._began, self._said = stage, now, now
+        if stage not in self._began:
+            self._began[stage] = self._said = now
             print(stage, file=sys.stderr, flush=True)
-        elif now - self._said >= _EVERY and total > 0 and 0 < done < total:
+        elif now - self._said >= _EVERY and 0 < done < total:
             self._said = now
-            left = (now - self._began) * (total - done) / done
+            left = (now - self._began[stage]) * (total - done) / done
             print(f"{stage}: {100 * done / total:.0f} %, about {left:.0f} s left", file=sys.stderr, flush=True)
 
 

@@ -13,8 +13,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
-from toolaxis.verify.verdict import OperationVerdict, Task, Verdict
-from toolaxis.verify.verdict import verify as judged
+from toolaxis.verify.verdict import OperationVerdict, Task, Verdict, judge
 
 
 def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progress: Progress = NO_PROGRESS) -> Verdict:
@@ -55,8 +54,12 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     spacing, threads, progress
         As for `verify`.
     """
-    tasks = [_task(plan, op) for op in plan.operations if op.path is not None]
-    return judged(tasks, spacing=spacing, threads=threads, progress=progress)
+    done = [op for op in plan.operations if op.path is not None]
+    found = []
+    for index, op in enumerate(done):
+        name = f"{op.name} ({index + 1} of {len(done)})"
+        found.append(judge(_task(plan, op), spacing, threads, progress.within(name)))
+    return Verdict(tuple(found))
 
 
 def _task(plan: Plan, op: Operation) -> Task:

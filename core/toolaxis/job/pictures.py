@@ -49,9 +49,10 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     done = [op for op in plan.operations if op.done]
     largest = max(done, key=lambda op: op.face.area, default=None)
     for index, op in enumerate(plan.operations):
-        progress.report("pictures", index, len(plan.operations))
+        progress.report("drawing", index, len(plan.operations))
         if op.orientation.map is not None:
-            marks = {**_marks(op), **_baselines(plan, op, op is largest, progress)}
+            quiet = Progress(None, progress.cancelled)
+            marks = {**_marks(op), **_baselines(plan, op, op is largest, quiet)}
             hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
@@ -73,7 +74,7 @@ def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress 
     """
     axes = {op.name: op.orientation.axis for op in plan.operations}
     for index, found in enumerate(verdict.operations):
-        progress.report("pictures", index, len(verdict.operations))
+        progress.report("drawing", index, len(verdict.operations))
         axis = axes[found.name]
         assert axis is not None
         targets = found.maps[:len(found.faces)]

@@ -135,8 +135,7 @@ class _Job:
         return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome)
 
     def _operation(self, face: Face, index: int, count: int, progress: Progress) -> Operation:
-        stage = f"face {face.label} ({index + 1} of {count})"
-        inner = Progress(lambda what, done, total: progress.report(f"{stage}: {what}", done, total), progress.cancelled)
+        inner = progress.within(f"face {face.label} ({index + 1} of {count})")
         inner.report("search for the axis", 0, 1)
         found = self._searched(face, inner)
         if found.outcome == "cancelled":

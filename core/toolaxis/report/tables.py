@@ -17,6 +17,7 @@ Column: TypeAlias = tuple[str, str]
 _COLUMNS: tuple[Column, ...] = (
     ("sub-\nsurface", "right"), ("axis", "left"), ("feed", "left"), ("passes", "right"), ("strip width\nmm", "right"),
     ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
+_BOUNDS = "gouge: upper bound; clearance: lower bound, looked at up to 20 mm; -: not checked"
 
 
 def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> Table:
@@ -79,7 +80,7 @@ def plan_table(plan: Plan) -> Table:
     """
     rows = [[*_operation_row(op), op.orientation.outcome] for op in plan.operations]
     title = f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, cutting length {plan.length:.1f} mm"
-    return table(title, [*_COLUMNS, ("outcome", "left")], rows)
+    return table(title, [*_COLUMNS, ("outcome", "left")], rows, _BOUNDS)
 
 
 def _measured(found: Mapping[str, Clearance | str]) -> str:

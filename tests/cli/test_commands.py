@@ -1,0 +1,157 @@
+"""The command does its work: inspect, plan, verify, the answer no, and Ctrl-C in a real process."""
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from toolaxis.cli.main import main
+
+Capture = pytest.CaptureFixture[str]
+FAST = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
+
+
+def strict(text: str) -> dict:
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+@pytest.fixture(scope="session")
+def planned(sheet: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The plan of the first two faces, with pictures, made by the command."""
+    out = tmp_path_factory.mktemp("planned") / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1-2", "--stickout=50", "--holder=10,0;10,40",
+                 "--out", str(out)]) == 0
+    return out
+
+
+def test_inspect_lists_faces_in_table_and_json(sheet: Path, capsys: Capture) -> None:
+    assert main(["inspect", str(sheet)]) == 0
+    out = capsys.readouterr().out
+    assert "3 faces, 3 sculptured" in out and out.count("bspline") == 3
+    assert main(["inspect", str(sheet), "--json"]) == 0
+    found = strict(capsys.readouterr().out)
+    assert (found["schema"], found["version"]) == ("toolaxis.inspect", 1)
+    assert found["sha256"] == hashlib.sha256(sheet.read_bytes()).hexdigest()
+    face = found["faces"][0]
+    assert face["number"] == 1 and 432 < face["area"] < 450 and face["size"][:2] == pytest.approx([24, 18], abs=0.01)
+    assert 0 < face["spread"] < 0.3 and face["convex_radius"] > 40
+
+
+def test_plan_writes_everything_that_verify_and_people_need(sheet: Path, planned: Path) -> None:
+    names = {path.name for path in planned.iterdir()}
+    assert {"plan.json", "part.step", "op01-face1.apt", "op02-face2.apt", "op01-face1-passes.png",
+            "op02-face2-passes.png", "op01-face1-axes.png", "op02-face2-widths.png", "op02-face2-estimate.png"} <= names
+    assert not [path for path in planned.parent.iterdir() if path != planned], "debris"
+    document = strict((planned / "plan.json").read_text())
+    assert document["outcome"] == "complete" and document["part"]["source"] == str(sheet)
+    assert document["part"]["sha256"] == hashlib.sha256((planned / "part.step").read_bytes()).hexdigest()
+    assert (planned / "part.step").read_bytes() == sheet.read_bytes()
+    assert [op["face"] for op in document["operations"]] == [1, 2]
+    for op in document["operations"]:
+        found = op["orientation"]
+        assert found["passes"] >= 3 and found["axis"][2] > 0.49 and found["gouge"] <= 0.002
+        assert found["clearance"]["holder"] >= 1.0
+        assert op["work_coordinates"]["z"] == pytest.approx(found["axis"], abs=1e-12)
+
+
+def test_verify_passes_and_writes_verdict_and_maps(planned: Path, capsys: Capture) -> None:
+    assert main(["verify", str(planned)]) == 0
+    out = capsys.readouterr().out
+    assert out.count("pass") >= 2 and "FAIL" not in out
+    document = strict((planned / "verdict.json").read_text())
+    assert document["passed"] is True and len(document["operations"]) == 2
+    assert all(op["share_within"] >= 0.999 and op["gouge_max"] <= 0.002 for op in document["operations"])
+    assert (planned / "op01-face1-verdict.png").stat().st_size > 10_000
+    assert main(["verify", str(planned), "--json", "--no-pictures"]) == 0
+    assert strict(capsys.readouterr().out)["passed"] is True
+
+
+def test_verify_fails_where_the_cl_file_was_spoilt(planned: Path, tmp_path: Path, capsys: Capture) -> None:
+    import shutil
+
+    folder = tmp_path / "spoilt"
+    shutil.copytree(planned, folder)
+    path = folder / "op01-face1.apt"
+    lines = path.read_text().splitlines()
+    first = next(k for k, line in enumerate(lines) if line == "PPRINT/PASS 3")
+    last = next(k for k, line in enumerate(lines) if line == "PPRINT/PASS 4")
+    path.write_text("\n".join(lines[:first] + lines[last:]))
+    assert main(["verify", str(folder), "--no-pictures"]) == 1
+    out, err = capsys.readouterr()
+    assert "FAIL" in out and "op01-face1" in err and "of the area" in err
+    assert strict((folder / "verdict.json").read_text())["passed"] is False
+
+
+def test_plan_prints_json_on_stdout_alone(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1", "--json", "--no-pictures", "--out", str(out)]) == 0
+    printed, err = capsys.readouterr()
+    assert strict(printed) == strict((out / "plan.json").read_text())
+    assert "not checked: holder" in err.replace("shank, ", "")
+    assert not list(out.glob("*.png"))
+
+
+def test_a_face_that_no_axis_can_reach_is_the_answer_no(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / "out"
+    code = main(["plan", str(sheet), "--tool=torus:12x1", "--scallop=0.1", "--faces=1", "--limits=cone:0,0,-1,20",
+                 "--no-pictures", "--out", str(out)])
+    _, err = capsys.readouterr()
+    assert code == 1
+    assert "face 1: outcome" in err and "Traceback" not in err
+    document = strict((out / "plan.json").read_text())
+    assert document["outcome"] == "incomplete" and document["operations"][0]["orientation"]["reasons"]
+    assert main(["verify", str(out), "--no-pictures"]) == 1
+    assert "no axis" in capsys.readouterr().err
+
+
+def start(words: list[str]) -> subprocess.Popen[str]:
+    return subprocess.Popen([sys.executable, "-m", "toolaxis.cli.main", *words], stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"})
+
+
+def wait_for(process: subprocess.Popen[str], text: str, limit: float = 120.0) -> None:
+    assert process.stderr is not None
+    began = time.monotonic()
+    for line in process.stderr:
+        if text in line:
+            return
+        assert time.monotonic() - began < limit
+    pytest.fail(f"the command ended before it said {text!r}")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
+def test_ctrl_c_keeps_finished_faces_in_one_whole_plan(sheet: Path, tmp_path: Path) -> None:
+    process = start(["plan", str(sheet), *FAST, "--faces=1,2,3", "--out", str(tmp_path / "out")])
+    wait_for(process, "face 2 (2 of 3)")
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert "Traceback" not in err
+    assert [path.name for path in tmp_path.iterdir()] == ["out"], "debris"
+    document = strict((tmp_path / "out" / "plan.json").read_text())
+    assert document["outcome"] == "cancelled"
+    assert [op["face"] for op in document["operations"]] == [1]
+    assert (tmp_path / "out" / "op01-face1.apt").read_text().rstrip().endswith("FINI")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
+def test_ctrl_c_twice_leaves_nothing(sheet: Path, tmp_path: Path) -> None:
+    process = start(["plan", str(sheet), "--tool=torus:12x1", "--scallop=0.001", "--faces=1", "--out",
+                     str(tmp_path / "out")])
+    wait_for(process, "face 1 (1 of 1)")
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 130 and "Traceback" not in err
+    left = list(tmp_path.iterdir())
+    assert left == [] or strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "cancelled"

@@ -1,0 +1,138 @@
+"""The main job in Python: plan, judge, cancel, and the answer no."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.job.spec import chosen_faces, parse_faces
+from toolaxis.machine.limits import parse_limits
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import Progress
+
+
+def net(height: float, nx: int = 6, ny: int = 6, size: tuple[float, float] = (24.0, 16.0)) -> np.ndarray:
+    x, y = np.meshgrid(np.linspace(0, size[0], nx), np.linspace(0, size[1], ny), indexing="ij")
+    return np.stack([x, y, height * np.sin(x / 9) * np.cos(y / 8)], axis=-1)
+
+
+def test_the_plan_of_a_patch_is_complete_and_passes(small_plan: Plan) -> None:
+    assert small_plan.outcome == "complete"
+    op = small_plan.operations[0]
+    found = op.orientation
+    assert op.path is not None and op.frame is not None and found.axis is not None
+    assert found.outcome == "feasible" and found.passes == op.path.passes > 3
+    assert op.path.length(Motion.CUT) == pytest.approx(found.length, rel=1e-9)
+    assert found.average_strip_width == pytest.approx(op.face.area / found.length, rel=1e-9)
+    assert found.gouge <= 0.002 and found.clearance["holder"] >= 1.0
+    assert np.allclose(op.frame.z, found.axis) and np.array_equal(op.frame.origin, np.zeros(3))
+    verdict = ta.verify(small_plan)
+    assert verdict.passed, verdict.reasons
+    judged = verdict.operations[0]
+    assert judged.scallop_max <= 1.02 * 0.1 and judged.gouge_max <= 0.002
+    assert judged.clearance["holder"].distance >= found.clearance["holder"] - 0.01
+
+
+def test_the_judge_fails_a_spoilt_plan(small_plan: Plan) -> None:
+    op = small_plan.operations[0]
+    assert op.path is not None and op.orientation.axis is not None
+    deep = replace(op.path, cl=op.path.cl - [0.0, 0.0, 0.01])
+    verdict = ta.verify(replace(small_plan, operations=(replace(op, path=deep),)))
+    assert not verdict.passed and any("gouge" in reason for reason in verdict.reasons)
+    keep = np.arange(len(op.path.cl)) < op.path.breaks[len(op.path.breaks) // 2]
+    half = replace(op.path, cc=op.path.cc[keep], cl=op.path.cl[keep], axis=op.path.axis[keep],
+                   normal=op.path.normal[keep], kind=op.path.kind[keep],
+                   breaks=op.path.breaks[:len(op.path.breaks) // 2 + 1])
+    verdict = ta.verify(replace(small_plan, operations=(replace(op, path=half),)))
+    assert not verdict.passed and any("% of the area" in reason for reason in verdict.reasons)
+
+
+def test_the_same_again(small_plan: Plan) -> None:
+    again = ta.plan(small_plan.part, small_plan.tool, 0.1)
+    mine, theirs = again.operations[0], small_plan.operations[0]
+    assert np.array_equal(mine.orientation.axis, theirs.orientation.axis)
+    assert mine.path is not None and theirs.path is not None and np.array_equal(mine.path.cl, theirs.path.cl)
+
+
+def test_cancelling_keeps_what_is_finished(small_plan: Plan) -> None:
+    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.0) + np.array([0.0, 40.0, 0.0]))]
+    part = ta.Part.from_faces(faces)
+    seen: list[str] = []
+
+    def cancelled() -> bool:
+        return bool(seen) and seen[-1].startswith("face 2")
+
+    made = ta.plan(part, "torus:12x1", 0.1, progress=Progress(lambda stage, *_: seen.append(stage), cancelled))
+    assert made.outcome == "cancelled"
+    assert [op.face.number for op in made.operations] == [1] and made.operations[0].done
+
+
+def test_cancelling_at_once_gives_an_empty_plan() -> None:
+    made = ta.plan(ta.Face.from_bspline(net(1.0)), "ball:6", 0.1, progress=Progress(None, lambda: True))
+    assert made.outcome == "cancelled" and made.operations == ()
+
+
+def test_limits_hold_and_impossible_limits_are_reported() -> None:
+    face = ta.Face.from_bspline(net(1.0))
+    made = ta.plan(face, "torus:12x1", 0.1, machine="cone:0,0.7,0.7,10")
+    axis = made.operations[0].orientation.axis
+    assert axis is not None and parse_limits("cone:0,0.7,0.7,10").allowed(axis[None])[0]
+    none = ta.plan(face, "torus:12x1", 0.1, machine="cone:0,0,-1,10")
+    assert none.outcome == "incomplete" and none.operations[0].path is None
+    assert none.operations[0].orientation.outcome in ("infeasible", "not_found")
+    assert none.operations[0].orientation.reasons
+
+
+@pytest.mark.parametrize("direction", ["climb", "conventional"])
+def test_one_way_passes_all_run_the_same_way(direction: str) -> None:
+    made = ta.plan(ta.Face.from_bspline(net(1.0)), "torus:12x1", 0.1, direction=direction)
+    op = made.operations[0]
+    assert op.path is not None
+    cut = np.flatnonzero((op.path.kind[1:] == Motion.CUT) & (op.path.kind[:-1] == Motion.CUT))
+    steps = op.path.cc[cut + 1] - op.path.cc[cut]
+    along = steps @ steps.sum(axis=0)
+    assert (along > 0).all()
+    assert ta.verify(made).passed
+
+
+def test_obstacles_are_kept_clear_of() -> None:
+    face = ta.Face.from_bspline(net(0.5))
+    free = ta.plan(face, "torus:12x1", 0.1).operations[0]
+    assert free.orientation.axis is not None and free.path is not None
+    way = free.orientation.axis - free.orientation.axis[2] * np.array([0, 0, 1.0])
+    side = way / np.linalg.norm(way)
+    across = np.cross([0, 0, 1.0], side)
+    foot = np.array([12.0, 8, 12]) + 25 * side
+    s, t = np.meshgrid(np.linspace(-30, 30, 4), np.linspace(0, 60, 4), indexing="ij")
+    wall = ta.Face.from_bspline(foot + s[..., None] * across + t[..., None] * np.array([0, 0, 1.0]))
+    tool = ta.Tool.torus(diameter=12, corner_radius=1, stickout=30, holder=[(25, 0), (25, 60)])
+    made = ta.plan(face, tool, 0.1, obstacles=wall)
+    found = made.operations[0].orientation
+    assert made.outcome == "complete" and found.clearance["holder"] >= 1.0
+    assert "obstacles other than the part" not in made.not_checked
+    assert ta.verify(made).passed
+
+
+@pytest.mark.parametrize("change, said", [
+    ({"regions": 3}, "regions 3 is not part of this version"), ({"orientations": 2}, "orientations 2 is not part"),
+    ({"strategy": "five-axis"}, "strategy 'five-axis' is not part"), ({"faces": []}, "list of faces is empty"),
+    ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method is 'guess'"),
+    ({"machine": 7}, "machine is a int"), ({"datum": (0, 0)}, "datum"), ({"allowance": -1}, "allowance"),
+])
+def test_wrong_arguments(change: dict[str, object], said: str) -> None:
+    with pytest.raises(ta.InvalidInput, match=said):
+        ta.plan(ta.Face.from_bspline(net(1.0)), "ball:6", 0.1, **change)  # type: ignore[arg-type]
+
+
+def test_faces_by_number_and_by_default() -> None:
+    faces = [replace(ta.Face.from_bspline(net(1.0)), kind=kind) for kind in ("plane", "bspline", "cone", "torus")]
+    part = ta.Part.from_faces(faces)
+    assert [f.number for f in chosen_faces(part, None)] == [2, 4]
+    assert [f.number for f in chosen_faces(part, "all")] == [1, 2, 3, 4]
+    assert [f.number for f in chosen_faces(part, "4,1-2,2")] == [4, 1, 2]
+    assert [f.number for f in chosen_faces(replace(part, selected=(3,)), None)] == [3]
+    assert parse_faces("3, 5-8") == (3, 5, 6, 7, 8) and parse_faces("ALL") == "all"
+    with pytest.raises(ta.InvalidInput, match="none of the part's 1 faces is sculptured"):
+        chosen_faces(ta.Part.from_faces(faces[:1]), None)
