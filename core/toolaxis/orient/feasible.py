@@ -23,6 +23,7 @@ from toolaxis.orient.cloud import deepest
 from toolaxis.orient.normals import NormalField
 from toolaxis.orient.setting import OTHER, ROLES, SKIN, Group
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
@@ -33,6 +34,7 @@ FREE, LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER = range(8)
 #: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
 FINE, COARSE = 0.0003, 0.002
 _DENSE = 32
+_NOWHERE = np.zeros((0, 0), dtype=bool)
 
 
 class Verdicts(NamedTuple):
@@ -44,12 +46,17 @@ class Verdicts(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Places on a face: uv (n, 2), point and normal (n, 3), share (n,) of the area that each stands for."""
+    """Places on a face.
+
+    uv : (n, 2);  point, normal : (n, 3);  share : (n,) of the area that each stands for;  near : (n, k) bool, whether
+    wall k is so near that a clean-up tool has to do what this one cannot.
+    """
 
     uv: Array
     point: Array
     normal: Array
     share: Array
+    near: Bools
 
 
 class Trouble(NamedTuple):
@@ -154,7 +161,19 @@ class Feasibility:
         share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
         share[weighed:] = 0.0
         good = np.linalg.norm(normal, axis=1) > 0.5
-        return Contacts(uv[good], d.point[good], normal[good], share[good] / share.sum())
+        return Contacts(uv[good], d.point[good], normal[good], share[good] / share.sum(), self._near(d.point[good]))
+
+    def _near(self, points: Array) -> Bools:
+        """Which walls are within a cutter's diameter and its clearance of each point, (n, walls)."""
+        walls = [face for group in self.groups if group.role == OTHER for face in group.faces]
+        near = 2 * self.tool.radius + self.tolerance.cutter_clearance
+        found = np.zeros((len(points), len(walls)), dtype=bool)
+        for k, wall in enumerate(walls):
+            gap = np.maximum(np.maximum(wall.box[0] - points, points - wall.box[1]), 0.0)
+            close = np.linalg.norm(gap, axis=1) <= near
+            if close.any():
+                found[close, k] = nearest(wall, points[close]).distance <= near
+        return found
 
     def screen(self, axes: ArrayLike) -> Verdicts:
         """Verdicts on axes from a few contacts: cheap, and wrong only towards "free".
@@ -194,6 +213,9 @@ class Feasibility:
             Unit vectors.
         """
         least, greatest = self.field.angles(rows)
+        if self.watched is not None:
+            angle = angle_between(rows[:, None], self.face.normal(self.watched)[None])
+            least, greatest = np.minimum(least, angle.min(axis=1)), np.maximum(greatest, angle.max(axis=1))
         excess = np.zeros(len(rows)) if self.limits is None else self.limits.excess(rows)
         outside = np.zeros(len(rows), dtype=bool) if self.limits is None else ~self.limits.allowed(rows)
         back, wanders = greatest - self.greatest_angle, self.least_angle - least
@@ -244,17 +266,17 @@ class Feasibility:
             fine = FINE if group.role != OTHER else COARSE
             left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
             found = bounded(group.cells, self.tool, moves, group.required + 2 * fine, fine, left_out)
-            worst = self._worse(worst, found, number, contacts.point)
+            worst = self._worse(worst, found, number, contacts.near)
         return worst
 
-    def _worse(self, worst: Trouble, found: Found, number: int, places: Array) -> Trouble:
+    def _worse(self, worst: Trouble, found: Found, number: int, near: Bools) -> Trouble:
         """Merge in what one group does; what forbids goes before what a clean-up tool can do."""
-        group = self.groups[number]
-        near = 2 * self.tool.radius + self.tolerance.cutter_clearance
+        group, rows = self.groups[number], np.arange(len(worst.reason))
         for c in range(3):
             amount = group.required[c] - found.lower[:, c]
-            wall = (np.linalg.norm(found.point[:, c] - places, axis=1) <= near) if group.role == OTHER else np.zeros(
-                len(places), dtype=bool)
+            wall = np.zeros(len(rows), dtype=bool)
+            if group.role == OTHER and len(near):
+                wall = near[rows, found.face[:, c]] & (found.face[:, c] >= 0)
             hit = amount > 0
             before = worst.reason != FREE
             take = hit & (~before | (worst.wall & ~wall) | ((worst.wall == wall) & (amount > worst.amount)))
@@ -351,7 +373,7 @@ class Feasibility:
         inside = self.face.contains(rows)
         for part, roles in ((good & inside, (OTHER,)), (good & ~inside, ROLES)):
             if part.any() and any(group.role in roles for group in self.groups):
-                some = Contacts(rows[part], point[part], normal[part], np.zeros(int(part.sum())))
+                some = Contacts(rows[part], point[part], normal[part], np.zeros(int(part.sum())), _NOWHERE)
                 good[part] = self.trouble(t, some, roles=roles).reason == FREE
         return np.asarray(good)
 
