@@ -51,7 +51,8 @@ def _wavy(seed=1):
     (_wall(15, 40, 65), (CUTOFF, CUTOFF, 5)),
     (_wall(27, -5, 90), (CUTOFF, CUTOFF, 2)),
     (_wall(18, 55, 69), (CUTOFF, CUTOFF, 1)),  # under the collar
-    (_wall(9, 2, 15).trimmed(([[0, 0], [0.4, 0], [0.4, 1], [0, 1]],)), (np.hypot(9, 8) - 6, np.hypot(np.hypot(9, 8) - 5, 5), CUTOFF)),
+    (_wall(9, 2, 15).trimmed(([[0, 0], [0.4, 0], [0.4, 1], [0, 1]],)),
+     (np.hypot(9, 8) - 6, np.hypot(np.hypot(9, 8) - 5, 5), CUTOFF)),
 ])
 def test_walls_at_known_distances(wall, exact):
     found = clearances(TOOL, [[0, 0, 0]], UP, Surroundings((wall,), np.zeros((1, 3))))
