@@ -4,6 +4,8 @@ import time
 from pathlib import Path
 
 import toolaxis as ta
+from toolaxis.plan.plan import Plan
+from toolaxis.verify.verdict import Verdict
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"
 BODY = {"stickout": 70, "holder": [(16, 0), (16, 40), (25, 40), (25, 80)]}
@@ -31,7 +33,7 @@ def main() -> None:
             print(f"    {reason}")
 
 
-def row(name: str, text: str, plan: ta.Plan, verdict: object) -> None:
+def row(name: str, text: str, plan: Plan, verdict: Verdict) -> None:
     """Print one part's figures without the times."""
     for op, seen in zip([op for op in plan.operations if op.done], verdict.operations, strict=True):
         o = op.orientation

@@ -61,7 +61,8 @@ def points() -> None:
         for count in (1_000, 10_000, 100_000):
             uv = rng.uniform(0.1, 0.9, (count, 2))
             seconds, peak = measured(lambda call=call, uv=uv: call(uv))
-            print(f"  {name:12} {count:7d} contacts {seconds:8.3f} s {seconds / count * 1e6:7.2f} us each {peak:8.1f} MB",
+            print(f"  {name:12} {count:7d} contacts {seconds:8.3f} s {seconds / count * 1e6:7.2f} us each "
+                  f"{peak:8.1f} MB",
                   flush=True)
 
 
