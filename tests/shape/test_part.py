@@ -24,7 +24,7 @@ def border(reverse=False):
     uv = np.column_stack([np.zeros(7), v])
     points = np.column_stack([np.zeros(7), 10 * v, np.zeros(7)])
     return Border((1, 2), points[::-1] if reverse else points, uv[::-1] if reverse else uv,
-                  uv[::-1] if reverse else uv, reverse)
+                  uv[::-1] if reverse else uv, reverse, reverse)
 
 
 def meeting(left_angle, right_angle, reverse=False):
@@ -58,34 +58,34 @@ def test_exchanging_the_faces_and_moving_the_part_change_nothing(left, right):
     faces, shared = meeting(left, right)
     kind = edges_from_borders(faces, [shared])[0].kind
     # the second strip lies right of +y seen from above, and its Su x Sv points up
-    swapped = Border((2, 1), shared.points, shared.second, shared.first, False)
+    swapped = Border((2, 1), shared.points, shared.second, shared.first, False, False)
     assert edges_from_borders(faces, [swapped])[0].kind == kind
     for mirror in (1.0, -1.0):
         matrix = np.eye(4)
         matrix[:3, :3] = rotation([1, 2, 3], 2.0) @ np.diag([mirror, 1, 1])
         moved = tuple(face.transformed(matrix) for face in faces)
         points = shared.points @ matrix[:3, :3].T
-        turned = Border((1, 2), points, shared.first, shared.second, shared.left)
+        turned = Border((1, 2), points, shared.first, shared.second, shared.left, shared.second_left)
         assert edges_from_borders(moved, [turned])[0].kind == kind
 
 
 def test_gaps_measure_beside_the_curve_only():
     faces, shared = meeting(0.2, 0.3)
     assert gaps(faces, [shared])[0] < 1e-12
-    along = Border((1, 2), shared.points + np.array([0, 0.5, 0]), shared.first, shared.second, False)
+    along = Border((1, 2), shared.points + np.array([0, 0.5, 0]), shared.first, shared.second, False, False)
     assert gaps(faces, [along])[0] < 1e-12
-    beside = Border((1, 2), shared.points + np.array([0.2, 0.5, 0]), shared.first, shared.second, False)
+    beside = Border((1, 2), shared.points + np.array([0.2, 0.5, 0]), shared.first, shared.second, False, False)
     assert gaps(faces, [beside])[0] == pytest.approx(0.2)
 
 
 def test_a_smooth_seam_is_no_edge_but_a_sharp_one_is():
     faces, shared = meeting(0.0, 0.0)
-    seam = Border((1, 1), shared.points, shared.first, shared.first, True)
+    seam = Border((1, 1), shared.points, shared.first, shared.first, True, False)
     assert edges_from_borders(faces, [seam]) == ()
     sharp = Face.from_bspline([[[0, 0, 0], [0, 10, 0]], [[5, 0, 9], [5, 10, 9]], [[9, 0, 0], [9, 10, 0]],
                                [[0, 0, 0], [0, 10, 0]]], (1, 1))
     far = shared.first + np.array([1.0, 0.0])
-    seam = Border((1, 1), shared.points, shared.first, far, False)
+    seam = Border((1, 1), shared.points, shared.first, far, False, True)
     assert [edge.faces for edge in edges_from_borders([sharp], [seam])] == [(1, 1)]
 
 

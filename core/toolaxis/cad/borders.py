@@ -1,6 +1,6 @@
 """Edges that faces share in the kernel's topology, as points and as parameters of both faces."""
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +14,17 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from toolaxis.cad.records import FaceRecord
 from toolaxis.cad.trims import ParameterCurve, children, edges_of
 from toolaxis.shape.adjacency import Border
+from toolaxis.shape.matching import Side
 
 Array = NDArray[np.float64]
+
+_User: TypeAlias = tuple[FaceRecord, Any, Any]
 
 FINENESS = 1e-4
 
 
-def shared_borders(faces: TopTools_IndexedMapOfShape, records: list[FaceRecord]) -> list[Border]:
-    """Every edge that two faces share, or that one face has twice (a seam).
+def borders_of(faces: TopTools_IndexedMapOfShape, records: list[FaceRecord]) -> tuple[list[Border], list[Side]]:
+    """Every edge that two faces share, or that one face has twice (a seam); and the sides that only one face has.
 
     Parameters
     ----------
@@ -30,26 +33,34 @@ def shared_borders(faces: TopTools_IndexedMapOfShape, records: list[FaceRecord])
         Faces to look at; their numbers are indices of the map.
     """
     edges = TopTools_IndexedMapOfShape()
-    users: dict[int, list[tuple[FaceRecord, Any, Any]]] = {}
+    users: dict[int, list[_User]] = {}
     for record in records:
         face = TopoDS.Face_s(faces.FindKey(record.number).Oriented(TopAbs_Orientation.TopAbs_FORWARD))
         for wire in children(face, TopAbs_WIRE):
             for edge in edges_of(TopoDS.Wire_s(wire), face):
                 if not BRep_Tool.Degenerated_s(edge):
                     users.setdefault(edges.Add(edge), []).append((record, face, edge))
-    borders = []
+    borders, free = [], []
     for sharing in users.values():
+        if len(sharing) == 1:
+            free.append(_side(sharing[0]))
         for k, one in enumerate(sharing):
             borders += [_border(one, other) for other in sharing[k + 1:]]
-    return borders
+    return borders, free
 
 
-def _border(one: tuple[FaceRecord, Any, Any], other: tuple[FaceRecord, Any, Any]) -> Border:
+def _side(user: _User) -> Side:
+    record, _, edge = user
+    share, points = _polyline(edge)
+    return Side(record.number, points, _parameters(user, share), _forward(edge) ^ record.turned)
+
+
+def _border(one: _User, other: _User) -> Border:
     record, _, edge = one
-    forward = edge.Orientation() != TopAbs_Orientation.TopAbs_REVERSED
     share, points = _polyline(edge)
     first, second = (_parameters(user, share) for user in (one, other))
-    return Border((record.number, other[0].number), points, first, second, forward ^ record.turned)
+    lefts = [_forward(user[2]) ^ user[0].turned for user in (one, other)]
+    return Border((record.number, other[0].number), points, first, second, lefts[0], lefts[1])
 
 
 def _polyline(edge: Any) -> tuple[Array, Array]:
@@ -76,7 +87,10 @@ def _polyline(edge: Any) -> tuple[Array, Array]:
     return share, points
 
 
-def _parameters(user: tuple[FaceRecord, Any, Any], share: Array) -> Array:
+def _parameters(user: _User, share: Array) -> Array:
     record, face, edge = user
-    reverse = edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
-    return record.map.to_ours(ParameterCurve(edge, face).points(1 - share if reverse else share))
+    return record.map.to_ours(ParameterCurve(edge, face).points(share if _forward(edge) else 1 - share))
+
+
+def _forward(edge: Any) -> bool:
+    return bool(edge.Orientation() != TopAbs_Orientation.TopAbs_REVERSED)

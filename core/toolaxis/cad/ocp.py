@@ -20,7 +20,7 @@ from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from toolaxis.cad.borders import shared_borders
+from toolaxis.cad.borders import borders_of
 from toolaxis.cad.records import FaceRecord, ShapeRecord
 from toolaxis.cad.surfaces import Box, PlainSurface, convert, map_of
 from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised, metric, wires_of
@@ -31,7 +31,7 @@ from toolaxis.tolerances import Tolerance
 Array = NDArray[np.float64]
 
 ENDLESS = 1e50
-NATURAL = 1e-9
+NATURAL = 1e-7
 
 
 class EndlessFace(UnsupportedGeometry):
@@ -84,7 +84,7 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
     if not record.faces:
         raise UnsupportedGeometry(f"none of the part's {faces.Extent()} faces can be used; {record.warnings[0]}")
     _add_bodies(record, shape, faces)
-    record.borders = shared_borders(faces, record.faces)
+    record.borders, record.free = borders_of(faces, record.faces)
     record.selected = tuple(sorted({faces.FindIndex(face) for face in selected} - {0}))
     return record
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cad.arcs import ParameterMap
 from toolaxis.shape.adjacency import Border
+from toolaxis.shape.matching import Side
 from toolaxis.shape.part import Body
 
 Array = NDArray[np.float64]
@@ -49,10 +50,28 @@ class FaceRecord:
 
 @dataclass
 class ShapeRecord:
-    """A whole shape: faces, the borders they share, bodies, warnings, the declared unit, picked faces, endless ones."""
+    """A whole shape.
+
+    Attributes
+    ----------
+    faces : list of FaceRecord
+    borders : list of Border
+        Edges that faces share.
+    free : list of Side
+        Edges that only one face has.
+    bodies : list of Body
+    warnings : list of str
+    unit : str
+        The length unit that the file declares.
+    selected : tuple of int
+        Numbers of the faces that the caller picked.
+    endless : int
+        How many faces were left out because they have no border and no end.
+    """
 
     faces: list[FaceRecord] = field(default_factory=list)
     borders: list[Border] = field(default_factory=list)
+    free: list[Side] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     unit: str = "mm"

@@ -53,7 +53,7 @@ def insert_knot(knots: Array, control: Array, degree: int, t: float) -> tuple[Ar
     """
     n = len(control)
     k = int(np.searchsorted(knots, t, side="right")) - 1
-    k = min(max(k, degree), n - 1) if t < knots[-1] else n - 1
+    k = min(max(k, degree), n - 1)
     i = np.arange(k - degree + 1, k + 1)
     span = knots[i + degree] - knots[i]
     share = np.where(span > 0, (t - knots[i]) / np.where(span > 0, span, 1.0), 0.0)

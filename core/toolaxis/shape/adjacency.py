@@ -13,6 +13,7 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 
 SMOOTH = radians(1.0)
+KNIFE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +28,9 @@ class Border:
         Along the curve, mm.
     first, second : (m, 2) array
         The same places in the parameters of either face.
-    left : bool
-        The first face lies left of the direction of the points, seen from the side to which its Su x Sv points.
+    left, second_left : bool
+        The first (second) face lies left of the direction of the points, seen from the side to which its own Su x Sv
+        points.
     """
 
     faces: tuple[int, int]
@@ -36,6 +38,7 @@ class Border:
     first: Array
     second: Array
     left: bool
+    second_left: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +66,8 @@ class Edge:
 def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth: float = SMOOTH) -> tuple[Edge, ...]:
     """Tell tangent, convex and concave edges apart by the normals along them.
 
+    Where the material of the second face is on the wrong side (an open shell with mixed senses), the first one decides.
+
     Parameters
     ----------
     faces : sequence of Face
@@ -81,10 +86,24 @@ def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth:
     normals = _on_both_sides(by_number, borders, Face.normal)
     edges = []
     for k, border in enumerate(borders):
-        kind, angle = _kind(border, by_number[border.faces[0]], normals[k], normals[k + len(borders)], smooth)
+        first, second = by_number[border.faces[0]], by_number[border.faces[1]]
+        other = normals[k + len(borders)] * (1.0 if consistent(border, first, second) else -1.0)
+        kind, angle = _kind(border, border.left ^ first.flip, (normals[k], other), smooth)
         if border.faces[0] != border.faces[1] or kind != "tangent":
             edges.append(Edge(border.faces, kind, border.points, angle))
     return tuple(edges)
+
+
+def consistent(border: Border, first: Face, second: Face) -> bool:
+    """Whether two faces that meet have their material on the same side.
+
+    Parameters
+    ----------
+    border : Border
+    first, second : Face
+        The border's faces, in its order.
+    """
+    return (border.left ^ first.flip) != (border.second_left ^ second.flip)
 
 
 def gaps(faces: Sequence[Face], borders: Sequence[Border]) -> Array:
@@ -124,7 +143,8 @@ def _on_both_sides(faces: dict[int, Face], borders: Sequence[Border],
     return result
 
 
-def _kind(border: Border, face: Face, one: Array, other: Array, smooth: float) -> tuple[str, float]:
+def _kind(border: Border, left: bool, normals: tuple[Array, Array], smooth: float) -> tuple[str, float]:
+    one, other = normals
     along = np.gradient(border.points, axis=0)
     sound = (np.linalg.norm(one, axis=1) > 0.5) & (np.linalg.norm(other, axis=1) > 0.5)
     sound &= np.linalg.norm(along, axis=1) > 0
@@ -134,7 +154,6 @@ def _kind(border: Border, face: Face, one: Array, other: Array, smooth: float) -
     angle = angle_between(one, other)
     if angle.max() <= smooth:
         return "tangent", float(angle.max())
-    side = 1.0 if border.left ^ face.flip else -1.0
-    inward = side * np.cross(one, along)
+    inward = (1.0 if left else -1.0) * np.cross(one, along)
     inward /= np.linalg.norm(inward, axis=1, keepdims=True).clip(1e-300)
-    return ("concave" if float(dot(inward, other).sum()) > 0 else "convex"), float(angle.max())
+    return ("concave" if float(dot(inward, other).mean()) > KNIFE else "convex"), float(angle.max())

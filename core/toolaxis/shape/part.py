@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.adjacency import Edge
+from toolaxis.shape.adjacency import Edge, edges_from_borders
 from toolaxis.shape.face import Face
+from toolaxis.shape.matching import matched, sides_of
 
 Array = NDArray[np.float64]
 
@@ -84,14 +85,14 @@ class Part:
             raise InvalidInput(f"face {missing[0]} is named by an edge, a body or the selection but is not in the part")
 
     @classmethod
-    def from_faces(cls, faces: Sequence[Face], edges: Sequence[Edge] = (), source: str = "") -> "Part":
+    def from_faces(cls, faces: Sequence[Face], edges: Sequence[Edge] | None = None, source: str = "") -> "Part":
         """A part from faces alone, numbered from 1 in their order.
 
         Parameters
         ----------
         faces : sequence of Face
         edges : sequence of Edge
-            How they meet, by those new numbers.
+            How they meet, by those new numbers; found by the position of their borders unless given.
         source : str
 
         Raises
@@ -101,6 +102,10 @@ class Part:
         """
         numbered = tuple(_numbered(face, k + 1) for k, face in enumerate(faces))
         body = Body("faces", tuple(face.number for face in numbered), False)
+        if edges is None:
+            whole = cls(numbered)
+            sides = [side for face in numbered for side in sides_of(face)] if len(numbered) > 1 else []
+            edges = edges_from_borders(numbered, matched(sides, whole.diagonal)) if sides else ()
         return cls(numbered, tuple(edges), (body,), source)
 
     @cached_property

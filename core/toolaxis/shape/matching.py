@@ -1,0 +1,117 @@
+"""Faces that touch without sharing an edge in their file: borders found by position."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.polygons import signed_area
+from toolaxis.shape.adjacency import Border
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+SAMPLES = 33
+NEAR = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A piece of a face's border that no other face is known to share.
+
+    Attributes
+    ----------
+    face : int
+        Number.
+    points : (m, 3) array
+        Along the border, mm.
+    uv : (m, 2) array
+        The same places in the face's parameters.
+    left : bool
+        The face lies left of the direction of the points, seen from the side to which its Su x Sv points.
+    """
+
+    face: int
+    points: Array
+    uv: Array
+    left: bool
+
+
+def sides_of(face: Face) -> list[Side]:
+    """The whole border of a face, one side for each straight line in its parameters and one for each other loop.
+
+    Parameters
+    ----------
+    face : Face
+    """
+    sides = []
+    for index, loop in enumerate(face.outline):
+        left = (signed_area(loop) > 0) == (index == 0)
+        closed = np.concatenate([loop, loop[:1]])
+        pieces = [closed[k:k + 2] for k in range(len(loop))] if len(loop) <= 8 else [closed]
+        for piece in pieces:
+            uv = _refined(piece)
+            sides.append(Side(face.number, face.evaluate(uv).point, uv, left))
+    return sides
+
+
+def _refined(line: Array) -> Array:
+    count = max(1, -(-SAMPLES // (len(line) - 1)))
+    share = (np.arange(count) / count)[:, None]
+    inner = [a + share * (b - a) for a, b in pairwise(line)]
+    return np.concatenate([*inner, line[-1:]])
+
+
+def matched(sides: Sequence[Side], size: float) -> list[Border]:
+    """Stretches along which two sides of different faces run together.
+
+    Parameters
+    ----------
+    sides : sequence of Side
+    size : float
+        Diagonal of the part, mm; sides nearer than 1e-4 of it, and of their own length, count as touching.
+
+    **Properties**: 1. faces that touch in a point only share no border.
+    """
+    low = np.array([side.points.min(axis=0) for side in sides]).reshape(-1, 3)
+    high = np.array([side.points.max(axis=0) for side in sides]).reshape(-1, 3)
+    borders = []
+    for k, side in enumerate(sides):
+        near = NEAR * max(size, _length(side.points))
+        close = ((low[k] <= high[k + 1:] + near) & (low[k + 1:] <= high[k] + near)).all(axis=1)
+        for other in (sides[k + 1 + int(j)] for j in np.flatnonzero(close)):
+            if other.face != side.face:
+                borders += _together(side, other, near)
+    return borders
+
+
+def _length(points: Array) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def _together(one: Side, other: Side, near: float) -> list[Border]:
+    """Runs of a side's points that lie on the other side; the finer of the two is walked along."""
+    if len(other.points) > len(one.points):
+        one, other = other, one
+    distance, uv, place = _nearest(one.points, other)
+    on = np.concatenate([[False], distance <= near, [False]])
+    starts, ends = np.flatnonzero(~on[:-1] & on[1:]), np.flatnonzero(on[:-1] & ~on[1:])
+    runs = [slice(a, b) for a, b in zip(starts, ends, strict=True) if b - a > 1]
+    return [Border((one.face, other.face), one.points[run], one.uv[run], uv[run], one.left,
+                   other.left ^ bool(np.median(np.diff(place[run])) < 0)) for run in runs
+            if _length(one.points[run]) > 10 * near]
+
+
+def _nearest(points: Array, side: Side) -> tuple[Array, Array, Array]:
+    """Distance of points from a side's polyline, the side's parameters there, and how far along it, in segments."""
+    start, course = side.points[:-1], np.diff(side.points, axis=0)
+    square = np.maximum((course**2).sum(axis=1), 1e-300)
+    share = np.clip(np.einsum("nkc,kc->nk", points[:, None] - start, course) / square, 0.0, 1.0)
+    away = np.linalg.norm(points[:, None] - start - share[..., None] * course, axis=2)
+    best = away.argmin(axis=1)
+    rows = np.arange(len(points))
+    t = share[rows, best][:, None]
+    uv = side.uv[best] + t * (side.uv[best + 1] - side.uv[best])
+    return away[rows, best], uv, best + t[:, 0]
