@@ -33,6 +33,8 @@ Geometry: TypeAlias = tuple[SurfaceData, float, Array]
 """Surface, sign of its normal, cutter."""
 Bench: TypeAlias = tuple[Road, Memory, Array, Array, tuple[Nodes, Nodes]]
 """Room for the pass, for one point, for three vectors, for the frame, and for two plane sections."""
+SOFT = 2.0
+"""Least corner radius of first guesses, in scallop heights."""
 Sizes: TypeAlias = tuple[float, float, float]
 """Scallop height h, lift h + allowance, radius of the tool, mm."""
 
@@ -110,12 +112,17 @@ def _curves(surface: SurfaceData, contact: Array, frame: Array, node: float,
 
 @compiled
 def _guess(form: Form, frame: Array, cutter: Array, axis: Array, h: float) -> tuple[float, float]:
-    """Second-order half width, mm, drawn in below 2 R, and advance along the feed per mm to the left; zeros if none."""
-    rest, ahead, free = compliance(form, frame, cutter, axis)
+    """Second-order half width, mm, drawn in below 2 R, and advance along the feed per mm to the left; zeros if none.
+
+    A corner sharper than the height is taken as rounder: sideways of the lean it cuts like a wedge, not a parabola.
+    """
+    radius = cutter[0] + cutter[1]
+    round_off = max(cutter[1], min(SOFT * h, 0.5 * radius))
+    rest, ahead, free = compliance(form, frame, (radius - round_off, round_off, cutter[2], cutter[3]), axis)
     if not free:
         return 0.0, 0.0
     width = np.sqrt(2.0 * h * rest)
-    return width / np.sqrt(1.0 + (0.5 * width / (cutter[0] + cutter[1])) ** 2), ahead
+    return width / np.sqrt(1.0 + (0.5 * width / radius) ** 2), ahead
 
 
 @compiled

@@ -143,17 +143,27 @@ def _confirmed(tables: Tables, axis: Axis, point: Pair, found: tuple[float, floa
         if _gap(cutter, axis, blend(bank, m, 1, x), road_tip(cutter, axis, road, k, y)) >= 0.0:
             return False
     own = interval(road, (rows[0], rows[1]), SIDE, w)
-    safe = 0.5 * (cutter[0] + cutter[1])
+    return (_recedes(tables, axis, point, (own, rows[0], -1)) and _recedes(tables, axis, point, (own + 1, rows[1], 1)))
+
+
+@built_in
+def _recedes(tables: Tables, axis: Axis, point: Pair, walk: tuple[int, int, int]) -> bool:
+    """Whether the cutter goes away from a point from node to node, and no node is a leap of the tip from the last.
+
+    The tip leaps where the normal passes the axis; what lies between is then not seen from the nodes.
+    """
+    cutter, road = tables[0], tables[1]
+    radius = cutter[0] + cutter[1]
+    start, end, side = walk
     last = 0.0
-    for k in range(own, rows[0] - 1, -1):
-        gap = _gap(cutter, axis, point, _node_tip(cutter, axis, road, k))
-        if gap < last and gap < safe:
+    before = _node_tip(cutter, axis, road, start)
+    for k in range(start, end + side, side):
+        tip = _node_tip(cutter, axis, road, k)
+        gap = _gap(cutter, axis, point, tip)
+        if gap < last and gap < 0.5 * radius:
             return False
-        last = gap
-    last = 0.0
-    for k in range(own + 1, rows[1] + 1):
-        gap = _gap(cutter, axis, point, _node_tip(cutter, axis, road, k))
-        if gap < last and gap < safe:
+        moved = (tip[0] - before[0]) ** 2 + (tip[1] - before[1]) ** 2 + (tip[2] - before[2]) ** 2
+        if moved > radius * radius:
             return False
-        last = gap
+        last, before = gap, tip
     return True

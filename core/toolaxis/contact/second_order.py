@@ -17,6 +17,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
+Numbers: TypeAlias = Array | tuple[float, float, float, float]
 Form: TypeAlias = tuple[float, float, float]
 """Entries (ff, fk, kk) of a symmetric form in the frame of feed and left."""
 
@@ -53,15 +54,14 @@ def surface_form(d: Array, frame: Array) -> Form:
 
 
 @compiled
-def cutter_form(cutter: Array, axis_f: float, axis_k: float) -> Form:
+def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
     """Curvature of the cutter at a contact on its corner arc, 1/mm.
 
     1/r along the projection of T and sin lambda / (a + r sin lambda) across it; upright on a flat bottom it is zero.
 
     Parameters
     ----------
-    cutter : (6,) array
-        See `toolaxis.contact.swept`.
+    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
     axis_f, axis_k : float
         Components of the unit axis along feed and left.
     """
@@ -78,7 +78,7 @@ def cutter_form(cutter: Array, axis_f: float, axis_k: float) -> Form:
 
 
 @compiled
-def compliance(surface: Form, frame: Array, cutter: Array, axis: Array) -> tuple[float, float, bool]:
+def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tuple[float, float, bool]:
     """(D^-1)_kk, mm, and the advance of the covering contact along the feed per unit to the left.
 
     D = C_cutter - K_surface in the frame of feed and left: to the second order the lifted surface leaves the swept
@@ -90,7 +90,7 @@ def compliance(surface: Form, frame: Array, cutter: Array, axis: Array) -> tuple
         Second fundamental form in the frame, 1/mm.
     frame : (3, 3) array
         Rows feed, left, normal.
-    cutter : (6,) array
+    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
     axis : (3,) array
 
     Returns

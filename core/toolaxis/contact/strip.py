@@ -12,7 +12,9 @@ from toolaxis.contact.curves import ALONG_U, ALONG_V, SECTION
 from toolaxis.contact.frame import Feed
 from toolaxis.contact.halves import Geometry, Sizes, section_widths, step_half_widths
 from toolaxis.contact.sizes import cutter_numbers
+from toolaxis.contact.strip_numpy import half_widths_numpy
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -40,6 +42,26 @@ def contact_rows(uv: ArrayLike, feed: Feed, sections: bool) -> Array:
     table[:, 2] = SECTION
     table[:, 3:6] = unit(as_rows(feed, 3, "feed"))
     return table
+
+
+def _fill(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
+    """Half widths of n contacts with an axis each, by the kernel or by its twin with the kernel for what is left."""
+    if _compiled.available:
+        section_widths(geometry, contacts, axes, sizes, out)
+        return
+    out[:], found = half_widths_numpy(geometry, contacts, axes, sizes)
+    rest = np.empty(((~found).sum(), 2))
+    section_widths(geometry, contacts[~found], axes[~found], sizes, rest)
+    out[~found] = rest
+
+
+def _fill_steps(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
+    """Half widths in the step parameter of n contacts with k axes, likewise."""
+    if _compiled.available:
+        step_half_widths(geometry, contacts, axes, sizes, out)
+        return
+    for k in range(len(axes)):
+        _fill(geometry, contacts, np.broadcast_to(axes[k], (len(contacts), 3)), sizes, out[k])
 
 
 def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: Feed = "u",
@@ -89,7 +111,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     contacts = contact_rows(uv, feed, True)
     axes = np.ascontiguousarray(np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(contacts), 3)))
     out = np.empty((len(contacts), 2))
-    section_widths(geometry, contacts, axes, sizes, out)
+    _fill(geometry, contacts, axes, sizes, out)
     return out[:, ::-1].copy()
 
 
@@ -120,7 +142,7 @@ def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     if len(axes) not in (1, len(contacts)):
         raise InvalidInput(f"{len(axes)} axes for {len(contacts)} contacts: give one axis, or one for each contact")
     out = np.empty((1, len(contacts), 2))
-    step_half_widths(geometry, contacts, np.ascontiguousarray(axes[None]), sizes, out)
+    _fill_steps(geometry, contacts, np.ascontiguousarray(axes[None]), sizes, out)
     return np.asarray(out[0])
 
 
@@ -148,7 +170,7 @@ def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike
     geometry, sizes, contacts = _step_job(face, tool, uv, feed, (scallop, allowance))
     rows = np.ascontiguousarray(unit(as_rows(axes, 3, "axes"))[:, None])
     out = np.empty((len(rows), len(contacts), 2))
-    step_half_widths(geometry, contacts, rows, sizes, out)
+    _fill_steps(geometry, contacts, rows, sizes, out)
     return out
 
 

@@ -182,25 +182,32 @@ def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, f
         The contact is row SIDE_NODES.
     """
     first = last = SIDE_NODES
+    tip = memory[1]
     for side in (-1, 1):
-        w, row = start, SIDE_NODES
+        w, row, step, last_w = start, SIDE_NODES, 0.0, start
         while True:
             pass_tip(setting, curve, w, memory)
-            state, tip = memory[0], memory[1]
-            far = speed = travel = 0.0
+            far = moved = speed = travel = 0.0
+            for c in range(3):
+                far += (tip[0, c] - table[SIDE_NODES, 1 + c]) ** 2 if row != SIDE_NODES else 0.0
+                moved += (tip[0, c] - table[row - side, 1 + c]) ** 2 if row != SIDE_NODES else 0.0
+                speed += memory[0][1, c] ** 2
+                travel += tip[1, c] ** 2
+            if moved > (1.5 * reach[1]) ** 2 and abs(step) > 1e-6 * reach[1] / sqrt(speed):
+                step *= 0.5
+                w = last_w + step
+                continue
             table[row, 0] = w
             for c in range(3):
                 table[row, 1 + c] = tip[0, c]
                 table[row, 4 + c] = tip[1, c]
-                speed += state[1, c] ** 2
-                travel += tip[1, c] ** 2
-            for c in range(3):
-                far += (tip[0, c] - table[SIDE_NODES, 1 + c]) ** 2
             pace = sqrt(max(speed, travel))
             if far > reach[0] ** 2 or row in (0, 2 * SIDE_NODES) or pace <= 1e-300:
                 break
             row += side
-            w += side * reach[1] / pace
+            step = side * reach[1] / pace
+            last_w = w
+            w += step
         if side < 0:
             first = row
         else:

@@ -25,6 +25,7 @@ ROWS = 2 * SIDE + 1
 CLOSE = 1 / 6
 """Distance of the nodes next to the contact, in radii of the tool."""
 GROWTH = 1.3
+WIDEST = 0.45
 FIRST_CLOSE = 3
 
 
@@ -89,7 +90,7 @@ def lay_road(surface: SurfaceData, place: tuple[float, int, float, float], sizes
             w += side * step / pace
             gone += step
             if abs(row - SIDE) >= FIRST_CLOSE:
-                step *= GROWTH
+                step = min(step * GROWTH, WIDEST * radius)
         ends = (row, ends[1]) if side < 0 else (ends[0], row)
     return ends
 
