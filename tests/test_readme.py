@@ -1,0 +1,66 @@
+"""The README does what it says: every command and the Python example run, every test and file that it names exists."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
+    return [text for name, text in found if name == language]
+
+
+def test_make_knows_the_targets_and_the_demo_runs_the_command() -> None:
+    (targets,) = [block for block in blocks("") if block.startswith("make")]
+    for line in targets.split("\n"):
+        if line:
+            subprocess.run([*line.split(), "--dry-run"], cwd=ROOT, check=True, capture_output=True)
+    dry = subprocess.run(["make", "-n", "demo"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert "toolaxis plan examples/freeform.step" in dry and "toolaxis verify out/demo" in dry
+
+
+def commands() -> list[str]:
+    return [line for block in blocks("") for line in block.splitlines() if line.startswith("toolaxis ")]
+
+
+def test_every_command_runs(tmp_path: Path) -> None:
+    found = commands()
+    assert [line.split()[1] for line in found] == ["inspect", "plan", "verify"]
+    for line in found:
+        words = [str(ROOT / word) if word.startswith("examples/") else word for word in line.split()[1:]]
+        done = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", *words], cwd=tmp_path, capture_output=True,
+                              text=True)
+        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+    assert (tmp_path / "out" / "saddle" / "verdict.json").exists()
+
+
+def test_the_python_example_runs_and_passes() -> None:
+    (code,) = blocks("python")
+    done = subprocess.run([sys.executable, "-W", "error", "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1].startswith("True")
+    assert len([line for line in code.splitlines() if line.strip()]) <= 12
+
+
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"tests/[\w/]+\.py::\w+", TEXT))))
+def test_every_promise_has_its_test(name: str) -> None:
+    path, _, function = name.partition("::")
+    assert f"def {function}(" in (ROOT / path).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"\]\(([^)]+)\)", TEXT))))
+def test_every_link_leads_to_a_file(name: str) -> None:
+    assert (ROOT / name).is_file()
+
+
+def test_every_option_that_is_named_exists() -> None:
+    shown = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", "plan", "--help"], capture_output=True,
+                           text=True, check=True).stdout
+    for option in set(re.findall(r"--[a-z]+", TEXT)) - {"--help"}:
+        assert option in shown
