@@ -22,6 +22,34 @@ def pytest_generate_tests(metafunc):
         metafunc.parametrize("shared_part", [pytest.param(p, id=p.stem) for p in parts] or missing, scope="module")
 
 
+@pytest.fixture(scope="session")
+def write_step():
+    """Write a kernel shape to a STEP file in mm."""
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+
+    def write(shape, path):
+        writer = STEPControl_Writer()
+        writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
+        writer.Write(str(path))
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def block_shape():
+    """A block 40 x 30 x 20 mm standing on z = 0 with a through hole of radius 5, by the bare kernel."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+    from OCP.TopAbs import TopAbs_SOLID
+    from OCP.TopExp import TopExp_Explorer
+
+    block = BRepPrimAPI_MakeBox(gp_Pnt(-20, -15, 0), 40.0, 30.0, 20.0).Shape()
+    hole = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -5), gp_Dir(0, 0, 1)), 5.0, 30.0).Shape()
+    return TopExp_Explorer(BRepAlgoAPI_Cut(block, hole).Shape(), TopAbs_SOLID).Current()
+
+
 @pytest.fixture(scope="module")
 def kernel_shape(shared_part):
     """The part as the kernel itself reads it."""

@@ -12,15 +12,13 @@ from toolaxis.cad import load, transfer
 from toolaxis.cad.steptext import read_text
 from toolaxis.errors import InvalidInput, ToolAxisError
 
-cq = pytest.importorskip("cadquery")
+pytest.importorskip("OCP")
 
 
 @pytest.fixture(scope="module")
-def text(tmp_path_factory):
+def text(tmp_path_factory, block_shape, write_step):
     """A good STEP file: a block of six planes and one cylinder, 40 x 30 x 20 mm."""
-    path = tmp_path_factory.mktemp("good") / "good.step"
-    cq.exporters.export(cq.Workplane().box(40, 30, 20).faces(">Z").workplane().hole(10), str(path))
-    return path.read_text()
+    return write_step(block_shape, tmp_path_factory.mktemp("good") / "good.step").read_text()
 
 
 @pytest.fixture
@@ -171,10 +169,10 @@ def test_declared_units_become_millimetres(write, text, unit, factor, same_proce
     assert len(warned) == (1 if factor == 1000.0 else 0)
 
 
-def test_a_part_too_small_for_its_unit_is_warned_about(write, same_process):
-    path = write("", "small.step")
-    cq.exporters.export(cq.Workplane().box(0.2, 0.3, 0.1), str(path))
-    warnings = load(path).warnings
+def test_a_part_too_small_for_its_unit_is_warned_about(tmp_path, write_step, same_process):
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+
+    warnings = load(write_step(BRepPrimAPI_MakeBox(0.2, 0.3, 0.1).Shape(), tmp_path / "small.step")).warnings
     assert any("0.3742 mm across" in text and "374.2 mm if its numbers were m" in text for text in warnings)
 
 

@@ -4,6 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+
+pytest.importorskip("OCP")
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepClass import BRepClass_FaceClassifier
@@ -115,6 +117,14 @@ def test_derivatives_agree_with_the_kernel_where_parameters_are_the_same(kernel_
                 bound = 1e-8 * (np.linalg.norm(suu) + np.linalg.norm(svv) + np.linalg.norm(suv) + np.linalg.norm(su)
                                 + np.linalg.norm(sv))
                 assert np.linalg.norm(mine - theirs) <= bound, record.number
+
+
+def test_loops_stay_inside_the_domain_of_their_surface(kernel_record):
+    for record in kernel_record.faces:
+        (u0, u1), (v0, v1) = face_from_record(record).surface.domain
+        for loop in record.loops:
+            assert (loop >= [u0, v0]).all()
+            assert (loop <= [u1, v1]).all()
 
 
 def part_size(record):

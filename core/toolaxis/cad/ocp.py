@@ -111,8 +111,9 @@ def face_record(face: Any, number: int = 1, share: float = 1e-5) -> tuple[FaceRe
         raise UnsupportedGeometry("it has a mesh but no surface: export the part with exact geometry")
     loops, box = _kernel_loops(face, surface, share)
     plain = convert(surface, box)
-    polygons = tuple(plain.map.to_ours(polygon) for polygon in loops.polygons)
-    if _covers_domain(polygons, plain):
+    low, high = _domain(plain)
+    polygons = tuple(_kept_inside(plain.map.to_ours(polygon), low, high) for polygon in loops.polygons)
+    if _covers_domain(polygons, low, high):
         polygons = ()
     record = FaceRecord(number, plain.knots_u, plain.knots_v, plain.control, plain.degree, polygons, flip,
                         loops.reversed, plain.kind, plain.tolerance, plain.map)
@@ -150,14 +151,25 @@ def _size(adaptor: Any, box: Box) -> float:
     return float(np.linalg.norm(np.ptp([[p.X(), p.Y(), p.Z()] for p in points], axis=0)))
 
 
-def _covers_domain(polygons: tuple[Array, ...], plain: PlainSurface) -> bool:
+def _domain(plain: PlainSurface) -> tuple[Array, Array]:
+    pu, pv = plain.degree
+    low = np.array([plain.knots_u[pu], plain.knots_v[pv]])
+    return low, np.array([plain.knots_u[-pu - 1], plain.knots_v[-pv - 1]])
+
+
+def _kept_inside(loop: Array, low: Array, high: Array) -> Array:
+    """A loop that strays over the end of its surface, as inaccurate files have it, brought back to the end."""
+    if (loop >= low).all() and (loop <= high).all():
+        return loop
+    inside = np.clip(loop, low, high)
+    return np.asarray(inside[(inside != np.roll(inside, 1, axis=0)).any(axis=1)])
+
+
+def _covers_domain(polygons: tuple[Array, ...], low: Array, high: Array) -> bool:
     """Whether a single loop is just the rectangle of the surface's domain."""
     if len(polygons) != 1 or len(polygons[0]) < 4:
         return False
-    pu, pv = plain.degree
-    low = np.array([plain.knots_u[pu], plain.knots_v[pv]])
-    size = np.array([plain.knots_u[-pu - 1], plain.knots_v[-pv - 1]]) - low
-    place = (polygons[0] - low) / size
+    place = (polygons[0] - low) / (high - low)
     on_border = (np.minimum(np.abs(place), np.abs(place - 1)) <= NATURAL).any(axis=1)
     corners = (np.minimum(np.abs(place), np.abs(place - 1)) <= NATURAL).all(axis=1)
     return bool(on_border.all() and len(np.unique(np.round(place[corners]), axis=0)) == 4
