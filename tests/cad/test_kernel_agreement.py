@@ -4,8 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-
-pytest.importorskip("OCP")
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepClass import BRepClass_FaceClassifier
