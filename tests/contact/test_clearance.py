@@ -154,6 +154,35 @@ def test_motion_against_dense_steps():
         assert (found[k][~outside] < RESOLUTION).all()
 
 
+def _star_trims():
+    """A wavy outer loop and a slanting slot, both polygons."""
+    t = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    radius = 0.38 + 0.06 * np.cos(5 * t)
+    outer = np.stack([0.5 + radius * np.cos(t), 0.5 + radius * np.sin(t)], axis=1)
+    return outer, np.array([[0.4, 0.35], [0.62, 0.6], [0.58, 0.64], [0.36, 0.39]])
+
+
+def test_trimmed_faces_against_dense_borders():
+    """Nothing that trims leave is missed, and nothing that they cut away is found."""
+    face, rng = _wavy(5).trimmed(_star_trims()), np.random.default_rng(8)
+    share = np.linspace(0, 1, 60)[:, None]
+    border = [a + share * (b - a) for loop in face.trims for a, b in zip(loop, np.roll(loop, -1, 0), strict=True)]
+    points = face.evaluate(np.vstack([face.grid(400, 400), *border])).point
+    tips, axis = rng.uniform([-30, -30, -4], [30, 30, 6], (150, 3)), unit(UP + 0.6 * rng.standard_normal((150, 3)))
+    found = clearances(TOOL, tips, axis, Surroundings((face,), np.zeros((1, 3)))).distance
+    exact = np.empty((150, 3))
+    for k, (tip, t) in enumerate(zip(tips, axis, strict=True)):
+        w = points - tip
+        z = w @ t
+        flat = np.column_stack([np.linalg.norm(w - z[:, None] * t, axis=1), np.zeros_like(z), z])
+        exact[k] = [TOOL.distance(flat, name).value.min() for name in ("cutter", "shank", "holder")]
+    apart = (exact > 0) & (exact < CUTOFF)
+    assert apart.sum() > 60
+    assert (found[apart] <= exact[apart] + 1e-9).all()
+    assert (found[apart] >= exact[apart] - 0.01).all()  # samples stand 0.15 mm apart
+    assert (found[exact < 0] < 1e-9).all()
+
+
 def test_moves_mirrors_and_scales_with_the_part():
     faces, rng = (_wavy(), _wall(20, -5, 60)), np.random.default_rng(4)
     tips, axis = rng.uniform([-10, -10, 3], [10, 10, 9], (30, 3)), unit(UP + 0.2 * rng.standard_normal((30, 3)))

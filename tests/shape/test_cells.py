@@ -116,7 +116,7 @@ def test_holes_are_left_out():
     assert not deep.any()
     assert not (np.hypot(middle[:, 0] - .5, middle[:, 1] - .5) > 0.45 + size).any()
     area = 4 * np.prod(tree.leaf[:, 2:4], axis=1).sum()
-    assert area == pytest.approx(np.pi * (.45**2 - .2**2), rel=0.02)
+    assert area == pytest.approx(np.pi * (.45**2 - .2**2), rel=0.05)
 
 
 def test_border_loops_cost_nothing():

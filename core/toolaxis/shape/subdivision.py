@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-_COARSEST, _FINEST = 16, 128
+_COARSEST, _FINEST = 16, 64
 _DEEPEST = 48
 _ROUNDING = 1e-12
 _MARGIN = 1e-9
@@ -321,7 +321,7 @@ def subdivided(face: Face, fineness: float) -> Tree:
     ----------
     face : Face
     fineness : float
-        Distance e at which cells of at most 1/16 of the face's diagonal are left as they are, mm; cells below 1/128
+        Distance e at which cells of at most 1/16 of the face's diagonal are left as they are, mm; cells below 1/64
         of the diagonal are never split.
 
     Raises
