@@ -8,6 +8,7 @@ from toolaxis.numeric import compiled
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.progress import Progress
 from toolaxis.tools.profile import Profile
+from toolaxis.verify import motions
 from toolaxis.verify.removal import removal
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -181,6 +182,17 @@ def test_ball_that_turns_about_its_centre_removes_what_a_still_axis_removes():
     two = removal((centre - 3 * fixed, fixed, np.zeros(400, dtype=int)), profile(3, 3), rays)
     # Between two points the centre leaves its line by the bow of the turning axis, 3 mm times the square of 0.03 / 2.
     np.testing.assert_allclose(one.remaining, two.remaining, atol=1e-3)
+
+
+@pytest.mark.parametrize("seed", [2, 4])
+def test_finer_pieces_of_turning_motions_change_nothing(monkeypatch, seed):
+    cl, rays = random_case(seed, 1000)
+    usual = removal(cl, profile(3, 1), rays)
+    assert usual.uncertainty <= 2e-4
+    monkeypatch.setattr(motions, "BOW", 1e-6)
+    fine = removal(cl, profile(3, 1), rays)
+    np.testing.assert_allclose(np.minimum(usual.remaining, 99), np.minimum(fine.remaining, 99), atol=1e-6)
+    np.testing.assert_allclose(usual.gouge, fine.gouge, atol=1e-6)
 
 
 def random_case(seed=3, count=300):

@@ -18,7 +18,7 @@ from toolaxis.verify.blocks import balls, curve_order, in_chunks
 from toolaxis.verify.motions import GROUP, Motions, grouped, motions_from_cl
 from toolaxis.verify.removal_numpy import remove_numpy
 from toolaxis.verify.solids import cutter_solid, meridian, reach_of
-from toolaxis.verify.sweep import LOOK, first_entry, moment
+from toolaxis.verify.sweep import LOOK, first_entry, moment, sway
 
 Array = NDArray[np.float64]
 Counts: TypeAlias = NDArray[np.int64]
@@ -84,12 +84,6 @@ def _level(ray: Array, out: Found, i: int, cutting: bool) -> float:
 
 
 @compiled
-def _turns(motion: Pieces, k: int) -> bool:
-    turn = motion[3]
-    return bool(turn[k, 0] != 0.0 or turn[k, 1] != 0.0 or turn[k, 2] != 0.0)
-
-
-@compiled
 def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[Counts, int, Array, int]) -> None:
     """Let the motions near[0][:near[1]] act on ray near[3]: the closest first, then those it does not rule out.
 
@@ -112,12 +106,12 @@ def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[
         if turn == first:
             continue
         level = _level(ray, out, i, cutting[which[n]])
-        rest, along = look[n, 0] + look[n, 1] * (level - look[n, 2]), look[n, 1]
-        start = -ray[i, 6]
-        if rest > (along * (level - start) if along > 0.0 else 0.0):
+        change, along, start = sway(motion, which[n]), look[n, 1], -ray[i, 6]
+        rest = look[n, 0] + along * (level - look[n, 2]) - change * (look[n, 2] - level)
+        if rest > max(along + change, 0.0) * (level - start):
             continue
-        if along < 0.0 and not _turns(motion, which[n]):
-            start = max(start, level - rest / along)
+        if along < -change:
+            start = max(start, level - rest / (along + change))
         _meet(body, (which[n], cutting[which[n]], arrival[which[n]]), ray, out, (i, start))
 
 

@@ -92,14 +92,17 @@ def first_entry_numpy(pairs: Pairs, low: Array, high: Array) -> Array:
     """
     t, entry = np.array(low, dtype=float), np.full(len(low), np.inf)
     open_ = t <= high
+    _, _, axis, turn = pairs[1]
+    change = np.linalg.norm(turn, axis=1) / np.linalg.norm(axis + 0.5 * turn, axis=1)
     for _ in range(200):
         i = np.flatnonzero(open_)
         if not len(i):
             break
         value, least, along = least_over_motion_numpy(_rows(pairs, open_), t[i])
-        found, lost = value <= ROOT, (value > ROOT) & (along >= 0)
+        slope = along - change[i]
+        found, lost = value <= ROOT, (value > ROOT) & (slope >= 0)
         entry[i[found]] = t[i[found]]
-        ahead = np.where(along < 0, np.maximum(least, 0.5 * ROOT) / np.where(along < 0, -along, 1.0), 0.0)
+        ahead = np.where(slope < 0, np.maximum(least, 0.5 * ROOT) / np.where(slope < 0, -slope, 1.0), 0.0)
         t[i] += np.where(found, 0.0, ahead)
         open_[i] = ~(found | lost) & (t[i] <= high[i])
     return entry
@@ -115,7 +118,8 @@ def _update(body: tuple[Array, Motion], pair: tuple[Index, Index], ray: Array,
     pairs = (solid, (start[k], step[k], axis[k], turn[k]), ray[i])
     level = np.where(cutting[k] & (remaining[i] > 0), np.minimum(remaining[i], ray[i, 7]), -gouge[i])
     value, slope, along = _moment(pairs, np.full(len(i), 0.5), level)
-    keep = value - 0.5 * np.abs(slope) - np.maximum(along, 0) * (level + ray[i, 6]) <= LOOK
+    change = np.linalg.norm(turn[k], axis=1) / np.linalg.norm(axis[k] + 0.5 * turn[k], axis=1)
+    keep = value - 0.5 * np.abs(slope) - np.maximum(along + change, 0) * (level + ray[i, 6]) <= LOOK
     i, k, level, pairs = i[keep], k[keep], level[keep], _rows(pairs, keep)
     entry = first_entry_numpy(pairs, -ray[i, 6], level)
     order = np.argsort(-entry, kind="stable")

@@ -97,19 +97,31 @@ def least_over_motion(solid: Array, motion: Motion, k: int, ray: Ray, t: float) 
 
 
 @compiled
+def sway(motion: Motion, k: int) -> float:
+    """Angle by which the axis turns on motion k, rad: how much a slope along a ray may change with the share."""
+    _, _, axis, turn = motion
+    size = near = 0.0
+    for c in range(3):
+        size += turn[k, c] ** 2
+        near += (axis[k, c] + 0.5 * turn[k, c]) ** 2
+    return float(np.sqrt(size / near))
+
+
+@compiled
 def first_entry(solid: Array, motion: Motion, k: int, ray: Ray, span: tuple[float, float]) -> float:
     """Least t in the span at which the ray is inside the solid swept along motion k; inf where it is not.
 
-    Newton steps from below, which a convex function never lets overshoot.
+    Newton steps from below, which a convex function never lets overshoot; where the axis turns, they are taken with
+    the steepest slope on the way.
     """
-    t = span[0]
+    t, change = span[0], sway(motion, k)
     for _ in range(200):
         value, low, along, _ = least_over_motion(solid, motion, k, ray, t)
         if value <= ROOT:
             return t
-        if along >= 0.0:
+        if along >= change:
             return np.inf
-        t += max(low, 0.5 * ROOT) / -along
+        t += max(low, 0.5 * ROOT) / (change - along)
         if t > span[1]:
             return np.inf
     return t
