@@ -1,6 +1,7 @@
 """The main job in Python: plan, judge, cancel, and the answer no."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -136,3 +137,42 @@ def test_faces_by_number_and_by_default() -> None:
     assert parse_faces("3, 5-8") == (3, 5, 6, 7, 8) and parse_faces("ALL") == "all"
     with pytest.raises(ta.InvalidInput, match="none of the part's 1 faces is sculptured"):
         chosen_faces(ta.Part.from_faces(faces[:1]), None)
+
+
+def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    import toolaxis.job.run as job
+
+    search = job.best_axis
+
+    def fails_on_the_first(face: ta.Face, *rest: object, **more: object) -> object:
+        if face.number == 1:
+            raise ta.UnsupportedGeometry("face 1 is made of water")
+        return search(face, *rest, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(job, "best_axis", fails_on_the_first)
+    part = ta.Part.from_faces([ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.0) + np.array([0, 40.0, 0]))])
+    made = ta.plan(part, "torus:12x1", 0.1)
+    assert made.outcome == "incomplete"
+    assert [op.done for op in made.operations] == [False, True]
+    assert made.operations[0].orientation.reasons == ("no axis found: face 1 is made of water",)
+
+
+def test_a_face_with_a_kink_is_divided_there(tmp_path: Path) -> None:
+    from toolaxis.job.folder import read_plan, write_plan
+
+    x = np.linspace(0, 24, 7)
+    roof = [[[a, b, 8 - 0.3 * abs(a - 12)] for b in (0.0, 5.0, 10.0, 16.0)] for a in x]
+    knots = ([0, 0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1])
+    face = ta.Face.from_bspline(roof, knots=knots)
+    from toolaxis.shape.kinks import with_kinks
+
+    made = ta.plan(ta.Part.from_faces([with_kinks(face)]), "ball:6", 0.1, machine="cone:0,0,1,50")
+    assert [op.face.label for op in made.operations] == ["1a", "1b"]
+    assert made.outcome == "complete"
+    write_plan(made, tmp_path)
+    back = read_plan(tmp_path)
+    for mine, theirs in zip(back.operations, made.operations, strict=True):
+        assert mine.name == theirs.name and mine.face.area == pytest.approx(theirs.face.area, rel=1e-12)
+    assert sum(op.face.area for op in back.operations) == pytest.approx(24 * 1.09**0.5 * 16, rel=1e-6)
+    verdict = ta.verify(made)
+    assert verdict.passed, verdict.reasons

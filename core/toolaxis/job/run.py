@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits
@@ -137,14 +137,16 @@ class _Job:
     def _operation(self, face: Face, index: int, count: int, progress: Progress) -> Operation:
         inner = progress.within(f"face {face.label} ({index + 1} of {count})")
         inner.report("search for the axis", 0, 1)
-        found = self._searched(face, inner)
+        try:
+            found = self._searched(face, inner)
+            path = None if found.axis is None else self._traced(face, found, inner)
+        except Cancelled:
+            raise
+        except ToolAxisError as reason:  # this face cannot be done; the others can
+            return Operation(index + 1, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
-        if found.axis is None:
-            return Operation(index + 1, face, found)
-        inner.report("passes", 0, 1)
-        path = self._traced(face, found, inner)
-        return Operation(index + 1, face, found, path, self._frame(face, found))
+        return Operation(index + 1, face, found, path, None if path is None else self._frame(face, found))
 
     def _searched(self, face: Face, progress: Progress) -> Orientation:
         return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
