@@ -68,14 +68,13 @@ def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
 
 
 @built_in
-def curve_point(surface: SurfaceData, sign: float, curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
+def curve_point(side: tuple[SurfaceData, float], curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
     """Point, tangent, normal and its rate at parameter w of a curve.
 
     Parameters
     ----------
-    surface : tuple
-    sign : float
-        1, or -1 where the face is flipped.
+    side : (surface, sign)
+        The sign is 1, or -1 where the face is flipped.
     curve : tuple
     w : float
     state : (4, 3) array
@@ -83,6 +82,7 @@ def curve_point(surface: SurfaceData, sign: float, curve: Curve, w: float, state
     scratch : tuple
         From `new_scratch`.
     """
+    surface, sign = side
     d, basis, rates, place = scratch
     if curve[0] == ALONG_U:
         place[0], place[1], place[2], place[3] = w, curve[1], 1.0, 0.0

@@ -33,7 +33,7 @@ Geometry: TypeAlias = tuple[SurfaceData, float, Array]
 """Surface, sign of its normal, cutter."""
 Bench: TypeAlias = tuple[Road, Memory, Array, Array, tuple[Nodes, Nodes]]
 """Room for the pass, for one point, for three vectors, for the frame, and for two plane sections."""
-SOFT = 2.0
+SOFT = 10.0
 """Least corner radius of first guesses, in scallop heights."""
 Sizes: TypeAlias = tuple[float, float, float]
 """Scallop height h, lift h + allowance, radius of the tool, mm."""

@@ -6,13 +6,15 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.newton import Second, exit_step
+from toolaxis.contact.newton import Second, disc_step, exit_step, side_step
 from toolaxis.contact.swept import Pair, signed_distance
 from toolaxis.contact.tables import SIDE, blend, interval, iso_state, road_tip, tip_from
 from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.compiled import built_in, compiled
 
 Array = NDArray[np.float64]
+ARC, FLANK, DISC = 0, 1, 2
+
 Tables: TypeAlias = tuple[Array, Array, Array, Array, Array]
 """Cutter, road, bank, and room for derivatives (6, 3) and basis (6, 26)."""
 Rows: TypeAlias = tuple[int, int, int, int]
@@ -71,9 +73,27 @@ def rapid_exit(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contac
     found : bool
     s : float
     """
+    _, road, bank, _, _ = tables
+    _, along, u, v, _ = contact
+    rows = guess[1]
+    s0, w0 = (v, u) if along == 0 else (u, v)
+    found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, ARC))
+    if not found:
+        found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, FLANK))
+    if not found and tables[0][0] > 0.0:
+        found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, DISC))
+    if not (found and road[rows[0], 0] < w < road[rows[1], 0] and bank[rows[2], 0] <= s <= bank[rows[3], 0]):
+        return False, s
+    return _confirmed(tables, axis, point, (s0, w0, s, w), rows), s
+
+
+@compiled
+def _solved(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contact,
+            guess: tuple[Place, Rows, int]) -> tuple[bool, float, float, Pair]:
+    """Newton's method on the tables and then on the surface: whether it ended at an exit, s, w and the point there."""
     cutter, road, bank, d, basis = tables
     sign, along, u, v, radius = contact
-    (s_step, w_step), rows = guess
+    (s_step, w_step), rows, part = guess
     s0, w0 = (v, u) if along == 0 else (u, v)
     s, w = s0 + s_step, w0 + w_step
     second = _bend(cutter, axis, road, rows)
@@ -91,26 +111,24 @@ def rapid_exit(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contac
         else:
             point = _lifted(iso_state(surface, (sign, 1 - along, w0, s), d, basis), bank[SIDE, 7])
             tip = _placed(iso_state(surface, (sign, along, s0, w), d, basis), cutter, axis)
-        ds, dw, leaving, valid = exit_step(cutter, axis, point, tip, second)
+        if part == ARC:
+            ds, dw, leaving, valid = exit_step(cutter, axis, point, tip, second)
+        elif part == FLANK:
+            ds, dw, leaving, valid = side_step(cutter, axis, point, tip, second)
+        else:
+            ds, dw, leaving, valid = disc_step(cutter, axis, point, tip, second)
         far_s, far_w = abs(ds) * _length(point), abs(dw) * _length(tip)
         if not far_s + far_w < inf:
-            return False, s
+            return False, s, w, point
         if exact > 0 and far_s <= 1e-7 * radius and far_w <= 1e-6 * radius:
-            if not (valid and leaving * s_step > 0.0):
-                return False, s
-            s, w = s + ds, w + dw
-            break
+            return valid and leaving * s_step > 0.0, s + ds, w + dw, point
         if exact > 0 and (exact > 3 or far_s > 1e-2 * radius):
-            return False, s
+            return False, s, w, point
         share = max(abs(ds) / (0.6 * abs(s - s0)), 2.0 * far_w / radius, 1.0)
         s, w = s + ds / share, w + dw / share
         if exact > 0 or (far_s <= 1e-6 * radius and far_w <= 1e-5 * radius):
             exact += 1
-    else:
-        return False, s
-    if not (road[rows[0], 0] < w < road[rows[1], 0] and bank[rows[2], 0] <= s <= bank[rows[3], 0]):
-        return False, s
-    return _confirmed(tables, axis, point, (s0, w0, s, w), rows), s
+    return False, s, w, point
 
 
 @built_in

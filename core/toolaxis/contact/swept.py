@@ -140,7 +140,7 @@ def gap_rates(cutter: Array, axis: Vector, point: Pair, tip: Pair) -> Gap:
 def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Array, Array, Scratch]) -> None:
     """Tip and its rate at w of a pass into memory[1]; memory = state (4, 3), tip (2, 3), point (2, 3), scratch."""
     surface, sign, cutter, axis = setting
-    curve_point(surface, sign, curve, w, memory[0], memory[3])
+    curve_point((surface, sign), curve, w, memory[0], memory[3])
     tip_rates(cutter, axis, memory[0], memory[1])
 
 
@@ -148,7 +148,7 @@ def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Arra
 def lifted_point(setting: Setting, curve: Curve, s: float, lift: float,
                  memory: tuple[Array, Array, Array, Scratch]) -> None:
     """The point lift above the surface at s of a curve, and its rate, into memory[2]."""
-    curve_point(setting[0], setting[1], curve, s, memory[0], memory[3])
+    curve_point((setting[0], setting[1]), curve, s, memory[0], memory[3])
     state, point = memory[0], memory[2]
     for c in range(3):
         point[0, c] = state[0, c] + lift * state[2, c]
