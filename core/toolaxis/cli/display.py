@@ -49,11 +49,11 @@ def shown_progress(asked: Callable[[], bool]) -> Iterator[Progress]:
               console=Console(stderr=True), transient=True) as bars:
         tasks: dict[str, int] = {}
 
-        def report(stage: str, done: float, total: float) -> None:
+        def _report(stage: str, done: float, total: float) -> None:
             if stage not in tasks:
                 for task in tasks.values():
                     bars.update(task, visible=False)  # type: ignore[arg-type]
                 tasks[stage] = bars.add_task(stage, total=total)
             bars.update(tasks[stage], completed=done, total=total, visible=True)  # type: ignore[arg-type]
 
-        yield Progress(report, asked)
+        yield Progress(_report, asked)

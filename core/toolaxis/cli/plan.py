@@ -80,7 +80,8 @@ def _told(made: Plan, given: Namespace) -> int:
             for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
-    say(f"toolaxis: {len(made.operations)} operations in {given.out}")
+    count = len(made.operations)
+    say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
     if made.outcome == "cancelled":
         say("toolaxis: stopped before all faces were done; plan.json holds those that were")
         return 130

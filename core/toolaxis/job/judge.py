@@ -67,12 +67,12 @@ def _task(plan: Plan, op: Operation) -> Task:
     around = grouped(op.face, plan.inputs.tolerance, part=plan.part,
                      obstacles=[face for body in plan.obstacles for face in body.faces])
 
-    def of(*roles: str) -> tuple[Face, ...]:
+    def _of(*roles: str) -> tuple[Face, ...]:
         return tuple(face for group in around if group.role in roles for face in group.faces
                      if (face.number, face.label) != (op.face.number, op.face.label))
 
     return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
-                plan.inputs.allowance, of(SKIN), of(TOUCHING), of(OTHER), plan.tool.outlines, plan.inputs.tolerance,
+                plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines, plan.inputs.tolerance,
                 min(1.0, op.orientation.unreached))
 
 

@@ -130,7 +130,7 @@ def _draw_study(plan: Plan, op: Operation, folder: Path) -> None:
         study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png", dpi=DPI)
 
 
-def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str,
+def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str, *,
                 angles: int = _ANGLES) -> WidthStudy:
     """Estimate, count and passes made for axes in the plane of the mean normal and a given axis.
 

@@ -50,12 +50,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
         Limits of the axis, or their short form ("cone:0,0,1,45"); see `toolaxis.machine.limits`.
     faces : sequence of int, "all" or text such as "3,5-8", optional
         The sculptured faces unless given.
-    regions, orientations : None
-        Dividing faces and sharing axes are not part of this version.
+    regions, orientations, strategy
+        Not part of this version: every sub-surface gets one fixed axis of its own.
     objective : str
         "length" or "passes".
-    strategy : str
-        "indexed": one fixed axis for each sub-surface.
     allowance : float
         Stock left on the faces, mm.
     direction : str
@@ -123,6 +121,7 @@ class _Job:
     datum: Array
 
     def carried_out(self, targets: Sequence[Face], progress: Progress) -> Plan:
+        """The plan for sub-surfaces, one after the other."""
         done: list[Operation] = []
         outcome = "complete"
         try:

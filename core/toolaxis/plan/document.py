@@ -72,11 +72,11 @@ def _map_from(document: Mapping[str, Any] | None) -> AxisMap | None:
     if document is None:
         return None
 
-    def numbers(name: str) -> Array:
+    def _numbers(name: str) -> Array:
         return np.array([np.inf if v is None else v for v in document[name]], dtype=float)
 
-    return AxisMap(np.array(document["axis"], dtype=float).reshape(-1, 3), numbers("passes"), numbers("length"),
-                   np.array(document["reason"], dtype=np.int8), numbers("amount"))
+    return AxisMap(np.array(document["axis"], dtype=float).reshape(-1, 3), _numbers("passes"), _numbers("length"),
+                   np.array(document["reason"], dtype=np.int8), _numbers("amount"))
 
 
 def orientation_document(found: Orientation) -> Document:

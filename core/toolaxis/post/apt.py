@@ -198,6 +198,7 @@ class _Reading:
         self.starts: list[int] = []
 
     def take(self, number: int, statement: str) -> None:
+        """Take in one statement that begins on a line with a number."""
         word, _, arguments = (part.strip() for part in statement.partition("/"))
         word = word.upper()
         if word == "GOTO":

@@ -84,11 +84,11 @@ def plan_table(plan: Plan) -> Table:
 
 
 def _measured(found: Mapping[str, Clearance | str]) -> str:
-    def one(name: str) -> str:
+    def _one(name: str) -> str:
         room = found.get(name)
         return number(room.distance, 2) if isinstance(room, Clearance) else "-"
 
-    return " / ".join(one(name) for name in ("cutter", "shank", "holder"))
+    return " / ".join(_one(name) for name in ("cutter", "shank", "holder"))
 
 
 def _verdict_row(op: Operation, found: OperationVerdict | None) -> list[str]:
