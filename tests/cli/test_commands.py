@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from toolaxis.cli.main import main
+from toolaxis.errors import Cancelled
 
 Capture = pytest.CaptureFixture[str]
 FAST = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
@@ -155,3 +156,18 @@ def test_ctrl_c_twice_leaves_nothing(sheet: Path, tmp_path: Path) -> None:
     assert process.returncode == 130 and "Traceback" not in err
     left = list(tmp_path.iterdir())
     assert left == [] or strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "cancelled"
+
+
+@pytest.mark.parametrize("reason, said", [(RuntimeError("no ink"), "RuntimeError: no ink"),
+                                          (Cancelled("enough"), "stopped while drawing")])
+def test_a_plan_survives_its_pictures(sheet: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch,
+                                      reason: Exception, said: str) -> None:
+    import toolaxis.job.pictures
+
+    def fail(*_: object) -> None:
+        raise reason
+
+    monkeypatch.setattr(toolaxis.job.pictures, "draw_plan", fail)
+    assert main(["plan", str(sheet), *FAST, "--faces=1", "--out", str(tmp_path / "out")]) == 0
+    assert said in capsys.readouterr().err
+    assert strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "complete"

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
 from toolaxis.job.spec import Spec
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.progress import Progress
 
 _LATER = {"machine": "choosing a machine by name; give its axis range with --limits",
           "regions": "dividing faces into regions", "orientations": "a number of orientations for all faces",
@@ -43,9 +44,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, progress=progress)
             write_plan(made, stage.folder)
             if not given.no_pictures and made.outcome != "cancelled":
-                from toolaxis.job.pictures import draw_plan
-
-                draw_plan(made, stage.folder, progress)
+                _draw(made, stage.folder, progress)
         stage.publish()
     return _told(made, given)
 
@@ -63,6 +62,18 @@ def _spec(given: Namespace) -> Spec:
                 tuple(given.obstacles))
     _ = spec.numbers
     return spec
+
+
+def _draw(made: Plan, folder: Path, progress: Progress) -> None:
+    """Draw the pictures; a plan is worth keeping without them."""
+    from toolaxis.job.pictures import draw_plan
+
+    try:
+        draw_plan(made, folder, progress)
+    except Cancelled:
+        say("toolaxis: stopped while drawing; the plan is whole, pictures are missing")
+    except Exception as reason:
+        say(f"toolaxis: warning: pictures are missing ({type(reason).__name__}: {reason}); the plan is whole")
 
 
 def _told(made: Plan, given: Namespace) -> int:

@@ -1,6 +1,6 @@
 """Pictures of a plan and of its verdict, written as PNG files beside it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,7 @@ from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.indexed import task
+from toolaxis.orient.indexed import Task, task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import smallest_cap
 from toolaxis.orient.sector import roman_axis, sectors
@@ -50,16 +50,16 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     largest = max(done, key=lambda op: op.face.area, default=None)
     for index, op in enumerate(plan.operations):
         progress.report("drawing", index, len(plan.operations))
+        job = _task(plan, op, Progress(None, progress.cancelled))
         if op.orientation.map is not None:
-            quiet = Progress(None, progress.cancelled)
-            marks = {**_marks(op), **_baselines(plan, op, op is largest, quiet)}
+            marks = {**_marks(op), **_baselines(plan, job, op is largest)}
             hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
             operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
             _draw_widths(plan, op, folder)
         if op is largest:
-            _draw_study(plan, op, folder)
+            _draw_study(plan, op, job, folder)
 
 
 def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress = NO_PROGRESS) -> None:
@@ -97,16 +97,20 @@ def _marks(op: Operation) -> Mapping[str, ArrayLike]:
     return marks
 
 
-def _baselines(plan: Plan, op: Operation, sectors_too: bool, progress: Progress) -> Mapping[str, ArrayLike]:
-    """Axes that other rules choose: Roman's, and that of projection planes and sectors."""
+def _task(plan: Plan, op: Operation, progress: Progress) -> Task:
+    """What the search for the operation's axis went by."""
     words = plan.inputs.limits
     limits = parse_limits(words) if ":" in words else None
-    job = task(op.face, plan.tool, plan.inputs.scallop, limits,
-               [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
-               part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance, progress=progress)
-    marks: dict[str, ArrayLike] = {"Roman's rule": roman_axis(Ledger(job.feasibility, job.worth, progress))}
+    return task(op.face, plan.tool, plan.inputs.scallop, limits,
+                [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
+                part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance, progress=progress)
+
+
+def _baselines(plan: Plan, job: Task, sectors_too: bool) -> Mapping[str, ArrayLike]:
+    """Axes that other rules choose: Roman's, and that of projection planes and sectors."""
+    marks: dict[str, ArrayLike] = {"Roman's rule": roman_axis(Ledger(job.feasibility, job.worth, job.progress))}
     if sectors_too and plan.inputs.method != "sectors":
-        found = sectors(Ledger(job.feasibility, job.worth, progress))
+        found = sectors(Ledger(job.feasibility, job.worth, job.progress))
         marks |= {"sectors [zhu2016]": found[0].axis} if found else {}
     return marks
 
@@ -123,15 +127,16 @@ def _draw_widths(plan: Plan, op: Operation, folder: Path) -> None:
     widths_picture(lines, (op.face, plan.tool), op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
 
 
-def _draw_study(plan: Plan, op: Operation, folder: Path) -> None:
+def _draw_study(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
     assert op.orientation.axis is not None
-    study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed)
+    study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed,
+                        usable=lambda axis: job.feasibility.witness(axis) is None)
     if len(study.angle) > 1:
         study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png", dpi=DPI)
 
 
 def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str, *,
-                angles: int = _ANGLES) -> WidthStudy:
+                angles: int = _ANGLES, usable: Callable[[Array], bool] = lambda axis: True) -> WidthStudy:
     """Estimate, count and passes made for axes in the plane of the mean normal and a given axis.
 
     Parameters
@@ -144,6 +149,8 @@ def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: s
     feed : str
     angles : int
         How many axes; from 3 degrees outside the cone of normals to 75 degrees from its middle.
+    usable : callable
+        Whether an axis (3,) may be used; the others are left out.
 
     Returns
     -------
@@ -158,6 +165,8 @@ def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: s
     found = []
     for angle in np.linspace(low, max(low + np.radians(5.0), min(np.radians(75.0), np.pi / 2 - spread)), angles):
         turned = np.cos(angle) * middle + np.sin(angle) * across
+        if not usable(turned):
+            continue
         try:
             made = layout(face, tool, turned, scallop, feed).used
             found.append((angle, 1 / float(np.asarray(estimate(face, tool, turned, scallop, feed))),
