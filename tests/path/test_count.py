@@ -136,7 +136,7 @@ def test_many_axes_at_once_are_the_single_ones(make):
 def test_the_kernel_and_its_twin_agree(make):
     ready = Estimator.of(make["holed"](make["wavy"](2)), TORUS, 0.02)
     axes = np.array([make["leaning"](a, b) for a, b in ((20, 0), (25, 90), (30, 200), (100, 0))])
-    ratio = np.random.default_rng(0).uniform(0.9, 1.1, (4, len(ready.samples)))
+    ratio = np.random.default_rng(0).uniform(0.9, 1.1, (4, len(ready.samples) + 60))
     for table in ready.rows:
         one = ready._sums(table, axes, ratio)
         two = np.empty(4), np.empty(4)

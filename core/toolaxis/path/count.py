@@ -15,8 +15,9 @@ Index = NDArray[np.intp]
 
 _ROW_GAPS = 48
 _ROUNDS = 8
-#: Exact widths that scale the second-order ones, per direction.
-_LATTICE = 5
+#: Gaps between exact widths on a pass; they scale the second-order ones.
+_EXACT_GAPS = 12
+_HALVINGS = 4
 _CANDIDATES = 2
 
 # Nodes and weights of Gauss and Kronrod with 7 and 15 points on [-1, 1], for the upper half.
@@ -94,12 +95,12 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     -------
     Count; inf where the axis leaves no strip somewhere.
     """
-    scale = _Scale(chart, cut)
+    beyond = _Beyond(chart, cut)
     edges = panels(chart)
     low, high = edges[:-1], edges[1:]
     done = np.zeros(2)
     for level in range(_ROUNDS):
-        fine, coarse = _integrals(chart, cut, scale, low, high)
+        fine, coarse = _integrals(chart, cut, beyond, low, high)
         if not np.isfinite(fine).all():
             return Count(np.inf, np.inf)
         total = done + fine.sum(axis=0)
@@ -133,12 +134,12 @@ def panels(chart: Chart) -> Array:
     return np.array([*keep, s1])
 
 
-def _integrals(chart: Chart, cut: Cut, scale: "_Scale", low: Array, high: Array) -> tuple[Array, Array]:
+def _integrals(chart: Chart, cut: Cut, beyond: "_Beyond", low: Array, high: Array) -> tuple[Array, Array]:
     """Passes and length on each panel by 15 and by 7 points, (n, 2) each."""
     nodes = np.concatenate([-_NODES[:0:-1], _NODES])
     half = (high - low) / 2
     steps = ((low + high) / 2)[:, None] + half[:, None] * nodes
-    width, length = _narrowest(chart, cut, scale, steps.ravel())
+    width, length = _narrowest(chart, cut, beyond, steps.ravel())
     strips = np.where(width > 0, 1.0 / np.where(width > 0, width, 1.0), np.inf)
     rate = np.where(length > 0, strips, 0.0)
     table = np.stack([rate, rate * length], axis=1).reshape(len(low), len(nodes), 2) * half[:, None, None]
@@ -146,40 +147,25 @@ def _integrals(chart: Chart, cut: Cut, scale: "_Scale", low: Array, high: Array)
     return fine, coarse
 
 
-class _Scale:
-    """Approximate strip widths that rank the places of a pass: second-order ones times an interpolated ratio."""
+class _Beyond:
+    """Places beyond the loops at which a pass still has to cut, for its strip reaches material.
+
+    A pass runs on past a slanting border until its strip holds nothing any more.
+    """
 
     def __init__(self, chart: Chart, cut: Cut) -> None:
-        from scipy.interpolate import RegularGridInterpolator
-
-        a0, a1, s0, s1 = chart.bounds
-        axes = [np.linspace(low, high, _LATTICE) for low, high in ((a0, a1), (s0, s1))]
-        along, step = (part.ravel() for part in np.meshgrid(*axes, indexing="ij"))
-        exact, second = chart.half_widths(cut, along, step).sum(axis=1), chart.screen(cut, along, step)
-        good = (exact > 0) & (second > 0)
-        ratio = np.where(good, exact / np.where(good, second, 1.0), 1.0)
-        self._table = RegularGridInterpolator(axes, ratio.reshape(_LATTICE, _LATTICE), bounds_error=False,
-                                              fill_value=None)
+        a0, a1, _, _ = chart.bounds
         self._chart, self._cut = chart, cut
         self._along = np.linspace(a0, a1, _ROW_GAPS + 1)
         self._material = None if chart.rectangular else table(columns(chart, self._along), len(self._along))
 
-    def widths(self, along: Array, step: Array) -> Array:
-        """Approximate strip widths (n,)."""
-        ratio = self._table(np.stack([along, step], axis=1))
-        return np.asarray(self._chart.screen(self._cut, along, step) * ratio)
-
-    def with_beyond(self, points: RowPoints, line: Index, guess: Array,
-                    steps: Array) -> tuple[RowPoints, Index, Array]:
-        """Row points, with those added that lie beyond the loops but whose strip reaches material.
-
-        A pass runs on past a slanting border until its strip holds nothing any more.
-        """
+    def added(self, points: RowPoints, line: Index, guess: Array, steps: Array) -> tuple[RowPoints, Index, Array]:
+        """Row points, their rows and approximate widths, with those places added."""
         if self._material is None:
             return points, line, guess
         row, column = (part.ravel() for part in np.indices((len(steps), len(self._along))))
         along, step = self._along[column], steps[row]
-        width, ends = self.widths(along, step), self._material[column]
+        width, ends = self._chart.screen(self._cut, along, step), self._material[column]
         low, high = step - width / 2, step + width / 2
         holds = ((ends[..., 0] < high[:, None]) & (ends[..., 1] > low[:, None])).any(axis=1)
         within = ((ends[..., 0] <= step[:, None]) & (ends[..., 1] >= step[:, None])).any(axis=1)
@@ -189,24 +175,89 @@ class _Scale:
                 np.append(line, row[extra]), np.append(guess, width[extra]))
 
 
-def _narrowest(chart: Chart, cut: Cut, scale: _Scale, steps: Array) -> tuple[Array, Array]:
-    """Least exact strip width over each pass, and the length of the tip's motion on it; 0, 0 off the face."""
+def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> tuple[Array, Array]:
+    """Least exact strip width over each pass, and the length of the tip's motion on it; 0, 0 off the face.
+
+    Exact widths at some places scale the second-order ones between them; these tell where the least ones are, and
+    there the exact ones are taken again.
+    """
     a0, a1, _, _ = chart.bounds
     found = rows(chart, steps)
+    few = row_points(found, (a1 - a0) / _EXACT_GAPS)
     points = _with_breaks(found, row_points(found, (a1 - a0) / _ROW_GAPS), chart.breaks[0])
     line = found.line[points.interval]
     step, along = steps[line], points.along
-    guess = scale.widths(along, step)
-    second = _candidates(points, line, chart.screen(cut, along, step))
-    place, row = (np.concatenate(pair) for pair in zip(
-        _candidates(*scale.with_beyond(points, line, guess, steps)), second, strict=True))
-    exact = np.maximum(chart.half_widths(cut, place, steps[row]), 0.0)
-    width = np.full(len(steps), np.inf)
-    np.minimum.at(width, row, np.where((exact > 0).all(axis=1), exact.sum(axis=1), 0.0))
+    exact = _widths(chart, cut, few.along, steps[found.line[few.interval]])
+    second = chart.screen(cut, few.along, steps[found.line[few.interval]])
+    ratio = np.where((exact > 0) & (second > 0), exact / np.where(second > 0, second, 1.0), 1.0)
+    guess = chart.screen(cut, along, step) * np.interp(_flat(found, points), _flat(found, few), ratio)
+    place, row, own = _candidates(*beyond.added(points, line, guess, steps))
+    row, place = np.append(found.line[few.interval], row), np.append(few.along, place)
+    own = np.append(few.interval, own)
+    width = np.append(exact, _widths(chart, cut, place[len(exact):], steps[row[len(exact):]]))
+    inner = own < len(found.low)
+    low, high = (np.where(inner, np.append(end, 0.0)[np.minimum(own, len(end))], place)
+                 for end in (found.low, found.high))
+    width = _descended(chart, cut, steps, _Places(row, place, width, low, high), (a1 - a0) / _EXACT_GAPS)
     _, tip, _ = tip_points(chart, cut, along, step)
     gap = np.where(np.diff(points.interval) == 0, np.linalg.norm(np.diff(tip, axis=0), axis=1), 0.0)
     length = np.bincount(line[1:], weights=gap, minlength=len(steps))
-    return np.asarray(np.where(np.isfinite(width), width, 0.0)), np.asarray(length, dtype=float)
+    return width, np.asarray(length, dtype=float)
+
+
+class _Places(NamedTuple):
+    """Places on passes, (n,) each: which pass, where, exact width, and the range in which the place may move."""
+
+    row: Index
+    place: Array
+    width: Array
+    low: Array
+    high: Array
+
+
+def _descended(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: float) -> Array:
+    """Least width of each row, from the best known place downhill in halved steps; 0 where a row has no place."""
+    order = np.lexsort((known.width, known.row))
+    first = order[np.unique(known.row[order], return_index=True)[1]]
+    row, place, width = known.row[first], known.place[first], known.width[first]
+    low, high = known.low[first], known.high[first]
+    for level in range(1, _HALVINGS + 1):
+        shift = apart / 2**level
+        before, after = np.maximum(place - shift, low), np.minimum(place + shift, high)
+        both = _widths(chart, cut, np.append(before, after), np.tile(steps[row], 2))
+        left, right = both[: len(row)], both[len(row) :]
+        if level == _HALVINGS:
+            width = np.where((before < place) & (after > place), _vertex(left, width, right), np.minimum(width, left))
+            width = np.minimum(width, right)
+        else:
+            lower = np.minimum(left, right) < width
+            place = np.where(lower, np.where(left <= right, before, after), place)
+            width = np.where(lower, np.minimum(left, right), width)
+    out = np.zeros(len(steps))
+    out[row] = width
+    return out
+
+
+def _vertex(left: Array, middle: Array, right: Array) -> Array:
+    """Least value of the parabola through the squares of three values at even distances, if it is a valley."""
+    a, b, c = left**2, middle**2, right**2
+    bend = a - 2 * b + c
+    valley = (b <= a) & (b <= c) & (bend > 0)
+    least = b - 0.125 * (c - a) ** 2 / np.where(valley, bend, 1.0)
+    lowest = np.minimum(np.minimum(left, right), middle)
+    return np.asarray(np.where(valley, np.sqrt(np.maximum(least, 0.25 * b)), lowest))
+
+
+def _widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
+    """Exact strip widths (n,); 0 where there is none on one side."""
+    halves = chart.half_widths(cut, along, step)
+    return np.asarray(np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0))
+
+
+def _flat(found: Intervals, points: RowPoints) -> Array:
+    """Places on all intervals, one after the other, as increasing numbers."""
+    low, high = found.low[points.interval], found.high[points.interval]
+    return np.asarray(2 * points.interval + (points.along - low) / np.maximum(high - low, np.finfo(float).tiny))
 
 
 def _with_breaks(found: Intervals, points: RowPoints, breaks: Array) -> RowPoints:
@@ -218,8 +269,8 @@ def _with_breaks(found: Intervals, points: RowPoints, breaks: Array) -> RowPoint
     return RowPoints(interval[order], along[order])
 
 
-def _candidates(points: RowPoints, line: Index, guess: Array) -> tuple[Array, Index]:
-    """Places of the deepest local minima of each row, moved to the vertex of the parabola through the neighbours."""
+def _candidates(points: RowPoints, line: Index, guess: Array) -> tuple[Array, Index, Index]:
+    """Places of the deepest local minima of each row, moved to the vertex of the parabola; their rows and intervals."""
     same = np.diff(points.interval) == 0
     before = np.append(np.inf, np.where(same, guess[:-1], np.inf))
     after = np.append(np.where(same, guess[1:], np.inf), np.inf)
@@ -238,4 +289,4 @@ def _candidates(points: RowPoints, line: Index, guess: Array) -> tuple[Array, In
     slope = (slope_left * right + slope_right * left) / (left + right)
     shift = np.where(bend > 0, -slope / np.where(bend > 0, 2 * bend, 1.0), 0.0)
     place[inner] += np.clip(shift, -left, right)
-    return place, line[chosen]
+    return place, line[chosen], points.interval[chosen]

@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 _ROWS = 24
 _ROW_GAPS = 24
+_END_ROWS = 5
 _FEEDS = ("u", "v")
 
 
@@ -39,7 +40,10 @@ class Estimates(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """Passes that stand for all others with one feed: geometry of their points, once for all axes."""
+    """Passes that stand for all others with one feed: geometry of their points, once for all axes.
+
+    Points at the ends of passes belong to places of their own on the border, numbered after the sample points.
+    """
 
     forms: Array
     points: Array
@@ -62,6 +66,9 @@ class Estimator:
     samples : Samples
     rows : pair
         Geometry along some passes, for feed u and v.
+    ends : pair of (m, 2) arrays
+        Parameters of some ends of passes, for feed u and v: sample points of their own, for the narrowest place of a
+        pass is often its end, where the exact width feels that the surface goes on straight ahead.
     leans : array
         Ratio of exact to second-order widths on a plane, see `lean_table`.
     """
@@ -72,6 +79,7 @@ class Estimator:
     allowance: float
     samples: Samples
     rows: tuple[_Rows, _Rows]
+    ends: tuple[Array, Array]
     leans: Array
 
     @staticmethod
@@ -90,8 +98,9 @@ class Estimator:
         """
         screening_cutter(tool, scallop, allowance)
         chosen = samples or sample_points(face, tool)
-        geometry = (_prepare(face, "u", chosen), _prepare(face, "v", chosen))
-        return Estimator(face, tool, scallop, allowance, chosen, geometry, lean_table(tool, scallop))
+        (rows_u, ends_u), (rows_v, ends_v) = (_prepare(face, feed, chosen) for feed in _FEEDS)
+        return Estimator(face, tool, scallop, allowance, chosen, (rows_u, rows_v), (ends_u, ends_v),
+                         lean_table(tool, scallop))
 
     def many(self, axes: ArrayLike, feeds: str = "uv", exact: bool = True) -> Estimates:
         """Estimates for many axes.
@@ -109,7 +118,8 @@ class Estimator:
         passes, length = np.full((2, len(directions), 2), np.inf)
         for k, feed in enumerate(_FEEDS):
             if feed in feeds:
-                ratio = self._ratios(directions, feed) if exact else np.ones((len(directions), len(self.samples)))
+                places = np.concatenate([self.samples.uv, self.ends[k]])
+                ratio = self._ratios(directions, feed, places) if exact else np.ones((len(directions), len(places)))
                 passes[:, k], length[:, k] = self._sums(self.rows[k], directions, ratio)
         return Estimates(passes, length)
 
@@ -126,7 +136,7 @@ class Estimator:
         **Source**: [zhu2016] Eqs. (3) to (5); the average strip width of Eq. (6) is one over the result.
         """
         directions = unit(as_rows(axes, 3, "axis"))
-        width = self._widths(directions, feed)
+        width = self._widths(directions, feed, self.samples.uv)
         low, high = self.samples.extents[:, [2, 3] if feed == "u" else [0, 1]].T
         edges = np.unique(np.concatenate([low, high]))
         middle = (edges[1:] + edges[:-1]) / 2
@@ -145,20 +155,19 @@ class Estimator:
     def _cutter(self) -> Array:
         return screening_cutter(self.tool, self.scallop, self.allowance)
 
-    def _widths(self, axes: Array, feed: str) -> Array:
-        """Exact strip widths (k, samples) in the step parameter."""
-        uv = np.tile(self.samples.uv, (len(axes), 1))
-        halves = step_widths(self.face, self.tool, uv, np.repeat(axes, len(self.samples), axis=0), self.scallop, feed,
-                             self.allowance)
+    def _widths(self, axes: Array, feed: str, places: Array) -> Array:
+        """Exact strip widths (k, n) in the step parameter at n places."""
+        uv, axis = np.tile(places, (len(axes), 1)), np.repeat(axes, len(places), axis=0)
+        halves = step_widths(self.face, self.tool, uv, axis, self.scallop, feed, self.allowance)
         return np.asarray(np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0)).reshape(len(axes), -1)
 
-    def _ratios(self, axes: Array, feed: str) -> Array:
-        """Exact over second-order widths corrected for the lean (k, samples); 0 where there is none."""
-        forms = contact_forms(self.face, self.samples.uv, feed, True)
+    def _ratios(self, axes: Array, feed: str, places: Array) -> Array:
+        """Exact over second-order widths corrected for the lean, (k, n); 0 where there is none."""
+        forms = contact_forms(self.face, places, feed, True)
         second = np.empty((len(axes), len(forms)))
         screen_numpy(forms, axes, self._cutter(), self.scallop, second)
         second *= lean_ratios(self.leans, axes @ forms[:, :3].T, axes @ forms[:, 3:6].T)
-        exact = self._widths(axes, feed)
+        exact = self._widths(axes, feed, places)
         return np.where(second > 0, exact / np.where(second > 0, 2 * second, 1.0), 0.0)
 
 
@@ -194,8 +203,9 @@ def estimate(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str 
 
     Notes
     -----
-    Ours carries the exact width from the sample point over its patch in proportion to the second-order width, and
-    sections are infinitely thin; so a patch counts with its narrowest place on each pass, not with its middle.
+    Ours carries the exact width from the sample point over its patch in proportion to the second-order width, takes a
+    few more samples where passes end, and makes sections thin; so a patch counts with its narrowest place on each
+    pass, not with its middle.
 
     **Source**: [zhu2016] Sec. 3.3.
 
@@ -210,17 +220,26 @@ def estimate(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str 
     return float(passes[0]) if np.ndim(axis) == 1 else passes
 
 
-def _prepare(face: Face, feed: str, samples: Samples) -> _Rows:
+def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_Rows, Array]:
+    """Rows of points, and the parameters of the chosen ends of passes."""
     chart = IsoChart(face, feed)
-    a0, a1, _, _ = chart.bounds
+    a0, a1, s0, s1 = chart.bounds
     steps, weight = _gauss(panels(chart))
     found = rows(chart, steps)
     points = row_points(found, (a1 - a0) / _ROW_GAPS)
     line = found.line[points.interval]
     uv = chart.uv(points.along, steps[line])
     start = np.searchsorted(line, np.arange(len(steps) + 1)).astype(np.int64)
-    return _Rows(contact_forms(face, uv, feed, True), np.ascontiguousarray(face.evaluate(uv).point), start,
-                 np.append(False, np.diff(points.interval) == 0), weight, samples.owner(uv))
+    joined = np.append(False, np.diff(points.interval) == 0)
+    owner, ends = samples.owner(uv), np.flatnonzero(~joined | ~np.append(joined[1:], False))
+    some = ((np.arange(_END_ROWS) + 0.5) / _END_ROWS * len(steps)).astype(int)
+    chosen = ends[np.isin(line[ends], some)]
+    place = np.column_stack([points.along / (a1 - a0), steps[line] / (s1 - s0)])
+    if len(chosen):
+        apart = ((place[ends, None] - place[chosen]) ** 2).sum(axis=2)
+        owner[ends] = len(samples) + apart.argmin(axis=1)
+    geometry = contact_forms(face, uv, feed, True), np.ascontiguousarray(face.evaluate(uv).point)
+    return _Rows(*geometry, start, joined, weight, owner), uv[chosen]
 
 
 def _gauss(edges: Array) -> tuple[Array, Array]:

@@ -17,8 +17,8 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-_LEANS, _TURNS = 25, 17
-_LEAST = 1e-3
+_LEANS, _TURNS = 41, 17
+_LEAST, _MOST = 1e-3, 0.99999
 _BLUNT = 2.0
 
 
@@ -55,8 +55,9 @@ def lean_table(tool: Tool, scallop: float) -> Array:
 
     Returns
     -------
-    (25, 17) array over the square roots of the sine of the angle between axis and normal and of the cosine between
-    its lean and the feed, both even from 0 to 1; 1 where the contact is not on the cutter's bottom or arc.
+    (41, 17) array, even from 0 to 1 in half the sum of sqrt(sin) and 1 - cos of the angle between axis and normal,
+    which is fine at both ends, and in the square root of the cosine between lean and feed; 1 where the contact is not
+    on the cutter's bottom or arc.
     """
     return _table(tool.kind, tool.radius, tool.corner_radius, tool.half_angle, scallop)
 
@@ -67,8 +68,8 @@ def _table(kind: str, radius: float, corner_radius: float, half_angle: float, sc
     size = 40 * tool.radius
     corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
     plane = Face.from_bspline(corners, (1, 1))
-    sine = np.maximum(np.linspace(0, 1, _LEANS) ** 2, _LEAST)
-    sine[-1] = 0.9999
+    dense = np.linspace(0, 1, 20001) ** 2
+    sine = np.interp(np.linspace(0, 1, _LEANS), [_place(float(s)) for s in dense], dense).clip(_LEAST, _MOST)
     s, c = (part.ravel() for part in np.meshgrid(sine, np.linspace(0, 1, _TURNS) ** 2, indexing="ij"))
     k = np.sqrt(1 - c**2)
     axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
@@ -81,13 +82,20 @@ def _table(kind: str, radius: float, corner_radius: float, half_angle: float, sc
 
 
 @compiled
+def _place(lean: float) -> float:
+    """Place in the table, 0 to 1, of the sine of the angle between axis and normal."""
+    sine = min(lean, 1.0)
+    return float(0.5 * (np.sqrt(sine) + 1.0 - np.sqrt(1.0 - sine * sine)))
+
+
+@compiled
 def lean_ratio(table: Array, along: float, across: float) -> float:
     """Ratio from the table for an axis with these components along and across the feed, by bilinear interpolation."""
     square = along * along + across * across
     if square <= 0.0:
         return float(table[0, 0])
     lean = np.sqrt(square)
-    x = np.sqrt(min(lean, 1.0)) * (table.shape[0] - 1)
+    x = _place(lean) * (table.shape[0] - 1)
     y = np.sqrt(min(abs(along) / lean, 1.0)) * (table.shape[1] - 1)
     i, j = min(int(x), table.shape[0] - 2), min(int(y), table.shape[1] - 2)
     x, y = x - i, y - j
@@ -105,7 +113,8 @@ def lean_ratios(table: Array, along: Array, across: Array) -> Array:
         Components of the unit axis along the feed and to its left.
     """
     lean = np.hypot(along, across)
-    x = np.sqrt(np.minimum(lean, 1.0)) * (table.shape[0] - 1)
+    sine = np.minimum(lean, 1.0)
+    x = 0.5 * (np.sqrt(sine) + 1 - np.sqrt(1 - sine**2)) * (table.shape[0] - 1)
     cosine = np.abs(along) / np.where(lean > 0, lean, 1.0)
     y = np.sqrt(np.minimum(cosine, 1.0)) * (table.shape[1] - 1)
     i, j = (np.minimum(p.astype(int), n - 2) for p, n in ((x, table.shape[0]), (y, table.shape[1])))
