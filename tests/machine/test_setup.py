@@ -53,3 +53,9 @@ def test_feed_along_the_axis_still_gives_a_frame():
 def test_an_axis_without_direction_is_refused():
     with pytest.raises(InvalidInput, match="direction"):
         work_coordinates([0, 0, 0], FEED, [0, 0, 0], [0, 0, 0])
+
+
+def test_steep_feeds_count_by_their_projection() -> None:
+    feed = np.array([[0.06, 0.08, 5.0], [0.06, 0.08, -5.0], [0.06, 0.08, 5.0], [0.06, 0.08, -5.0]])
+    frame = work_coordinates([0, 0, 1], feed, np.zeros(3), np.zeros(3))
+    assert np.allclose(frame.x, [0.6, 0.8, 0.0], atol=1e-12)

@@ -39,7 +39,7 @@ def example() -> Plan:
     axis = np.array([0.0, 0.6, 0.8])
     found = AxisMap(np.eye(3), np.array([3.0, np.inf, 2.5]), np.array([30.0, np.inf, 25.0]),
                     np.array([0, 4, 0], dtype=np.int8), np.array([0.0, 0.125, 0.0]))
-    lobe = Orientation(-axis, "v", 0, 3.25, 33.0, 1.5, 0.0, {"cutter": 1.0}, "feasible", (), 12)
+    lobe = Orientation(-axis, "v", 0, 3.25, np.inf, 1.5, np.inf, {"cutter": 1.0}, "feasible", (), 12)
     best = Orientation(axis, "u", 3, 2.75, 30.0, 1.7, 0.0015, {"cutter": 0.5, "holder": np.inf}, "feasible",
                        ("gouge limits",), 431, found, (lobe,), 0.01)
     piece = part.faces[0].trimmed((loop,), "1a")
