@@ -7,7 +7,7 @@ A contact at which the cutter would come too near to a wall that is less than on
 clean-up tool; anything else that is in the way forbids the axis.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
 from typing import NamedTuple
@@ -102,6 +102,8 @@ class Feasibility:
         Stock left on the face, mm.
     watched : (n, 2) array
         Parameters of contacts that screening looks at besides its own.
+    learnt : (m, 3) array
+        Points of the skin that screening holds against axes besides its own.
     """
 
     face: Face
@@ -111,9 +113,10 @@ class Feasibility:
     limits: AxisLimits | None = None
     allowance: float = 0.0
     watched: Array | None = None
+    learnt: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     @cached_property
-    def field(self) -> NormalField:
+    def normals(self) -> NormalField:
         """Normals of the face."""
         return NormalField(self.face)
 
@@ -135,10 +138,22 @@ class Feasibility:
         uv : (n, 2) array_like
         """
         rows = as_rows(uv, 2, "uv")
-        new = replace(self, watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
-        for name in ("field", "dense", "cloud"):
-            if name in self.__dict__:
-                new.__dict__[name] = self.__dict__[name]
+        return self._with(("normals", "dense", "cloud"),
+                          watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
+
+    def learning(self, points: Array) -> "Feasibility":
+        """The same with more points of the skin held against axes in screening.
+
+        Parameters
+        ----------
+        points : (m, 3) array
+            mm
+        """
+        return self._with(("normals", "dense", "cloud", "sparse"), learnt=np.concatenate([self.learnt, points]))
+
+    def _with(self, kept: tuple[str, ...], **changes: Array) -> "Feasibility":
+        new: Feasibility = replace(self, **changes)  # type: ignore[arg-type]
+        new.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
         return new
 
     @cached_property
@@ -187,13 +202,38 @@ class Feasibility:
         unreached = np.zeros(len(rows))
         some = self.sparse
         for i in np.flatnonzero(reason == FREE):
-            tip = tips(some.point, some.normal, rows[i], self.tool, self.allowance)
-            depth = deepest(self.tool, rows[i], tip, self.cloud) - self.tolerance.gouge
+            depth = self.depth(rows[i], np.concatenate([self.cloud, self.learnt])) - self.tolerance.gouge
             if depth > 0:
                 reason[i], amount[i] = GOUGE, depth
             else:
                 reason[i], amount[i], unreached[i] = self.stand(rows[i], some, thorough=False)
         return Verdicts(reason, amount, unreached)
+
+    def depth(self, axis: Array, points: Array) -> float:
+        """How deep the cutter reaches below points of the skin at the screening contacts, mm.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        points : (m, 3) array
+        """
+        some = self.sparse
+        return deepest(self.tool, axis, tips(some.point, some.normal, axis, self.tool, self.allowance), points)
+
+    def closer(self, axis: Array) -> tuple[int, float, Array]:
+        """Reason and amount (mm) of one axis at the screening contacts with bounds, and points that it gouges.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        trouble = self.trouble(axis, self.sparse)
+        reason, amount, _ = self._verdict(trouble, self.sparse)
+        hit = np.flatnonzero((trouble.reason == GOUGE) & (trouble.amount > 0))
+        hit = hit[np.argsort(-trouble.amount[hit], kind="stable")][:6]
+        points = [nearest(self.groups[0].faces[int(trouble.face[i])], trouble.point[i][None]).point for i in hit
+                  if trouble.face[i] >= 0 and trouble.group[i] == 0]
+        return reason, amount, np.concatenate([np.empty((0, 3)), *points])
 
     @cached_property
     def cloud(self) -> Array:
@@ -212,7 +252,7 @@ class Feasibility:
         rows : (k, 3) array
             Unit vectors.
         """
-        least, greatest = self.field.angles(rows)
+        least, greatest = self.normals.angles(rows)
         if self.watched is not None:
             angle = angle_between(rows[:, None], self.face.normal(self.watched)[None])
             least, greatest = np.minimum(least, angle.min(axis=1)), np.maximum(greatest, angle.max(axis=1))
@@ -232,7 +272,10 @@ class Feasibility:
         thorough : bool
             Whether gouges of the skin are looked for too.
         """
-        trouble = self.trouble(axis, contacts, thorough)
+        return self._verdict(self.trouble(axis, contacts, thorough), contacts)
+
+    def _verdict(self, trouble: Trouble, contacts: Contacts) -> tuple[int, float, float]:
+        """Reason, amount and unreached share that follow from what is worst at each contact."""
         left = trouble.wall & (trouble.reason != FREE)
         bad = (trouble.reason != FREE) & ~left
         unreached = float(contacts.share[left].sum())
@@ -301,7 +344,7 @@ class Feasibility:
         t = unit(as_rows(axis, 3, "axis")[0])
         if self.limits is not None and not self.limits.allowed(t)[0]:
             return Witness(LIMITS, float(self.limits.excess(t)[0]))
-        spread = self.field.range_of_angles(t, self.least_angle, self.greatest_angle)
+        spread = self.normals.range_of_angles(t, self.least_angle, self.greatest_angle)
         for code, amount, uv in ((BACK, spread.high - self.greatest_angle, spread.greatest),
                                  (WANDERS, self.least_angle - spread.low, spread.least)):
             if amount > 1e-9:

@@ -23,10 +23,10 @@ def spread_too_wide(feasibility: Feasibility) -> str:
     Exact for the sampled normals, each of which is a contact that has to be made: an axis within the greatest angle of
     all of them exists only if they fit into a cap of that radius.
     """
-    cap, most = feasibility.field.cap, feasibility.greatest_angle
+    cap, most = feasibility.normals.cap, feasibility.greatest_angle
     if cap.centre.any() and cap.radius <= most + 1e-9:
         return ""
-    rim = feasibility.face.evaluate(feasibility.field.kept[cap.rim]).point
+    rim = feasibility.face.evaluate(feasibility.normals.kept[cap.rim]).point
     size = f"a cap of {degrees(cap.radius):.1f} deg" if cap.centre.any() else "more than a hemisphere"
     return (f"the normals of face {feasibility.face.label} fill {size}, and no axis is within {degrees(most):.1f} deg "
             f"of those at {', '.join(place(p) for p in rim)}")

@@ -51,12 +51,15 @@ class Task:
     groups : tuple of Group
         The same surroundings with the required distances, for the proof.
     progress : Progress
+    direction : str
+        "zigzag", "climb" or "conventional".
     """
 
     feasibility: Feasibility
     worth: Worth
     groups: tuple[Group, ...]
     progress: Progress = NO_PROGRESS
+    direction: str = "zigzag"
 
     @property
     def box(self) -> Array:
@@ -78,7 +81,8 @@ class Task:
         low, high = self.box
         height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
         walls = any(group.role == OTHER for group in self.groups)
-        return passes(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
+        return passes(worth.face, worth.tool, axis, worth.scallop, feed, direction=self.direction,
+                      allowance=worth.allowance,
                       reach=lambda uv: feasibility.reach(uv, axis), tolerance=feasibility.tolerance,
                       linking=Linking(height, run_in=0.0) if walls else Linking(height), progress=self.progress)
 
@@ -86,12 +90,12 @@ class Task:
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None, allowance: float = 0.0,
-         progress: Progress = NO_PROGRESS) -> Task:
+         direction: str = "zigzag", progress: Progress = NO_PROGRESS) -> Task:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
-    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, progress
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, progress
         As for `best_axis`.
     limits : AxisLimits, optional
 
@@ -107,7 +111,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
     strict, groups = (grouped(face, limit, allowance, part=part, skin=skin, surroundings=surroundings,
                               obstacles=obstacles) for limit in (kept, given))
-    return Task(Feasibility(face, tool, strict, given, limits, allowance), worth, groups, progress)
+    return Task(Feasibility(face, tool, strict, given, limits, allowance), worth, groups, progress, direction)
 
 
 def combined(machine: object, limits: AxisLimits | str | None) -> AxisLimits | None:
@@ -137,7 +141,7 @@ def combined(machine: object, limits: AxisLimits | str | None) -> AxisLimits | N
 def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, obstacles: Obstacles = None,
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
-              allowance: float = 0.0, limits: AxisLimits | str | None = None,
+              allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
               progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, or in the fewest passes.
 
@@ -164,6 +168,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
         Stock left on the face, mm.
     limits : AxisLimits or str, optional
         Further limits.
+    direction : str
+        "zigzag", "climb" or "conventional": the passes that are proven.
     progress : Progress
 
     Returns
@@ -187,7 +193,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, progress=progress)
     ledger = Ledger(job.feasibility, job.worth, progress)
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.orient.feasible import FREE, Feasibility
+from toolaxis.orient.feasible import FREE, GOUGE, Feasibility
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -108,6 +108,21 @@ class Ledger:
         amount : float
         """
         self.reason[row], self.amount[row] = reason, amount
+
+    def learn(self, points: Array) -> None:
+        """Hold points of the skin against all free axes, and against those still to come.
+
+        Parameters
+        ----------
+        points : (m, 3) array
+            mm
+        """
+        self.feasibility = self.feasibility.learning(points)
+        limit = self.feasibility.tolerance.gouge
+        for row in np.flatnonzero(self.reason == FREE):
+            depth = self.feasibility.depth(self.axes[row], points)
+            if depth > limit:
+                self.forbid(int(row), GOUGE, depth - limit)
 
     def count(self, axis: Array, feed: int, unreached: float) -> tuple[float, float, float]:
         """Exact value, passes and length of an axis for one feed; the value is charged for what stays.

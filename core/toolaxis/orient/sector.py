@@ -169,4 +169,4 @@ def mean_normal(ledger: Ledger) -> Array:
     ----------
     ledger : Ledger
     """
-    return ledger.feasibility.field.mean
+    return ledger.feasibility.normals.mean

@@ -84,7 +84,7 @@ def search(ledger: Ledger) -> list[Candidate]:
     Cancelled
         When the user asked to stop.
     """
-    field = ledger.feasibility.field
+    field = ledger.feasibility.normals
     frame = frame_of(field)
     ledger.look(np.concatenate([[field.mean, frame[2]], spiral(frame, SPACING)]))
     if not np.isfinite(ledger.price).any():
@@ -95,6 +95,7 @@ def search(ledger: Ledger) -> list[Candidate]:
         return ties(ledger)
     spacing = SPACING
     for width in _BEAM:
+        probe(ledger, width // 2)
         refine(ledger, spacing, width)
         spacing /= 2
     return polished(ledger, spacing)
@@ -119,13 +120,35 @@ def indifferent(ledger: Ledger) -> bool:
 def ties(ledger: Ledger) -> list[Candidate]:
     """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most."""
     free = np.flatnonzero(np.isfinite(ledger.price))
-    away = angle_between(ledger.axes[free], ledger.feasibility.field.mean)
+    away = angle_between(ledger.axes[free], ledger.feasibility.normals.mean)
     free = free[np.argsort(away, kind="stable")][:48]
     room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
     order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
     best = ledger.values[order[0]].argmin()
     value, passes, length = ledger.count(ledger.axes[order[0]], int(best), float(ledger.unreached[order[0]]))
     return [Candidate(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
+
+
+def probe(ledger: Ledger, most: int) -> None:
+    """Look closer at the best axes, so that screening learns where the skin is gouged between its points.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    most : int
+        Number of axes to be found sound.
+    """
+    looked: set[int] = set()
+    for _ in range(3 * most):
+        price = ledger.price
+        price[list(looked)] = np.inf
+        row = int(np.argmin(price))
+        if not np.isfinite(price[row]) or most == 0:
+            return
+        near = np.flatnonzero(angle_between(ledger.axes, ledger.axes[row]) <= APART / 2)
+        if sound(ledger, row):
+            looked.update(near.tolist())
+            most -= 1
 
 
 def refine(ledger: Ledger, spacing: float, width: int) -> None:
@@ -242,9 +265,11 @@ def sound(ledger: Ledger, row: int) -> bool:
     row : int
     """
     ledger.closer += 1
-    reason, amount, _ = ledger.feasibility.stand(ledger.axes[row], ledger.feasibility.sparse)
+    reason, amount, points = ledger.feasibility.closer(ledger.axes[row])
     if reason != FREE:
         ledger.forbid(row, reason, amount)
+        if len(points):
+            ledger.learn(points)
     return reason == FREE
 
 
