@@ -82,8 +82,8 @@ class Task:
         height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
         walls = any(group.role == OTHER for group in self.groups)
         return passes(worth.face, worth.tool, axis, worth.scallop, feed, direction=self.direction,
-                      allowance=worth.allowance,
-                      reach=lambda uv: feasibility.reach(uv, axis), tolerance=feasibility.tolerance,
+                      allowance=worth.allowance, reach=lambda uv: feasibility.reach(uv, axis),
+                      tolerance=feasibility.tolerance,
                       linking=Linking(height, run_in=0.0) if walls else Linking(height), progress=self.progress)
 
 
@@ -193,7 +193,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, progress=progress)
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
+               progress=progress)
     ledger = Ledger(job.feasibility, job.worth, progress)
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)

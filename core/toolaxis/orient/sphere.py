@@ -112,13 +112,22 @@ def frame_of(field: NormalField) -> Array:
 
 
 def indifferent(ledger: Ledger) -> bool:
-    """Whether all free axes cost the same, as with a ball end."""
-    price = ledger.price[np.isfinite(ledger.price)]
-    return ledger.feasibility.tool.flat_radius == 0 and bool(price.max() <= price.min() * (1 + TIE))
+    """Whether all free axes cost the same: those of a ball end, where none of them leaves anything at walls.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    return ledger.feasibility.tool.flat_radius == 0 and not ledger.unreached[ledger.reason == FREE].any()
 
 
 def ties(ledger: Ledger) -> list[Candidate]:
-    """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most."""
+    """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
     free = np.flatnonzero(np.isfinite(ledger.price))
     away = angle_between(ledger.axes[free], ledger.feasibility.normals.mean)
     free = free[np.argsort(away, kind="stable")][:48]
@@ -216,8 +225,24 @@ def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
     for k, start in enumerate(starts):
         hopeless = start.value > starts[0].value * (1 + _HOPELESS) or k >= _POLISHED
         done.append(start if hopeless else polish(ledger, start, spacing))
-    done.sort(key=lambda c: c.value)
-    return distinct(done)
+    return ranked(ledger, distinct(sorted(done, key=lambda c: c.value)))
+
+
+def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
+    """Candidates with ties at the top decided: the larger clearance first, then the smaller angle to the mean normal.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    found : list of Candidate
+        By value.
+    """
+    tied = [one for one in found if one.value <= found[0].value * (1 + TIE)]
+    if len(tied) < 2:
+        return found
+    mean, judged = ledger.feasibility.normals.mean, ledger.feasibility
+    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES), float(angle_between(c.axis, mean))))
+    return tied + found[len(tied):]
 
 
 def distinct(found: list[Candidate]) -> list[Candidate]:
