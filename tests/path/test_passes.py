@@ -217,3 +217,18 @@ def test_bad_arguments(make, bad):
         if "linking" in arguments:
             arguments["linking"] = Linking(**arguments["linking"])
         passes(make["flat"](10, 10), TORUS, **arguments)
+
+
+def test_a_part_of_the_face_that_turns_away_may_be_left_out():
+    # an arch cut aslant: lines across the passes leave what the axis sees at different steps
+    t, y = np.meshgrid(np.linspace(-1.2, 1.2, 9), np.linspace(0, 1, 4), indexing="ij")
+    face = Face.from_bspline(np.stack([25 * np.sin(t + 0.8 * y), 20 * y, 25 * np.cos(t + 0.8 * y)], axis=-1))
+
+    def reach(uv):
+        return np.asarray(face.normal(uv)[:, 2] > 0.15)
+
+    ball = Tool.ball(6)
+    with pytest.raises(InvalidInput, match="strip width"):
+        passes(face, ball, [0, 0, 1], H, "v")
+    path = passes(face, ball, [0, 0, 1], H, "v", reach=reach)
+    assert path.passes > 10 and path.normal[_cut_points(path), 2].min() >= 0.15 - 1e-3

@@ -158,21 +158,21 @@ class _Strips:
         self.measured: Array = np.empty((0, 2))
         self.halves: Array = np.empty((0, 2))
 
-    def at(self, step: float, active: Bools) -> Array:
-        """Half widths (m, 2) at one step parameter, on all lines; needed on the active ones."""
+    def at(self, step: float) -> Array:
+        """Half widths (m, 2) at one step parameter, on all lines."""
         if step != self._step:
             along = self.across.measured
             self.measured = self.chart.half_widths(self.cut, along, np.full(len(along), step))
             self._step, self.halves = step, self.across.spread(self.measured)
-            self._check(active)
         return self.halves
 
-    def _check(self, active: Bools) -> None:
+    def check(self, cutting: Bools) -> None:
+        """Refuse the last place asked for if a line on which it has to cut has no strip."""
         good = np.asarray((np.isfinite(self.measured) & (self.measured > 0)).all(axis=1))
         if good.all():
             return
         used = np.zeros(len(good), dtype=bool)
-        used[self.across.index[active, 1:3]] = True
+        used[self.across.index[cutting, 1:3]] = True
         bad = np.flatnonzero(~good & used)
         if bad.size:
             where = self.chart.uv(self.across.measured[bad[:1]], np.array([self._step]))[0]
@@ -217,11 +217,12 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
     while np.isfinite(front).any():
         active = np.isfinite(front)
         greedy, place = _next(strips, front, top, min(guess, s1))
-        narrowest = float(strips.at(place, active).sum(axis=1)[active].min())
-        unused = max(greedy - place, 0.0) / narrowest
+        half = strips.at(place)
+        strips.check(active & (front <= place + half[:, 1]))
+        unused = max(greedy - place, 0.0) / max(float(half.sum(axis=1)[active].min()), 1e-12 * (s1 - s0))
         if not steps and unused > 0:
             place = min(max((greedy + place) / 2, s0), s1)
-        half = strips.at(place, active)
+        half = strips.at(place)
         steps.append(place)
         halves.append(strips.measured)
         front = np.where(active, first_from(material, np.maximum(front, place + half[:, 1] * (1 + 1e-9))), np.inf)
@@ -248,12 +249,15 @@ def _next(strips: _Strips, front: Array, top: Array, guess: float) -> tuple[floa
     active = np.isfinite(front)
 
     def slack(step: float) -> float:
-        return float((front + strips.at(step, active)[:, 0] - step)[active].min())
+        return float((front + strips.at(step)[:, 0] - step)[active].min())
 
     def beyond(step: float) -> float:
-        return float((step + strips.at(step, active)[:, 1] - top)[active].min())
+        return float((step + strips.at(step)[:, 1] - top)[active].min())
 
-    tolerance = _ACCURACY * float(strips.at(guess, active).sum(axis=1)[active].min())
+    width = strips.at(guess).sum(axis=1)[active]
+    tolerance = _ACCURACY * float(np.min(width[width > 0], initial=np.inf))
+    if not np.isfinite(tolerance):
+        return guess, guess
     greedy = _root(slack, guess, -1.0, tolerance)
     over = beyond(greedy)
     if over < 0:
