@@ -17,7 +17,6 @@ from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import best_axis, combined
 from toolaxis.orient.indexed import task as search_task
-from toolaxis.path.isoparametric import passes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
@@ -150,22 +149,19 @@ class _Job:
     def _searched(self, face: Face, progress: Progress) -> Orientation:
         return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
                          self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
-                         tolerance=self.inputs.tolerance, progress=progress)
+                         tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
 
     @property
     def _obstacles(self) -> tuple[Face, ...]:
         return tuple(face for body in self.bodies for face in body.faces)
 
     def _traced(self, face: Face, found: Orientation, progress: Progress) -> ToolPath:
-        """The passes in the wanted direction; the search has proven the same contacts in zigzag."""
+        """The very passes, links and ramps included, that the search has proven."""
         assert found.axis is not None
-        axis = found.axis
         task = search_task(face, self.tool, self.inputs.scallop, self.limits, self._obstacles,
                            objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
-                           tolerance=self.inputs.tolerance, progress=progress)
-        return passes(face, self.tool, axis, self.inputs.scallop, found.feed, direction=self.inputs.direction,
-                      allowance=self.inputs.allowance, tolerance=self.inputs.tolerance, box=task.box,
-                      reach=lambda uv: task.feasibility.reach(uv, axis), progress=progress)
+                           tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
+        return task.made(found.axis, found.feed)
 
     def _frame(self, face: Face, found: Orientation) -> WorkCoordinates:
         d = face.evaluate(face.grid(16, 16))
