@@ -22,7 +22,7 @@ Job: TypeAlias = tuple[Setting, Curve, Curve]
 """Setting, pass, cross curve."""
 Memory: TypeAlias = tuple[Array, Array, Array, Scratch]
 Road: TypeAlias = tuple[Array, Array, int, int]
-"""Nodes of the pass, room for their distances, first and last row."""
+"""Nodes of the pass, room for their distances and slopes, first and last row."""
 Lengths: TypeAlias = tuple[float, float, float, float]
 """Lift h + A, radius R, cap of a half width, spacing of the nodes; mm."""
 
@@ -128,23 +128,28 @@ def least_between(job: Job, point: Array, ends: tuple[int, int], road: Road,
     return best, place, slope
 
 
+@built_in
+def _valley(gaps: Array, k: int) -> bool:
+    """Whether the distance has a minimum between nodes k and k + 1."""
+    return bool(gaps[k, 1] < 0.0 <= gaps[k + 1, 1])
+
+
 @compiled
 def _deepest(job: Job, lengths: Lengths, road: Road, memory: Memory) -> tuple[float, float, float]:
     """The least distance of memory[2] to the swept cutter, from the distances of the nodes; F, w, F_s.
 
-    Each valley of the nodes that could hold the least value is looked into.
+    Each valley between nodes that could hold the least value is looked into.
     """
     table, gaps, first, last = road
     best, place, slope = inf, table[first, 0], 0.0
-    bound = inf
     for k in range(first, last + 1):
-        bound = min(bound, gaps[k])
-    for k in range(first, last + 1):
-        left, right = max(k - 1, first), min(k + 1, last)
-        if gaps[k] > gaps[left] or gaps[k] > gaps[right] or gaps[k] - lengths[3] > min(best, bound):
+        if gaps[k, 0] < best:
+            best, place = gaps[k, 0], table[k, 0]
+    for k in range(first, last):
+        if not _valley(gaps, k) or min(gaps[k, 0], gaps[k + 1, 0]) - lengths[3] > best:
             continue
-        f, w, f_s = least_between(job, memory[2], (left, right), road, memory)
-        if f < best:
+        f, w, f_s = least_between(job, memory[2], (k, k + 1), road, memory)
+        if f <= best:
             best, place, slope = f, w, f_s
     return best, place, slope
 
@@ -198,13 +203,12 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
             return False
     lifted_point(setting, cross, s, lengths[0], memory)
     scan_pass(setting, table, (first, last), point, gaps)
-    for k in range(first, last + 1):
-        left, right = max(k - 1, first), min(k + 1, last)
-        if gaps[k] > lengths[3] or gaps[k] > gaps[left] or gaps[k] > gaps[right]:
+    for k in range(first, last):
+        if gaps[k, 0] < -1e-9 * lengths[1]:
+            return False
+        if not _valley(gaps, k) or min(gaps[k, 0], gaps[k + 1, 0]) > lengths[3] or table[k, 0] <= w <= table[k + 1, 0]:
             continue
-        if table[left, 0] <= w <= table[right, 0]:
-            continue
-        if least_between(job, point, (left, right), road, memory)[0] < -1e-9 * lengths[1]:
+        if least_between(job, point, (k, k + 1), road, memory)[0] < -1e-9 * lengths[1]:
             return False
     return True
 
@@ -212,30 +216,24 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
 @compiled
 def _root(job: Job, lengths: Lengths, inside: float, outside: float,
           bench: tuple[Road, Memory]) -> float:
-    """The zero of m between a covered and an uncovered s."""
+    """The zero of m between a covered and an uncovered s, by the Illinois method with bisections."""
     road, memory = bench
-    s = outside
-    width = abs(outside - inside)
-    for _ in range(80):
-        m, _, slope = swept_distance(job, lengths, s, road, memory)
-        point = memory[2]
-        pace = sqrt(point[1, 0] ** 2 + point[1, 1] ** 2 + point[1, 2] ** 2)
+    low, _, _ = swept_distance(job, lengths, inside, road, memory)
+    high, _, _ = swept_distance(job, lengths, outside, road, memory)
+    point = memory[2]
+    pace = sqrt(point[1, 0] ** 2 + point[1, 1] ** 2 + point[1, 2] ** 2)
+    for step in range(100):
+        s = inside - low * (outside - inside) / (high - low)
+        if step % 4 == 3 or not min(inside, outside) < s < max(inside, outside):
+            s = 0.5 * (inside + outside)
+        m, _, _ = swept_distance(job, lengths, s, road, memory)
         if m < 0.0:
-            inside = s
+            inside, low, high = s, m, 0.5 * high
         else:
-            outside = s
+            outside, high, low = s, m, 0.5 * low
         if abs(m) <= 1e-13 * lengths[1] or abs(outside - inside) * pace <= 1e-11 * lengths[1]:
             return s
-        step = -m / slope if slope != 0.0 else inf
-        ahead = s + step
-        now = abs(outside - inside)
-        if not min(inside, outside) < ahead < max(inside, outside) or (now > 0.7 * width and abs(step) > 0.5 * now):
-            ahead = 0.5 * (inside + outside)
-        width = now
-        if abs(step) * pace <= 1e-11 * lengths[1]:
-            return ahead
-        s = ahead
-    return s
+    return outside
 
 
 @compiled
@@ -267,8 +265,8 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
         piece = sqrt((state[0, 0] - x) ** 2 + (state[0, 1] - y) ** 2 + (state[0, 2] - z) ** 2)
         pace = max(sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2), 0.25 * pace)
         x, y, z = state[0, 0], state[0, 1], state[0, 2]
-        nearest = scan_pass(setting, road[0], (road[2], road[3]), point, road[1])
-        if road[1][nearest] >= 0.0 and _deepest(job, lengths, road, memory)[0] >= 0.0:
+        least = scan_pass(setting, road[0], (road[2], road[3]), point, road[1])
+        if least >= 0.0 and _deepest(job, lengths, road, memory)[0] >= 0.0:
             return _root(job, lengths, s, ahead, (road, memory))
         walked += piece
         if piece <= 1e-3 * abs(stride):

@@ -33,6 +33,8 @@ Geometry: TypeAlias = tuple[SurfaceData, float, Array]
 """Surface, sign of its normal, cutter."""
 Bench: TypeAlias = tuple[Road, Memory, Array, Array, tuple[Nodes, Nodes]]
 """Room for the pass, for one point, for three vectors, for the frame, and for two plane sections."""
+MARCH = 2.0
+"""Added to a contact's last number it forbids Newton's method, to compare the two ways."""
 SOFT = 10.0
 """Least corner radius of first guesses, in scallop heights."""
 Sizes: TypeAlias = tuple[float, float, float]
@@ -98,14 +100,14 @@ def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, flo
 @compiled
 def _curves(surface: SurfaceData, contact: Array, frame: Array, node: float,
             rooms: tuple[Nodes, Nodes, Scratch]) -> tuple[Curve, Curve]:
-    """Pass and cross curve of a contact; in the step parameter where contact[6] is 0, else along normal sections."""
+    """Pass and cross curve of a contact; in the step parameter where contact[6] is even, else along normal sections."""
     u, v, code = contact[0], contact[1], int(contact[2])
     ahead, across, scratch = rooms
     if code == SECTION:
         road = plane_section(surface, (u, v, node), (frame[0], frame[1]), ahead, scratch)
     else:
         road = iso_curve(code, v if code == ALONG_U else u, frame, ahead)
-    if code == SECTION or contact[6] != 0.0:
+    if code == SECTION or contact[6] % 2.0 == 1.0:
         return road, plane_section(surface, (u, v, node), (frame[1], frame[0]), across, scratch)
     return road, iso_curve(ALONG_V if code == ALONG_U else ALONG_U, u if code == ALONG_U else v, frame, across)
 
@@ -136,7 +138,7 @@ def _paces(contact: Array, frame: Array, d: Array) -> tuple[float, float, float]
         pace += d[1 + along, c] * frame[0, c]
         c_f += d[2 - along, c] * frame[0, c]
         c_k += d[2 - along, c] * frame[1, c]
-    if contact[6] != 0.0:
+    if contact[6] % 2.0 == 1.0:
         return pace, 0.0, 1.0
     return pace, c_f, c_k
 
@@ -167,17 +169,19 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
     stride = STRIDE * radius
     if width > 0.0:
         stride = min(stride, max(width / 6.0, 0.05 * stride))
+    if contact[6] >= MARCH:
+        s_step = 0.0
     found = ((table, gaps, first, last), memory, room, frame, rooms)
     low = _side_exit(job, lengths, (s0, w0, s0 - s_step, w0 - w_step), found, -stride)
     high = _side_exit(job, lengths, (s0, w0, s0 + s_step, w0 + w_step), found, stride)
-    if contact[6] != 0.0:
+    if contact[6] % 2.0 == 1.0:
         return curve_length(surface, cross, low, memory[3]), curve_length(surface, cross, high, memory[3])
     return abs(low - s0), abs(high - s0)
 
 
 @compiled
 def new_bench() -> Bench:
-    road = (np.empty((2 * SIDE_NODES + 1, 7)), np.empty(2 * SIDE_NODES + 1), 0, 0)
+    road = (np.empty((2 * SIDE_NODES + 1, 7)), np.empty((2 * SIDE_NODES + 1, 2)), 0, 0)
     return road, new_memory(new_scratch()), np.empty((3, 3)), np.empty((3, 3)), (new_nodes(), new_nodes())
 
 

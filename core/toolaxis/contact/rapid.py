@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.newton import Second, disc_step, exit_step, side_step
-from toolaxis.contact.swept import Pair, signed_distance
+from toolaxis.contact.swept import Pair, gap_rates, signed_distance
 from toolaxis.contact.tables import SIDE, blend, interval, iso_state, road_tip, tip_from
 from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.compiled import built_in, compiled
@@ -166,9 +166,9 @@ def _confirmed(tables: Tables, axis: Axis, point: Pair, found: tuple[float, floa
 
 @built_in
 def _recedes(tables: Tables, axis: Axis, point: Pair, walk: tuple[int, int, int]) -> bool:
-    """Whether the cutter goes away from a point from node to node, and no node is a leap of the tip from the last.
+    """Whether the cutter goes away from a point from node to node, unless it is far off.
 
-    The tip leaps where the normal passes the axis; what lies between is then not seen from the nodes.
+    Where the normal passes by the axis the tip swings about the contact: there the walk goes in shorter steps.
     """
     cutter, road = tables[0], tables[1]
     radius = cutter[0] + cutter[1]
@@ -176,12 +176,20 @@ def _recedes(tables: Tables, axis: Axis, point: Pair, walk: tuple[int, int, int]
     last = 0.0
     before = _node_tip(cutter, axis, road, start)
     for k in range(start, end + side, side):
-        tip = _node_tip(cutter, axis, road, k)
-        gap = _gap(cutter, axis, point, tip)
-        if gap < last and gap < 0.5 * radius:
-            return False
-        moved = (tip[0] - before[0]) ** 2 + (tip[1] - before[1]) ** 2 + (tip[2] - before[2]) ** 2
-        if moved > radius * radius:
-            return False
-        last, before = gap, tip
+        after = _node_tip(cutter, axis, road, k)
+        swing = 0.0
+        if k != start:
+            for c in range(3):
+                swing += (after[c] - before[c] - road[k, 1 + c] + road[k - side, 1 + c]) ** 2
+        parts = 1 if swing < 0.09 * radius * radius else 8
+        for part in range(1, parts + 1):
+            tip = after
+            if part < parts:
+                w = road[k - side, 0] + (road[k, 0] - road[k - side, 0]) * part / parts
+                tip = road_tip(cutter, axis, road, min(k, k - side), w)
+            gap, _, slope, _, _, _, _, _ = gap_rates(cutter, axis, point, tip)
+            if gap < 0.5 * radius and (gap < last or side * slope < 0.0):
+                return False
+            last = gap
+        before = after
     return True

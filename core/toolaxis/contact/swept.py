@@ -216,13 +216,13 @@ def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, f
 
 
 @compiled
-def scan_pass(setting: Setting, table: Array, rows: tuple[int, int], point: Array, gaps: Array) -> int:
-    """Distances of a point to the cutter at all nodes of a pass into gaps; returns the nearest node."""
+def scan_pass(setting: Setting, table: Array, rows: tuple[int, int], point: Array, gaps: Array) -> float:
+    """Distances of a point to the cutter at all nodes of a pass, and their slopes, into gaps (n, 2); the least one."""
     cutter, axis = setting[2], setting[3]
-    best, nearest = inf, rows[0]
+    best = inf
+    lifted = pair_of(point)
     for k in range(rows[0], rows[1] + 1):
-        gaps[k] = signed_distance(cutter, axis, point[0, 0] - table[k, 1], point[0, 1] - table[k, 2],
-                                  point[0, 2] - table[k, 3])
-        if gaps[k] < best:
-            best, nearest = gaps[k], k
-    return nearest
+        tip = (table[k, 1], table[k, 2], table[k, 3], table[k, 4], table[k, 5], table[k, 6])
+        gaps[k, 0], _, gaps[k, 1], _, _, _, _, _ = gap_rates(cutter, axis, lifted, tip)
+        best = min(best, gaps[k, 0])
+    return best
