@@ -75,9 +75,9 @@ def test_what_is_no_limit_is_refused_with_the_forms(text):
         parse_limits(text)
 
 
-@pytest.mark.parametrize("text, part", [("cone:0,0,0,45", "direction"), ("cone:0,0,1,-4", "between 0 and pi"),
-                                        ("rotary:tilt=50..40", "reversed"), ("rotary:tilt=-200..40", "within -pi to pi"),
-                                        ("rotary:tilt=0..40,z=0/0/1,x=0/0/2", "along z")])
+@pytest.mark.parametrize("text, part", [
+    ("cone:0,0,0,45", "direction"), ("cone:0,0,1,-4", "between 0 and pi"), ("rotary:tilt=50..40", "reversed"),
+    ("rotary:tilt=-200..40", "within -pi to pi"), ("rotary:tilt=0..40,z=0/0/1,x=0/0/2", "along z")])
 def test_impossible_limits_name_the_quantity(text, part):
     with pytest.raises(InvalidInput, match=part):
         parse_limits(text)

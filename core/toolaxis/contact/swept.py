@@ -60,7 +60,7 @@ def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float
 
 
 @built_in
-def signed_distance(cutter: Array, axis: Array, x: float, y: float, z: float) -> float:
+def signed_distance(cutter: Array, axis: Array | tuple[float, float, float], x: float, y: float, z: float) -> float:
     """Signed distance from a point, relative to the tip, to the cutter, mm."""
     height = x * axis[0] + y * axis[1] + z * axis[2]
     x -= height * axis[0]
