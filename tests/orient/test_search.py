@@ -37,7 +37,7 @@ def brute(ledger):
     worth = ledger.worth
     price = worth.screen(axes).length.min(axis=1)
     price[found.reason != FREE] = np.inf
-    rows = [i for i in np.argsort(price, kind="stable")[:24] if np.isfinite(price[i])]
+    rows = [i for i in np.argsort(price, kind="stable")[:10] if np.isfinite(price[i])]
     exact = sorted((min(worth.counted(axes[i], feed)[1] for feed in "uv"), i) for i in rows)
     return next((value for value, i in exact if ledger.feasibility.witness(axes[i]) is None), np.inf)
 

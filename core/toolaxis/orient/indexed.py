@@ -298,7 +298,7 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
     Returns
     -------
     Orientation
-        "infeasible" with the reason where the axis breaks a limit; count and length are given all the same.
+        "infeasible" with the reason where the axis breaks a limit.
 
     Raises
     ------
@@ -311,16 +311,16 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
     t = unit(as_rows(axis, 3, "axis")[0])
     ledger = Ledger(job.feasibility, job.worth, progress)
+    feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]
     try:
-        feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]
-        best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
         witness = job.feasibility.witness(t)
         if witness is None:
+            best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
             result, proof = finished(job, best)
             if proof.witness is None:
-                return replace(result, evaluations=len(feeds))
+                return replace(result, evaluations=1 + len(feeds))
             witness = proof.witness
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",))
-    return Orientation(None, FEEDS[best.feed], 0, best.passes, best.length, outcome="infeasible",
-                       reasons=(f"infeasible: {sentence(witness, job.feasibility)}",), evaluations=len(feeds))
+    return Orientation(None, FEEDS[feeds[0]], outcome="infeasible", evaluations=ledger.evaluations + 1,
+                       reasons=(f"infeasible: {sentence(witness, job.feasibility)}",))

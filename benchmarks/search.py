@@ -1,0 +1,145 @@
+"""Searches side by side: hemisphere, the paper's sectors, dense brute force, Roman's rule and the mean normal.
+
+Brute force takes every axis of a grid of the hemisphere.  All are screened; the exact count is made of those whose
+screening value is within a share of the best exact one, and the table states how far exact values fell below screened
+ones, which has to be less than that share.  `--full` counts every free axis instead (hours).
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import radians
+from pathlib import Path
+
+import numpy as np
+
+import toolaxis as ta
+from toolaxis.orient.feasible import FREE
+from toolaxis.orient.indexed import Task, task
+from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.sector import mean_normal, roman_axis, sectors
+from toolaxis.orient.sphere import Candidate, frame_of, search
+from toolaxis.orient.spiral import spiral
+from toolaxis.plan.orientation import REASONS
+
+ROOT = Path(__file__).resolve().parent.parent
+SCALLOP, SLACK = 0.02, 0.1
+TOOL = ta.Tool.torus(12, 1)
+EXAMPLES = ("freeform", "saddle", "trimmed", "hyperbolic_paraboloid", "biquintic")
+SEEDS = ((0, 1.5), (0, 3.0), (1, 2.5), (4, 2.0))
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table: cutting length by exact count, mm (inf where nothing is free), and what it took."""
+
+    method: str
+    length: float
+    evaluations: int
+    seconds: float
+    note: str = ""
+
+
+def seeded(seed: int, height: float) -> ta.Face:
+    """A bumpy patch of 6 x 5 control points, 60 x 60 mm."""
+    x, y = np.meshgrid(np.linspace(-30, 30, 6), np.linspace(-30, 30, 5), indexing="ij")
+    z = height * np.random.default_rng(seed).normal(size=x.shape)
+    return ta.Face.from_bspline(np.stack([x, y, z], axis=-1))
+
+
+def faces() -> dict[str, Callable[[], ta.Face]]:
+    """Makers of the faces, by name."""
+    made: dict[str, Callable[[], ta.Face]] = {
+        name: (lambda n=name: max(ta.load(ROOT / "examples" / f"{n}.step").sculptured, key=lambda f: f.area))
+        for name in EXAMPLES}
+    made.update({f"seed {s}, {h:g} mm": (lambda s=s, h=h: seeded(s, h)) for s, h in SEEDS})
+    return made
+
+
+def first_proven(job: Task, found: list[Candidate]) -> Candidate | None:
+    """The best candidate that the proof form accepts."""
+    return next((one for one in found if job.feasibility.witness(one.axis) is None), None)
+
+
+def by_search(job: Task, name: str, method: Callable[[Ledger], list[Candidate]]) -> Row:
+    """One of the two searches, with the proof form on its answer."""
+    ledger = Ledger(job.feasibility, job.worth)
+    start = time.perf_counter()
+    best = first_proven(job, method(ledger))
+    spent = time.perf_counter() - start
+    return Row(name, np.inf if best is None else best.value, ledger.evaluations, spent,
+               "nothing free" if best is None else f"{ledger.counts} counts")
+
+
+def brute_force(job: Task, spacing: float, slack: float) -> Row:
+    """Every axis of a grid; the best that the proof form accepts."""
+    judged, worth = job.feasibility, job.worth
+    start = time.perf_counter()
+    axes = spiral(frame_of(judged.normals), spacing)
+    total = len(axes)
+    axes = np.concatenate([some[judged.quick(some)[0] == FREE] for some in np.array_split(axes, 100)])
+    screened = np.concatenate([worth.screen(some).length for some in np.array_split(axes, 100) if len(some)])
+    best, lowest, found = np.inf, 1.0, []
+    for i in np.argsort(screened.min(axis=1), kind="stable"):
+        if screened[i].min() > best * (1 + slack):
+            break
+        if not np.isfinite(screened[i].min()) or judged.screen(axes[i]).reason[0] != FREE:
+            continue
+        for k, feed in enumerate("uv"):
+            if screened[i, k] <= best * (1 + slack):
+                value = worth.counted(axes[i], feed)[1]
+                lowest = min(lowest, value / screened[i, k])
+                found.append((value, int(i)))
+                if value < best and judged.closer(axes[i])[0] == FREE:
+                    best = value
+    for value, i in sorted(found):
+        if judged.witness(axes[i]) is None:
+            return Row("brute force", value, total, time.perf_counter() - start,
+                       f"{len(found)} counts, exact >= {lowest:.3f} screened")
+    return Row("brute force", np.inf, total, time.perf_counter() - start, "nothing free")
+
+
+def baseline(job: Task, name: str, rule: Callable[[Ledger], np.ndarray]) -> Row:
+    """A rule that gives one axis; its value whether the proof form accepts it or not, and the reason if not."""
+    ledger = Ledger(job.feasibility, job.worth)
+    start = time.perf_counter()
+    axis = rule(ledger)
+    witness = job.feasibility.witness(axis)
+    value = min(job.worth.counted(axis, feed)[1] for feed in "uv")
+    spent = time.perf_counter() - start
+    note = "" if witness is None else f"refused: {REASONS[witness.reason]}"
+    return Row(name, value, ledger.evaluations + 2, spent, note)
+
+
+def compare(face: ta.Face, spacing: float, slack: float) -> list[Row]:
+    """All methods on one face."""
+    job = task(face, TOOL, SCALLOP)
+    by_search(job, "warm-up", search)
+    return [by_search(job, "hemisphere", search), by_search(job, "sectors", sectors),
+            brute_force(job, spacing, slack), baseline(job, "Roman's rule", roman_axis),
+            baseline(job, "mean normal", mean_normal)]
+
+
+def show(name: str, rows: list[Row]) -> None:
+    """Print one face's lines."""
+    ours, paper, dense = rows[:3]
+    for row in rows:
+        share = dense.length / row.length if np.isfinite(row.length) else 0.0
+        print(f"{name:24} {row.method:13} {row.length:10.1f} {share:8.4f} {row.evaluations:8d} {row.seconds:9.2f}  "
+              f"{row.note}", flush=True)
+    print(f"{'':24} evaluations: 1/{dense.evaluations / ours.evaluations:.0f} of brute force, "
+          f"1/{paper.evaluations / ours.evaluations:.1f} of the sectors", flush=True)
+
+
+def main(chosen: tuple[str, ...] = (), spacing_deg: float = 0.5, full: bool = False) -> None:
+    """Print the comparison; value = brute force's cutting length over the method's."""
+    print(f"{TOOL.name}, scallop {SCALLOP} mm, grid {spacing_deg:g} deg, objective length")
+    print(f"{'face':24} {'method':13} {'length':>10} {'value':>8} {'axes':>8} {'seconds':>9}")
+    for name, make in faces().items():
+        if not chosen or name in chosen:
+            show(name, compare(make(), radians(spacing_deg), np.inf if full else SLACK))
+
+
+if __name__ == "__main__":
+    main(tuple(a for a in sys.argv[1:] if not a.startswith("--")), full="--full" in sys.argv)

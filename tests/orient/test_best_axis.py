@@ -1,0 +1,175 @@
+"""The best axis as users ask for it: results, proofs, reasons, walls, cancelling."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.contact.gouge import segment_penetration
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.limits import Cone
+from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.orient.feasible import FREE, WANDERS, Witness
+from toolaxis.orient.indexed import best_axis, evaluate_axis, task
+from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.proof import prove
+from toolaxis.orient.setting import OTHER
+from toolaxis.orient.sphere import Candidate, repaired, search
+from toolaxis.path.count import count
+from toolaxis.plan.orientation import OUTCOMES, REASONS
+from toolaxis.progress import Progress
+from toolaxis.tools.assembly import Tool
+
+TOOL = Tool.torus(8, 1)
+HELD = Tool.torus(8, 1, stickout=40, holder=[(12, 0), (12, 30)])
+H = 0.05
+
+
+def test_result_is_made_proven_and_filled(make):
+    face = make.seeded(71)
+    found = best_axis(face, HELD, H)
+    assert found.outcome == "feasible" and abs(np.linalg.norm(found.axis) - 1) < 1e-12
+    path = task(face, HELD, H).made(found.axis, found.feed)
+    assert found.passes == path.passes
+    assert abs(found.length - path.length(Motion.CUT)) < 1e-9
+    assert abs(found.count - count(face, HELD, found.axis, H, found.feed)) < 1e-9
+    assert found.count - 0.02 <= found.passes <= found.count + 1.1
+    assert abs(found.average_strip_width - face.area / found.length) < 1e-9
+    assert found.gouge <= 0.002
+    assert segment_penetration(HELD, path.cl, found.axis, (face,)).max() <= found.gouge + 1e-9
+    assert set(found.clearance) == {"shank", "holder"}
+    assert found.clearance["shank"] >= 0.5 and found.clearance["holder"] >= 1.0
+
+
+def test_map_and_lobes_tell_what_was_looked_at(make):
+    found = best_axis(make.seeded(72), TOOL, H)
+    table = found.map
+    assert len(table.axis) <= found.evaluations < 1650
+    assert set(np.unique(table.reason)) <= set(range(len(REASONS)))
+    free = table.reason == FREE
+    assert np.isfinite(table.length[free]).any() and np.isinf(table.length[~free]).all()
+    assert (table.amount[free] == 0).all() and (table.amount[~free] > 0).all()
+    for lobe in found.lobes:
+        assert lobe.outcome == "feasible" and angle_between(lobe.axis, found.axis) > radians(6)
+        assert lobe.count > 0.99 * found.count or lobe.feed != found.feed
+
+
+@pytest.mark.parametrize("method", ["sphere", "sectors"])
+def test_both_methods_beat_the_mean_normal_side(make, method):
+    face = make.seeded(73)
+    found = best_axis(face, TOOL, H, method=method)
+    plain = evaluate_axis(face, TOOL, unit([0.5, 0.3, 1.0]), H)
+    assert found.outcome == plain.outcome == "feasible"
+    assert found.length <= plain.length
+    assert found.outcome in OUTCOMES
+
+
+def test_a_given_axis_is_judged_the_same_way(make):
+    face = make.seeded(74)
+    found = best_axis(face, TOOL, H)
+    again = evaluate_axis(face, TOOL, found.axis, H, feed=found.feed)
+    assert (again.passes, again.length, again.gouge) == (found.passes, found.length, found.gouge)
+    refused = evaluate_axis(face, TOOL, face.normal(np.array([[0.5, 0.5]]))[0], H)
+    assert refused.outcome == "infeasible" and refused.axis is None
+    assert "contact wanders" in refused.reasons[0] and "face 1" in refused.reasons[0]
+
+
+def test_normals_all_around_are_proven_infeasible(make):
+    x = np.linspace(-10, 10, 5)
+    dome = make.patch(-0.5 * (x[:, None] ** 2 + x[None] ** 2), size=10)
+    found = best_axis(dome, Tool.tapered(8, 1, 30), H)
+    assert found.outcome == "infeasible" and found.axis is None
+    assert "no axis is within 60.0 deg" in found.reasons[0]
+
+
+def test_a_corner_too_large_is_proven_infeasible(make):
+    found = best_axis(make.bowl(3.0, size=5), Tool.ball(8), H)
+    assert found.outcome == "infeasible" and "corner radius 4 mm gouges" in found.reasons[0]
+    assert best_axis(make.bowl(9.0, size=5), Tool.ball(8), H).outcome == "feasible"
+
+
+def test_limits_without_an_axis_are_proven_infeasible(make):
+    found = best_axis(make.seeded(75), TOOL, H, machine="cone:0,0,-1,30")
+    assert found.outcome == "infeasible" and found.reasons[0].startswith("infeasible: limits and normals leave no axis")
+    assert "outside the limits" in found.reasons[0]
+
+
+def test_a_lid_over_the_face_is_not_found_and_says_what_meets_it(make):
+    face = make.seeded(76, 0.3)
+    lid = make.flat([-90, -90, 20], [0, 180, 0], [180, 0, 0])
+    found = best_axis(face, HELD, H, obstacles=lid, limits="cone:0,0,1,40")
+    assert found.outcome == "not_found" and found.axis is None
+    assert "meets face 1 by" in found.reasons[0] and "that comes closest" in found.reasons[0]
+    assert "collision" in found.reasons[-1]
+
+
+def test_machine_limits_are_kept_and_checked(make):
+    face = make.seeded(77)
+    found = best_axis(face, TOOL, H, machine=Cone(np.array([0, 0.4, 1.0]), radians(15)), limits="cone:0,0,1,30")
+    assert angle_between(found.axis, unit([0, 0.4, 1.0])) <= radians(15) + 1e-8
+    with pytest.raises(InvalidInput, match="limits"):
+        best_axis(face, TOOL, H, machine=3.0)
+
+
+@pytest.mark.parametrize("wrong, text", [({"method": "luck"}, "method"), ({"objective": "time"}, "objective"),
+                                         ({"scallop": 0.0}, "scallop"), ({"allowance": -9.0}, "allowance")])
+def test_wrong_arguments_are_refused(make, wrong, text):
+    with pytest.raises(InvalidInput, match=text):
+        best_axis(make.seeded(1), TOOL, **{"scallop": H, **wrong})
+
+
+def test_next_to_a_wall_a_clean_up_zone_stays_and_is_told(make):
+    part = make.floor_and_wall()
+    found = best_axis(part.faces[0], HELD, H, part=part)
+    assert found.outcome == "feasible"
+    job = task(part.faces[0], HELD, H, part=part)
+    assert abs(found.unreached - job.feasibility.unreached(found.axis)) < 1e-12
+    assert found.clearance["cutter"] >= 0.1 - 0.006 and found.clearance["holder"] >= 1.0 - 0.006
+    assert (found.unreached > 0) == any("clean-up" in reason for reason in found.reasons)
+    path = job.made(found.axis, found.feed)
+    wall = next(group for group in job.groups if group.role == OTHER)
+    assert path.cl[:, 1].max() < wall.faces[0].box[1, 1]
+    assert prove(path, HELD, job.groups).witness is None
+
+
+def test_the_proof_sees_one_bad_motion(make):
+    part = make.floor_and_wall()
+    job = task(part.faces[0], HELD, H, part=part)
+    axis = unit([0.35, -0.3, 1.0])
+    path = job.made(axis, "u")
+    assert prove(path, HELD, job.groups).witness is None
+    path.cl[len(path.cl) // 2] -= 0.01 * axis
+    bad = prove(path, HELD, job.groups).witness
+    assert bad is not None and bad.reason == 4 and abs(bad.distance + 0.01) < 0.002
+    path.cl[len(path.cl) // 2] += [0, 30.0, 0]
+    assert prove(path, HELD, job.groups).witness is not None
+
+
+def test_a_refused_axis_is_left_for_another(make):
+    job = task(make.seeded(78), TOOL, H)
+    ledger = Ledger(job.feasibility, job.worth)
+    best = search(ledger)[0]
+    other = repaired(ledger, best, Witness(WANDERS, 0.1))
+    assert isinstance(other, Candidate) and angle_between(other.axis, best.axis) > radians(0.1)
+    assert other.value >= best.value * 0.999
+
+
+def test_cancelling_gives_what_is_known(make):
+    seen = []
+
+    def stop():
+        return len(seen) > 3
+
+    found = best_axis(make.seeded(79), TOOL, H, progress=Progress(lambda *report: seen.append(report), stop))
+    assert found.outcome == "cancelled" and found.axis is None and found.map is not None
+    assert len(seen) >= 4 and all(0 <= done <= total for _, done, total in seen)
+
+
+def test_allowance_leaves_stock(make):
+    face = make.seeded(80)
+    found = best_axis(face, TOOL, H, allowance=0.3)
+    assert found.outcome == "feasible"
+    job = task(face, TOOL, H, allowance=0.3)
+    path = job.made(found.axis, found.feed)
+    assert segment_penetration(TOOL, path.cl, found.axis, (face,), allowance=0.298).max() <= 0.0005
