@@ -164,7 +164,7 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
     w_step = s_step * (c_f + ahead * c_k) / pace
     w0 = 0.0 if road[0] == SECTION else contact[road[0]]
     s0 = 0.0 if cross[0] == SECTION else contact[cross[0]]
-    first, last = lay_pass(job[0], road, w0, (WINDOW * radius, SPACING * radius), memory, table)
+    first, last = lay_pass(job[0], road, (w0, WINDOW * radius, SPACING * radius), memory, table)
     lengths = (lift, radius, CAP * radius, SPACING * radius)
     stride = STRIDE * radius
     if width > 0.0:

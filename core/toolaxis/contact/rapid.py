@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.newton import Second, disc_step, exit_step, side_step
-from toolaxis.contact.swept import Pair, gap_rates, signed_distance
-from toolaxis.contact.tables import SIDE, blend, interval, iso_state, road_tip, tip_from
+from toolaxis.contact.swept import Pair, gap_rates, signed_distance, tip_from
+from toolaxis.contact.tables import SIDE, blend, interval, iso_state, road_tip
 from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.compiled import built_in, compiled
 

@@ -70,28 +70,24 @@ def signed_distance(cutter: Array, axis: Array | tuple[float, float, float], x: 
 
 
 @built_in
-def tip_rates(cutter: Array, axis: Array, state: Array, tip: Array) -> None:
-    """Tool tip and its derivative along a curve into tip (2, 3), from the curve's state (4, 3).
+def tip_from(cutter: Array, axis: Vector, centre: Pair, normal: Pair) -> Pair:
+    """Tip and its rate from c = S + offset n and n with their rates.
 
-    Notes
-    -----
-    **Source**: [zhu2016] Eq. (1) and its derivative; see `toolaxis.contact.placing.tips`.
+    Upright (T = n) the tip stands under c, as in `toolaxis.contact.placing.tips`, whose formula this is.
     """
-    a, r, offset = cutter[0], cutter[1], cutter[5]
-    height = state[2, 0] * axis[0] + state[2, 1] * axis[1] + state[2, 2] * axis[2]
-    rate = state[3, 0] * axis[0] + state[3, 1] * axis[1] + state[3, 2] * axis[2]
-    size = along = 0.0
-    for c in range(3):
-        tip[0, c] = state[2, c] - height * axis[c]
-        tip[1, c] = state[3, c] - rate * axis[c]
-        size += tip[0, c] ** 2
-        along += tip[0, c] * tip[1, c]
-    reach = a / sqrt(size) if size > UPRIGHT**2 else 0.0
-    turn = along / size if size > UPRIGHT**2 else 0.0
-    for c in range(3):
-        across, change = tip[0, c], tip[1, c]
-        tip[0, c] = state[0, c] + offset * state[2, c] + reach * across - r * axis[c]
-        tip[1, c] = state[1, c] + offset * state[3, c] + reach * (change - turn * across)
+    t0, t1, t2 = axis[0], axis[1], axis[2]
+    height = normal[0] * t0 + normal[1] * t1 + normal[2] * t2
+    rate = normal[3] * t0 + normal[4] * t1 + normal[5] * t2
+    x0, x1, x2 = normal[0] - height * t0, normal[1] - height * t1, normal[2] - height * t2
+    y0, y1, y2 = normal[3] - rate * t0, normal[4] - rate * t1, normal[5] - rate * t2
+    size = x0 * x0 + x1 * x1 + x2 * x2
+    reach = turn = 0.0
+    if size > UPRIGHT**2:
+        reach, turn = cutter[0] / sqrt(size), (x0 * y0 + x1 * y1 + x2 * y2) / size
+    r = cutter[1]
+    return (centre[0] + reach * x0 - r * t0, centre[1] + reach * x1 - r * t1, centre[2] + reach * x2 - r * t2,
+            centre[3] + reach * (y0 - turn * x0), centre[4] + reach * (y1 - turn * x1),
+            centre[5] + reach * (y2 - turn * x2))
 
 
 @built_in
@@ -140,8 +136,14 @@ def gap_rates(cutter: Array, axis: Vector, point: Pair, tip: Pair) -> Gap:
 def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Array, Array, Scratch]) -> None:
     """Tip and its rate at w of a pass into memory[1]; memory = state (4, 3), tip (2, 3), point (2, 3), scratch."""
     surface, sign, cutter, axis = setting
-    curve_point((surface, sign), curve, w, memory[0], memory[3])
-    tip_rates(cutter, axis, memory[0], memory[1])
+    state, tip = memory[0], memory[1]
+    curve_point((surface, sign), curve, w, state, memory[3])
+    offset = cutter[5]
+    centre = (state[0, 0] + offset * state[2, 0], state[0, 1] + offset * state[2, 1],
+              state[0, 2] + offset * state[2, 2], state[1, 0] + offset * state[3, 0],
+              state[1, 1] + offset * state[3, 1], state[1, 2] + offset * state[3, 2])
+    normal = (state[2, 0], state[2, 1], state[2, 2], state[3, 0], state[3, 1], state[3, 2])
+    (tip[0, 0], tip[0, 1], tip[0, 2], tip[1, 0], tip[1, 1], tip[1, 2]) = tip_from(cutter, axis, centre, normal)
 
 
 @built_in
@@ -162,17 +164,16 @@ def new_memory(scratch: Scratch) -> tuple[Array, Array, Array, Scratch]:
 
 
 @compiled
-def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, float],
+def lay_pass(setting: Setting, curve: Curve, reach: tuple[float, float, float],
              memory: tuple[Array, Array, Array, Scratch], table: Array) -> tuple[int, int]:
     """Tips along a pass around a contact.
 
     Parameters
     ----------
     setting, curve, memory
-    start : float
-        Parameter of the contact.
-    reach : (window, spacing)
-        Distance to which the pass is followed, and length between nodes both on the surface and of the tip's path, mm.
+    reach : (start, window, spacing)
+        Parameter of the contact; distance to which the pass is followed, and length between nodes both on the surface
+        and of the tip's path, mm.
     table : (2 SIDE_NODES + 1, 7) array
         Receives rows of w, tip, dtip/dw in increasing w from row `first` to row `last`.
 
@@ -181,6 +182,7 @@ def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, f
     first, last : int
         The contact is row SIDE_NODES.
     """
+    start, window, spacing = reach
     first = last = SIDE_NODES
     tip = memory[1]
     for side in (-1, 1):
@@ -193,7 +195,7 @@ def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, f
                 moved += (tip[0, c] - table[row - side, 1 + c]) ** 2 if row != SIDE_NODES else 0.0
                 speed += memory[0][1, c] ** 2
                 travel += tip[1, c] ** 2
-            if moved > (1.5 * reach[1]) ** 2 and abs(step) > 1e-6 * reach[1] / sqrt(speed):
+            if moved > (1.5 * spacing) ** 2 and abs(step) > 1e-6 * spacing / sqrt(speed):
                 step *= 0.5
                 w = last_w + step
                 continue
@@ -202,10 +204,10 @@ def lay_pass(setting: Setting, curve: Curve, start: float, reach: tuple[float, f
                 table[row, 1 + c] = tip[0, c]
                 table[row, 4 + c] = tip[1, c]
             pace = sqrt(max(speed, travel))
-            if far > reach[0] ** 2 or row in (0, 2 * SIDE_NODES) or pace <= 1e-300:
+            if far > window ** 2 or row in (0, 2 * SIDE_NODES) or pace <= 1e-300:
                 break
             row += side
-            step = side * reach[1] / pace
+            step = side * spacing / pace
             last_w = w
             w += step
         if side < 0:

@@ -11,13 +11,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.swept import Pair, tip_from
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
 from toolaxis.numeric.compiled import built_in, compiled
 
 Array = NDArray[np.float64]
 Floats3: TypeAlias = tuple[float, float, float]
 State: TypeAlias = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
-Pair: TypeAlias = tuple[float, float, float, float, float, float]
 
 SIDE = 16
 """Most nodes on either side of the contact."""
@@ -160,24 +160,6 @@ def blend(table: Array, k: int, column: int, x: float) -> Pair:
     g0, g1, g2 = table[k + 1, column + 3], table[k + 1, column + 4], table[k + 1, column + 5]
     return (p0 + b * q0 + c * f0 + e * g0, p1 + b * q1 + c * f1 + e * g1, p2 + b * q2 + c * f2 + e * g2,
             db * q0 + dc * f0 + de * g0, db * q1 + dc * f1 + de * g1, db * q2 + dc * f2 + de * g2)
-
-
-@built_in
-def tip_from(cutter: Array, axis: Floats3, centre: Pair, normal: Pair) -> Pair:
-    """Tip and its rate from c = S + offset n and n with their rates; [zhu2016] Eq. (1) as in `placing.tips`."""
-    t0, t1, t2 = axis
-    height = normal[0] * t0 + normal[1] * t1 + normal[2] * t2
-    rate = normal[3] * t0 + normal[4] * t1 + normal[5] * t2
-    x0, x1, x2 = normal[0] - height * t0, normal[1] - height * t1, normal[2] - height * t2
-    y0, y1, y2 = normal[3] - rate * t0, normal[4] - rate * t1, normal[5] - rate * t2
-    size = x0 * x0 + x1 * x1 + x2 * x2
-    reach = turn = 0.0
-    if size > 1e-24:
-        reach, turn = cutter[0] / sqrt(size), (x0 * y0 + x1 * y1 + x2 * y2) / size
-    r = cutter[1]
-    return (centre[0] + reach * x0 - r * t0, centre[1] + reach * x1 - r * t1, centre[2] + reach * x2 - r * t2,
-            centre[3] + reach * (y0 - turn * x0), centre[4] + reach * (y1 - turn * x1),
-            centre[5] + reach * (y2 - turn * x2))
 
 
 @built_in
