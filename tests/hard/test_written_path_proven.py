@@ -17,9 +17,10 @@ def _flat(corner: list[float], along: list[float], across: list[float]) -> ta.Fa
 @pytest.mark.parametrize("direction", ["zigzag", "climb", "conventional"])
 def test_no_motion_of_a_plan_comes_nearer_to_a_wall_than_allowed(direction: str) -> None:
     floor = _flat([0, 0, 0], [14, 0, 0], [0, 8, 0])
-    walls = [_flat([14.4, -5, -5], [0, 0, 18], [0, 18, 0]), _flat([-0.4, -5, -5], [0, 18, 0], [0, 0, 18])]
-    result = ta.plan([floor, *walls], ta.Tool.ball(diameter=4), 0.2, faces=[1], machine="cone:0,0,1,3",
-                     direction=direction)
+    walls = [_flat([14.4, -5, -5], [0, 0, 18], [0, 18, 0]), _flat([-0.4, -5, -5], [0, 18, 0], [0, 0, 18]),
+             _flat([-0.4, -0.4, -5], [0, 0, 18], [15, 0, 0]), _flat([-0.4, 8.4, -5], [15, 0, 0], [0, 0, 18])]
+    result = ta.plan([floor, *walls], ta.Tool.ball(diameter=4, stickout=30), 0.2, faces=[1],
+                     machine="cone:0,0,1,3", direction=direction)
     operation = result.operations[0]
     assert operation.path is not None
     t = operation.orientation.axis

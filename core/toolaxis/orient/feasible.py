@@ -313,7 +313,7 @@ class Feasibility:
         return worst
 
     def _worse(self, worst: Trouble, found: Found, number: int, near: Bools) -> Trouble:
-        """Merge in what one group does; what forbids goes before what a clean-up tool can do."""
+        """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
         group, rows = self.groups[number], np.arange(len(worst.reason))
         for c in range(3):
             amount = group.required[c] - found.lower[:, c]
@@ -322,7 +322,7 @@ class Feasibility:
                 wall = near[rows, found.face[:, c]] & (found.face[:, c] >= 0)
             hit = amount > 0
             before = worst.reason != FREE
-            take = hit & (~before | (worst.wall & ~wall) | ((worst.wall == wall) & (amount > worst.amount)))
+            take = hit & (~before | (wall & ~worst.wall) | ((worst.wall == wall) & (amount > worst.amount)))
             code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
             point = np.where(take[:, None], found.point[:, c], worst.point)
             worst = Trouble(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
