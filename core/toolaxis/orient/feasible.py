@@ -309,17 +309,30 @@ class Feasibility:
             fine = FINE if group.role != OTHER else COARSE
             left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
             found = bounded(group.cells, self.tool, moves, group.required + 2 * fine, fine, left_out)
-            worst = self._worse(worst, found, number, contacts.near)
+            beside = np.zeros(n, dtype=bool)
+            if group.role == OTHER and len(contacts.near):
+                hit = np.asarray((found.lower < group.required).any(axis=1))
+                beside = self._beside(group, moves, hit, contacts.near)
+            worst = self._worse(worst, found, number, beside)
         return worst
 
-    def _worse(self, worst: Trouble, found: Found, number: int, near: Bools) -> Trouble:
+    def _beside(self, group: Group, moves: Array, hit: Bools, near: Bools) -> Bools:
+        """Which of the positions that were hit come too near to a wall that is near them."""
+        beside = np.zeros(len(hit), dtype=bool)
+        for k in np.flatnonzero(near[hit].any(axis=0)):
+            rows = np.flatnonzero(hit & near[:, k] & ~beside)
+            if len(rows):
+                only = np.full((len(group.faces), 3), -np.inf)
+                only[k] = 0.0
+                found = bounded(group.cells, self.tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
+                beside[rows] = (found.lower < group.required).any(axis=1)
+        return beside
+
+    def _worse(self, worst: Trouble, found: Found, number: int, wall: Bools) -> Trouble:
         """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
-        group, rows = self.groups[number], np.arange(len(worst.reason))
+        group = self.groups[number]
         for c in range(3):
             amount = group.required[c] - found.lower[:, c]
-            wall = np.zeros(len(rows), dtype=bool)
-            if group.role == OTHER and len(near):
-                wall = near[rows, found.face[:, c]] & (found.face[:, c] >= 0)
             hit = amount > 0
             before = worst.reason != FREE
             take = hit & (~before | (wall & ~worst.wall) | ((worst.wall == wall) & (amount > worst.amount)))
