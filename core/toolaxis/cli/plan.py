@@ -90,6 +90,9 @@ def _told(made: Plan, given: Namespace) -> int:
         if not op.done:
             for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
+        elif op.orientation.unreached > 0:
+            say(f"toolaxis: face {op.face.label}: {100 * op.orientation.unreached:.1f} % of the area lies at walls and "
+                "is left to clean-up")
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")

@@ -41,6 +41,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         print_json(document)
     else:
         print_table(verdict_table(plan, verdict))
+    for op in plan.operations:
+        if op.done and op.orientation.unreached > 0:
+            say(f"toolaxis: {op.name}: the plan leaves {100 * op.orientation.unreached:.1f} % of the area, at "
+                "walls, to clean-up: that share was not asked for")
     for reason in document["reasons"]:
         say(f"toolaxis: {reason}")
     if plan.outcome == "cancelled":
