@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.path.chart import Chart, Cut, columns
 from toolaxis.path.material import Intervals, filtered, joined, table
+from toolaxis.path.run_out import needed
 from toolaxis.path.spacing import Spacing, lines, space
 from toolaxis.progress import NO_PROGRESS, Progress
 
@@ -115,12 +116,18 @@ def _extended(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Interva
     a0, a1, s0, s1 = chart.bounds
     step = np.clip(steps[found.line], s0, s1)
     ends = (found.low, found.high)
-    reach = [chart.run_outs(cut, np.clip(end, a0, a1), step)[:, side] for side, end in enumerate(ends)]
-    before, after = (_RUN_OUT * np.where(np.isfinite(r) & (r > 0), r, 0.0) for r in reach)
+    before, after = (_run_out(chart, cut, (np.clip(end, a0, a1), step), side) for side, end in enumerate(ends))
     closed = chart.closed(step)
     before = np.where(closed & (found.low <= a0), 0.0, before)
     after = np.where(closed & (found.high >= a1), 0.0, after)
     return joined(Intervals(found.line, found.low - before, found.high + after))
+
+
+def _run_out(chart: Chart, cut: Cut, place: tuple[Array, Array], side: int) -> Array:
+    """How far pieces go on past places (along, step) on their lower (0) or upper (1) side."""
+    reach = chart.run_outs(cut, *place)[:, side]
+    reach = np.where(np.isfinite(reach) & (reach > 0), reach, 0.0)
+    return _RUN_OUT * np.maximum(reach, needed(chart, cut, *place, forward=side == 1))
 
 
 def _reachable(chart: Chart, along: Array, column: Intervals, reach: Reach) -> Intervals:
