@@ -1,4 +1,4 @@
-"""Passes ended too early where the axis leans across the feed: corners of the face kept more than the scallop height."""
+"""Passes ended too early where the axis leans across the feed: corners kept more than the scallop height."""
 
 import numpy as np
 import pytest

@@ -72,4 +72,4 @@ def _first_cut(off: Array, scallop: float) -> Array:
     least = np.minimum.accumulate(off, axis=2)
     enough = least <= np.maximum(least[..., -1:], 0.0) + _SHARE * scallop
     first = np.argmax(enough, axis=2).max(axis=1)
-    return np.maximum(np.linspace(-1.0, 1.0, off.shape[2])[first], 0.0)
+    return np.asarray(np.maximum(np.linspace(-1.0, 1.0, off.shape[2])[first], 0.0))
