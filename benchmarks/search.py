@@ -15,16 +15,16 @@ from pathlib import Path
 import numpy as np
 
 import toolaxis as ta
-from toolaxis.orient.feasible import FREE
 from toolaxis.orient.indexed import Task, task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.sector import mean_normal, roman_axis, sectors
 from toolaxis.orient.sphere import Candidate, frame_of, search
 from toolaxis.orient.spiral import spiral
+from toolaxis.orient.verdicts import FREE
 from toolaxis.plan.orientation import REASONS
 
 ROOT = Path(__file__).resolve().parent.parent
-SCALLOP, SLACK = 0.02, 0.1
+SCALLOP, SLACK = 0.02, 0.06
 TOOL = ta.Tool.torus(12, 1)
 EXAMPLES = ("freeform", "saddle", "trimmed", "hyperbolic_paraboloid", "biquintic")
 SEEDS = ((0, 1.5), (0, 3.0), (1, 2.5), (4, 2.0))
@@ -101,12 +101,12 @@ def brute_force(job: Task, spacing: float, slack: float) -> Row:
 
 
 def baseline(job: Task, name: str, rule: Callable[[Ledger], np.ndarray]) -> Row:
-    """A rule that gives one axis; its value whether the proof form accepts it or not, and the reason if not."""
+    """A rule that gives one axis: its value where the proof form accepts it, else the reason why not."""
     ledger = Ledger(job.feasibility, job.worth)
     start = time.perf_counter()
     axis = rule(ledger)
     witness = job.feasibility.witness(axis)
-    value = min(job.worth.counted(axis, feed)[1] for feed in "uv")
+    value = np.inf if witness else min(job.worth.counted(axis, feed)[1] for feed in "uv")
     spent = time.perf_counter() - start
     note = "" if witness is None else f"refused: {REASONS[witness.reason]}"
     return Row(name, value, ledger.evaluations + 2, spent, note)

@@ -10,12 +10,12 @@ from toolaxis.contact.gouge import segment_penetration
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, unit
-from toolaxis.orient.feasible import FREE, WANDERS, Witness
 from toolaxis.orient.indexed import best_axis, evaluate_axis, task
 from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.proof import prove
+from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.setting import OTHER
 from toolaxis.orient.sphere import Candidate, repaired, search
+from toolaxis.orient.verdicts import FREE, GOUGE, WANDERS, Witness
 from toolaxis.path.count import count
 from toolaxis.plan.orientation import OUTCOMES, REASONS
 from toolaxis.progress import Progress
@@ -153,6 +153,21 @@ def test_a_refused_axis_is_left_for_another(make):
     other = repaired(ledger, best, Witness(WANDERS, 0.1))
     assert isinstance(other, Candidate) and angle_between(other.axis, best.axis) > radians(0.1)
     assert other.value >= best.value * 0.999
+
+
+def test_what_the_proof_refuses_is_not_given(make, monkeypatch):
+    face, calls = make.seeded(78), []
+
+    def strict(path, *rest, **more):
+        calls.append(path.axis[0])
+        return Proof(Witness(GOUGE, 0.001, "1", distance=-0.003)) if len(calls) == 1 else prove(path, *rest, **more)
+
+    monkeypatch.setattr("toolaxis.orient.indexed.prove", strict)
+    found = best_axis(face, TOOL, H)
+    assert found.outcome == "feasible" and len(calls) == 2
+    np.testing.assert_allclose(found.axis, calls[1])
+    assert angle_between(calls[0], calls[1]) > radians(0.1)
+    assert any(reason.startswith("refused") and "0.003 mm" in reason for reason in found.reasons)
 
 
 def test_cancelling_gives_what_is_known(make):

@@ -10,9 +10,10 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.orient.cloud import deepest, deepest_numpy
-from toolaxis.orient.feasible import BACK, CUTTER, FREE, GOUGE, HOLDER, LIMITS, WANDERS, Feasibility
+from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.orient.spiral import spiral
+from toolaxis.orient.verdicts import BACK, CUTTER, FREE, GOUGE, HOLDER, LIMITS, WANDERS
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 

@@ -8,12 +8,13 @@ import pytest
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import Cone, parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient.feasible import FREE
+from toolaxis.orient.hunt import hunt
 from toolaxis.orient.indexed import task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.sector import mean_normal, roman_axis, sectors
-from toolaxis.orient.sphere import hunt, search
+from toolaxis.orient.sphere import search
 from toolaxis.orient.spiral import spiral
+from toolaxis.orient.verdicts import FREE
 from toolaxis.orient.worth import Worth
 from toolaxis.path.count import count
 from toolaxis.shape.face import Face
@@ -35,10 +36,10 @@ def brute(ledger):
     axes = spiral(np.eye(3), radians(2.5), radians(75))
     found = ledger.feasibility.screen(axes)
     worth = ledger.worth
-    price = worth.screen(axes).length.min(axis=1)
-    price[found.reason != FREE] = np.inf
-    rows = [i for i in np.argsort(price, kind="stable")[:10] if np.isfinite(price[i])]
-    exact = sorted((min(worth.counted(axes[i], feed)[1] for feed in "uv"), i) for i in rows)
+    screened = worth.screen(axes).length
+    price = np.where(found.reason == FREE, screened.min(axis=1), np.inf)
+    rows = [i for i in np.argsort(price, kind="stable")[:12] if np.isfinite(price[i])]
+    exact = sorted((worth.counted(axes[i], "uv"[screened[i].argmin()])[1], i) for i in rows)
     return next((value for value, i in exact if ledger.feasibility.witness(axes[i]) is None), np.inf)
 
 
@@ -144,7 +145,7 @@ def test_limits_that_exclude_the_face_are_proven_to(make):
     open_ = Ledger(job.feasibility, job.worth)
     open_.feasibility = task(make.seeded(67), TOOL, H).feasibility
     open_.look(np.array([[0, 0, 1.0], [0, 0, 1.0], unit([0.3, 0.2, 1.0])]))
-    assert not hunt(open_)
+    assert not hunt(open_, 2, radians(10))
 
 
 def test_objectives_choose_by_what_they_name(make):

@@ -10,7 +10,6 @@ clean-up tool; anything else that is in the way forbids the axis.
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,8 +19,20 @@ from toolaxis.contact.placing import tips
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.orient.cloud import deepest
+from toolaxis.orient.contacts import Contacts, around, contacts_at
 from toolaxis.orient.normals import NormalField
 from toolaxis.orient.setting import OTHER, ROLES, SKIN, Group
+from toolaxis.orient.verdicts import (
+    BACK,
+    CUTTER,
+    FREE,
+    GOUGE,
+    LIMITS,
+    WANDERS,
+    Trouble,
+    Verdicts,
+    Witness,
+)
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
@@ -30,60 +41,10 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-FREE, LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER = range(8)
 #: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
 FINE, COARSE = 0.0003, 0.002
 _DENSE = 32
 _NOWHERE = np.zeros((0, 0), dtype=bool)
-
-
-class Verdicts(NamedTuple):
-    """Verdicts on k axes: reason (k,), index into `REASONS`; amount (k,) rad or mm; unreached (k,) share of area."""
-
-    reason: NDArray[np.int8]
-    amount: Array
-    unreached: Array
-
-
-class Contacts(NamedTuple):
-    """Places on a face.
-
-    uv : (n, 2);  point, normal : (n, 3);  share : (n,) of the area that each stands for;  near : (n, k) bool, whether
-    wall k is so near that a clean-up tool has to do what this one cannot.
-    """
-
-    uv: Array
-    point: Array
-    normal: Array
-    share: Array
-    near: Bools
-
-
-class Trouble(NamedTuple):
-    """What is worst at n positions: reason (n,), amount (n,) mm, whether a clean-up tool can do it (n,), face index
-    within its group (n,), group index (n,), and a point near it (n, 3)."""
-
-    reason: NDArray[np.int8]
-    amount: Array
-    wall: Bools
-    face: NDArray[np.int64]
-    group: NDArray[np.int64]
-    point: Array
-
-
-class Witness(NamedTuple):
-    """The one place that decides against an axis.
-
-    reason : index into `REASONS`;  amount : by how much the limit is missed, mm or rad;  label : of the face in the
-    way;  point : (3,) where it happens;  uv : (2,) of the contact;  distance : its component's signed distance, mm.
-    """
-
-    reason: int
-    amount: float
-    label: str = ""
-    point: Array = np.zeros(3)
-    uv: Array = np.zeros(2)
-    distance: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,33 +123,18 @@ class Feasibility:
         grid = self.face.grid(5, 5)
         fine = self.face.grid(24, 24)
         bent = fine[np.argsort(-self.face.curvature(fine).k1, kind="stable")[:6]]
-        rows = [grid, bent, _around(self.face, 24)]
+        rows = [grid, bent, around(self.face, 24)]
         return self._contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
 
     @cached_property
     def dense(self) -> Contacts:
         """Contacts for proving: a fine grid, and points along the border."""
         grid = self.face.grid(_DENSE, _DENSE)
-        return self._contacts(np.concatenate([grid, _around(self.face, 6 * _DENSE)]), len(grid))
+        return self._contacts(np.concatenate([grid, around(self.face, 6 * _DENSE)]), len(grid))
 
     def _contacts(self, uv: Array, weighed: int) -> Contacts:
-        d, normal = self.face.evaluate(uv), self.face.normal(uv)
-        share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-        share[weighed:] = 0.0
-        good = np.linalg.norm(normal, axis=1) > 0.5
-        return Contacts(uv[good], d.point[good], normal[good], share[good] / share.sum(), self._near(d.point[good]))
-
-    def _near(self, points: Array) -> Bools:
-        """Which walls are within a cutter's diameter and its clearance of each point, (n, walls)."""
-        walls = [face for group in self.groups if group.role == OTHER for face in group.faces]
-        near = 2 * self.tool.radius + self.tolerance.cutter_clearance
-        found = np.zeros((len(points), len(walls)), dtype=bool)
-        for k, wall in enumerate(walls):
-            gap = np.maximum(np.maximum(wall.box[0] - points, points - wall.box[1]), 0.0)
-            close = np.linalg.norm(gap, axis=1) <= near
-            if close.any():
-                found[close, k] = nearest(wall, points[close]).distance <= near
-        return found
+        walls = tuple(face for group in self.groups if group.role == OTHER for face in group.faces)
+        return contacts_at(self.face, uv, weighed, walls, 2 * self.tool.radius + self.tolerance.cutter_clearance)
 
     def screen(self, axes: ArrayLike) -> Verdicts:
         """Verdicts on axes from a few contacts: cheap, and wrong only towards "free".
@@ -242,7 +188,7 @@ class Feasibility:
 
     def _points(self, face: Face) -> Array:
         count = max(6, 24 // len(self.groups[0].faces))
-        return face.evaluate(np.concatenate([face.grid(count, count), _around(face, 3 * count)])).point
+        return face.evaluate(np.concatenate([face.grid(count, count), around(face, 3 * count)])).point
 
     def quick(self, rows: Array) -> tuple[NDArray[np.int8], Array]:
         """Reason and amount (rad) of axes by limits and sampled normals alone.
@@ -451,20 +397,3 @@ class Feasibility:
             found = bounded(group.cells, self.tool, moves, group.required + most, 10 * COARSE, left_out)
             least = min(least, float((found.lower - group.required).min()))
         return least
-
-
-def _around(face: Face, count: int) -> Array:
-    """Points just inside along the loops of a face, (n, 2)."""
-    rows = []
-    total = sum(float(np.linalg.norm(np.diff(face.evaluate(np.vstack([loop, loop[:1]])).point, axis=0), axis=1).sum())
-                for loop in face.outline)
-    for loop in face.outline:
-        closed = np.vstack([loop, loop[:1]])
-        share = np.linspace(0.0, 1.0, 33)[:-1]
-        fine = (closed[:-1, None] * (1 - share[:, None]) + closed[1:, None] * share[:, None]).reshape(-1, 2)
-        fine = np.vstack([fine, closed[-1:]])
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(fine).point, axis=0), axis=1))])
-        wanted = max(8, round(count * length[-1] / total)) if total > 0 else 8
-        at = np.searchsorted(length, np.linspace(0, length[-1], wanted, endpoint=False))
-        rows += [fine[at], loop] if len(loop) <= wanted // 2 else [fine[at]]
-    return np.concatenate(rows)

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.orient.feasible import FREE, GOUGE, Feasibility
+from toolaxis.orient.feasible import Feasibility
+from toolaxis.orient.verdicts import FREE, GOUGE
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress

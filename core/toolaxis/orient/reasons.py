@@ -5,8 +5,9 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.orient.feasible import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Feasibility, Witness
+from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.plan.orientation import REASONS
 
 Array = NDArray[np.float64]

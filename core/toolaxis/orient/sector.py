@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.orient.feasible import FREE
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.planes import Plane, axis_at, initial_plane, sector, turned
 from toolaxis.orient.sphere import Candidate, counted, distinct, sound
+from toolaxis.orient.verdicts import FREE
 
 Array = NDArray[np.float64]
 
@@ -152,9 +152,11 @@ def roman_axis(ledger: Ledger, margin: float = radians(1.0)) -> Array:
 
     Notes
     -----
-    **Source**: [zhu2016] Sec. 2.2 and ref. 18; where both signs of x lead to a free axis, the cheaper one by screening.
+    **Source**: [zhu2016] Sec. 2.2 and ref. 18; the cone is that of normals all over the face; where both signs of x
+    lead to a free axis, the cheaper one by screening.
     """
-    first, normals = plane_of(ledger)
+    first, _ = plane_of(ledger)
+    normals = ledger.feasibility.normals.samples
     axes = [axis_at(plane, sector(plane, normals)[1] - margin) for plane in (first, turned(first, np.pi))]
     rows = ledger.look(np.stack(axes))
     free = ledger.reason[rows] == FREE

@@ -12,16 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.orient.feasible import BACK, FREE, LIMITS, WANDERS, Witness
+from toolaxis.orient.hunt import hunt
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import NormalField
 from toolaxis.orient.spiral import COVER, own_frame, ring, spiral
+from toolaxis.orient.verdicts import BACK, FREE, Witness
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 #: Spacing of the first axes, rad.
-SPACING = radians(7.5)
+SPACING = radians(10)
 #: Axes around which rings are laid, level by level.
 _BEAM = (14, 10, 8)
 #: Lobes are at least so far apart, rad.
@@ -33,13 +34,10 @@ _HOPELESS = 0.02
 #: Values closer than this are ties.
 TIE = 0.001
 _FINEST = radians(0.12)
-_MOST_EVALUATIONS = 1400
 #: Free axes so near a refused one are not tried, rad.
 _REPELLED = radians(0.15)
 #: Clearances closer than this are the same, mm.
 _SHARES = 0.25
-#: Seven discs of this share of a disc's radius, one in the middle, cover it on the sphere too.
-_SHRINK = 0.52
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +86,7 @@ def search(ledger: Ledger) -> list[Candidate]:
     frame = frame_of(field)
     ledger.look(np.concatenate([[field.mean, frame[2]], spiral(frame, SPACING)]))
     if not np.isfinite(ledger.price).any():
-        ledger.proven = hunt(ledger)
+        ledger.proven = hunt(ledger, 2, COVER * SPACING)
     if not np.isfinite(ledger.price).any():
         return []
     if indifferent(ledger):
@@ -387,36 +385,3 @@ def repaired(ledger: Ledger, refused: Candidate, found: Witness) -> Candidate | 
     order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
     start = _first_sound(ledger, refused.axis, order)
     return None if start is None else polish(ledger, start, 4 * _REPELLED, 2 * _REPELLED)
-
-
-def hunt(ledger: Ledger) -> bool:
-    """Divide the hemisphere where no axis was free, dropping what limits and normals forbid for certain.
-
-    Limits and angles to normals change no faster than the axis turns: a disc of axes is dropped when its middle misses
-    one of them by more than the disc's radius.
-
-    Parameters
-    ----------
-    ledger : Ledger
-
-    Returns
-    -------
-    bool
-        Whether it is proven that limits and normals leave no axis at all.
-    """
-    rows, radius, complete = np.arange(2, len(ledger.axes)), COVER * SPACING, True
-    while len(ledger.axes) < _MOST_EVALUATIONS and radius > radians(0.05):
-        certain = np.isin(ledger.reason[rows], (LIMITS, BACK, WANDERS)) & (ledger.amount[rows] > radius)
-        rows = rows[~certain]
-        if not len(rows):
-            return complete
-        order = np.lexsort((np.arange(len(rows)), ledger.amount[rows], ledger.reason[rows] <= BACK))
-        room = (_MOST_EVALUATIONS - len(ledger.axes)) // 12 + 1
-        complete &= len(rows) <= room
-        rows = rows[order[:room]]
-        found = ledger.look(np.concatenate([ring(axis, radius * 3**0.5 / 2) for axis in ledger.axes[rows]]))
-        rows = np.concatenate([rows, np.arange(found.start, found.stop)])
-        radius *= _SHRINK
-        if np.isfinite(ledger.price).any():
-            return False
-    return False
