@@ -101,9 +101,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
     """
     given = parser().parse_args(arguments)
+    with _Interrupt() as interrupt:
+        return _answer(given, interrupt)
+
+
+def command() -> NoReturn:
+    """Run the command as a process: before and after the work there is nothing that Ctrl-C could stop."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.exit(main())
+
+
+def _answer(given: argparse.Namespace, interrupt: "_Interrupt") -> int:
     try:
-        with _Interrupt() as interrupt:
-            code: int = import_module(given.module).run(given, interrupt.asked)
+        code: int = import_module(given.module).run(given, interrupt.asked)
         sys.stdout.flush()
         return code
     except (KeyboardInterrupt, Cancelled):
@@ -127,21 +137,30 @@ def _blames_input(reason: BaseException | None) -> bool:
     return isinstance(reason, InvalidInput | UnsupportedGeometry | MissingBackend) or _blames_input(reason.__cause__)
 
 
+class _Ended(KeyboardInterrupt):
+    """The second Ctrl-C.
+
+    A class of its own: where KeyboardInterrupt itself leaves code that ``exec`` runs (dataclasses are made so), Python
+    ends the process by the signal, whoever caught it since.
+    """
+
+
 class _Interrupt:
     """The first Ctrl-C asks the work to stop where it can be stopped; the second one ends it at once."""
 
     def __init__(self) -> None:
-        self._asked = False
+        self._pressed = 0
 
     def asked(self) -> bool:
         """Whether Ctrl-C was pressed."""
-        return self._asked
+        return self._pressed > 0
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        if self._asked:
-            raise KeyboardInterrupt
-        self._asked = True
-        print("toolaxis: stopping; Ctrl-C again ends at once", file=sys.stderr, flush=True)
+        self._pressed += 1
+        if self._pressed == 1:
+            os.write(2, b"toolaxis: stopping; Ctrl-C again ends at once\n")  # print may be what was interrupted
+        elif self._pressed == 2:  # a third one would only disturb the clearing up
+            raise _Ended
 
     def __enter__(self) -> "_Interrupt":
         try:
@@ -156,4 +175,4 @@ class _Interrupt:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    command()

@@ -89,8 +89,13 @@ def staged(target: Path) -> Iterator[Stage]:
     try:
         yield Stage(folder, target)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        _removed(made)
+        try:
+            shutil.rmtree(folder, ignore_errors=True)
+        except KeyboardInterrupt:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        finally:
+            _removed(made)
 
 
 def _made(folder: Path) -> list[Path]:

@@ -16,7 +16,7 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import sectors
-from toolaxis.orient.setting import OTHER, Group, Obstacles, grouped
+from toolaxis.orient.setting import OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import Candidate, repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import passes
@@ -70,7 +70,8 @@ class Task:
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The passes with an axis, cut out where the tool must not go.
 
-        Next to walls they begin and end without ramps: a ramp goes on along the feed, into the wall.
+        Next to walls and where the skin goes on beyond the face they begin and end without ramps: a ramp goes on along
+        the feed, into what stands there.
 
         Parameters
         ----------
@@ -80,7 +81,7 @@ class Task:
         worth, feasibility = self.worth, self.feasibility
         low, high = self.box
         height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
-        walls = any(group.role == OTHER for group in self.groups)
+        walls = any(group.role == OTHER or (group.role == SKIN and len(group.faces) > 1) for group in self.groups)
         return passes(worth.face, worth.tool, axis, worth.scallop, feed, direction=self.direction,
                       allowance=worth.allowance, reach=lambda uv: feasibility.reach(uv, axis),
                       tolerance=feasibility.tolerance,
