@@ -1,0 +1,171 @@
+"""Work off the GUI thread: one computation in a QThread, with progress by stage, cancel, and errors as sentences.
+
+The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded however
+often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from threading import Event
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore
+
+#: Interval at which progress is read, ms.
+_TICK = 80
+#: How long the end of the application waits for a computation that was told to stop, ms.
+_PATIENCE = 3000
+
+#: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
+_running: set["_Thread"] = set()
+
+
+class _Thread(QtCore.QThread):
+    """Runs a callable(progress); its outcome stays in attributes."""
+
+    def __init__(self, compute: Callable[[Any], Any]) -> None:
+        super().__init__()
+        self.compute = compute
+        self.stop = Event()
+        self.latest: tuple[str, float, float] | None = None
+        self.result: Any = None
+        self.message = ""
+        self.stopped = False
+
+    def run(self) -> None:
+        """Compute; called in the thread."""
+        try:
+            from toolaxis.errors import Cancelled, ToolAxisError
+            from toolaxis.progress import Progress
+        except ImportError as reason:
+            self.message = f"{reason}: install what is missing by the Addon Manager"
+            return
+        try:
+            self.result = self.compute(Progress(self._report, self.stop.is_set))
+        except Cancelled:
+            self.stopped = True
+        except ToolAxisError as reason:
+            self.message = sentence(reason)
+        except ImportError as reason:
+            self.message = f"{reason}: install what is missing by the Addon Manager"
+        except MemoryError:
+            self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
+        except Exception as reason:  # our own bug: the panel says so, the traceback is for the log
+            import traceback
+
+            self.message = f"an error inside Tool Axis ({type(reason).__name__}: {sentence(reason)}); please report it"
+            FreeCAD.Console.PrintLog(traceback.format_exc())
+
+    def _report(self, stage: str, done: float, total: float) -> None:
+        self.latest = (stage, done, total)
+
+
+def sentence(reason: BaseException) -> str:
+    """An error as one line without a stop at its end.
+
+    Parameters
+    ----------
+    reason : BaseException
+    """
+    text = " ".join(str(reason).split())
+    return (text or type(reason).__name__).rstrip(".")
+
+
+class Work(QtCore.QObject):
+    """One computation off the GUI thread.
+
+    Exactly one of `done`, `failed` and `cancelled` is emitted, on the GUI thread, unless the work is left alone.
+
+    Parameters
+    ----------
+    compute : callable
+        Called with a `toolaxis.progress.Progress` in another thread; it must touch no document and no widget.
+    parent : QObject, optional
+    """
+
+    progressed = QtCore.Signal(str, float)
+    """Stage, and the share that is done, 0 to 1; negative where it is not known."""
+    done = QtCore.Signal(object)
+    """What the callable returned."""
+    failed = QtCore.Signal(str)
+    """Why it could not be done, one sentence."""
+    cancelled = QtCore.Signal()
+
+    def __init__(self, compute: Callable[[Any], Any], parent: QtCore.QObject | None = None) -> None:
+        super().__init__(parent)
+        self._thread = _Thread(compute)
+        self._thread.finished.connect(self._ended)
+        self._timer = QtCore.QTimer(self)
+        self._timer.setInterval(_TICK)
+        self._timer.timeout.connect(self._tick)
+        self._told: tuple[str, float, float] | None = None
+        self.running = False
+
+    def start(self) -> "Work":
+        """Begin; returns at once."""
+        _running.add(self._thread)
+        self._thread.finished.connect(_keeper().sweep)
+        self.running = True
+        self._timer.start()
+        self._thread.start(QtCore.QThread.LowPriority)
+        return self
+
+    def cancel(self) -> None:
+        """Ask to stop; `cancelled` follows when the computation has noticed."""
+        self._thread.stop.set()
+
+    def leave(self) -> None:
+        """Ask to stop and never emit anything again: whoever listened is gone."""
+        self.cancel()
+        self.running = False
+        self._timer.stop()
+        with suppress(RuntimeError):
+            self._thread.finished.disconnect(self._ended)
+
+    def _tick(self) -> None:
+        latest = self._thread.latest
+        if latest is None or latest == self._told:
+            return
+        self._told = latest
+        stage, done, total = latest
+        self.progressed.emit(stage, min(max(done / total, 0.0), 1.0) if total > 0 else -1.0)
+
+    def _ended(self) -> None:
+        self._timer.stop()
+        self.running = False
+        thread = self._thread
+        if thread.message:
+            self.failed.emit(thread.message)
+        elif thread.stopped or (thread.result is None and thread.stop.is_set()):
+            self.cancelled.emit()
+        else:
+            self.done.emit(thread.result)
+
+
+class _Keeper(QtCore.QObject):
+    """Lets go of threads that have ended, on the GUI thread, and stops the others when the application ends."""
+
+    def sweep(self) -> None:
+        """Let go of threads that have ended."""
+        for thread in [thread for thread in _running if thread.isFinished()]:
+            thread.wait()
+            _running.discard(thread)
+
+
+@cache
+def _keeper() -> _Keeper:
+    keeper = _Keeper()
+    QtCore.QCoreApplication.instance().aboutToQuit.connect(stop_all)
+    return keeper
+
+
+def stop_all() -> None:
+    """Ask every computation to stop and wait for it a little, together a few seconds."""
+    for thread in tuple(_running):
+        thread.stop.set()
+    clock = QtCore.QElapsedTimer()
+    clock.start()
+    for thread in tuple(_running):
+        thread.wait(max(1, _PATIENCE - clock.elapsed()))
