@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.numeric.lambert import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.plan.orientation import REASONS, AxisMap
 from toolaxis.report.plots import VERMILION, figure
@@ -24,42 +25,11 @@ _MARKS = {"chosen": ("*", VERMILION, 15.0), "sectors [zhu2016]": ("P", "#CC79A7"
           "other lobes": ("D", "white", 6.5)}
 
 
-def equal_area(axes: ArrayLike, pole: ArrayLike, right: ArrayLike | None = None) -> Array:
-    """Lambert's equal-area projection of directions; the pole's hemisphere fills the unit disc.
-
-    Parameters
-    ----------
-    axes : (n, 3) array_like
-        Unit vectors.
-    pole : (3,) array_like
-        Maps to the centre.
-    right : (3,) array_like, optional
-        Direction of the map's x.
-
-    Returns
-    -------
-    (n, 2) array
-        Radius sqrt(2) sin(angle / 2): 1 at 90 degrees.
-    """
-    z = unit(pole)
-    x = perpendicular(z)[0] if right is None else unit(np.asarray(right) - np.dot(right, z) * z)
-    rows = np.asarray(axes, dtype=float).reshape(-1, 3)
-    height = np.clip(rows @ z, -1.0, 1.0)
-    flat = rows @ np.stack([x, np.cross(z, x)], axis=1)
-    size = np.linalg.norm(flat, axis=1)
-    radius = np.sqrt(np.maximum(1.0 - height, 0.0))
-    return np.asarray(flat / np.where(size > 0, size, 1.0)[:, None] * radius[:, None])
-
-
 def _directions(pole: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Unit vectors of the pixels of the disc, (size * size, 3), and which pixels lie on it."""
     line = (np.arange(_SIZE) + 0.5) / _SIZE * 2.0 - 1.0
-    x, y = (grid.reshape(-1) for grid in np.meshgrid(line, line))
-    square = x**2 + y**2
-    scale = np.sqrt(np.maximum(2.0 - square, 0.0))
-    up = np.cross(pole, right)
-    rows = (x * scale)[:, None] * right + (y * scale)[:, None] * up + (1.0 - square)[:, None] * pole
-    return rows, square <= 1.0
+    flat = np.stack([grid.reshape(-1) for grid in np.meshgrid(line, line)], axis=1)
+    return from_equal_area(flat, pole, right), (flat**2).sum(axis=1) <= 1.0
 
 
 def hemisphere_picture(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike],
