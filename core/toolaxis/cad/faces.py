@@ -1,0 +1,156 @@
+"""From the protocols of a kernel to plain records: every face once, with its trims, its edges and its bodies."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cad.borders import borders_of
+from toolaxis.cad.kernel import Box, KernelBody, KernelFace, KernelSurface
+from toolaxis.cad.records import FaceRecord, ShapeRecord
+from toolaxis.cad.surfaces import PlainSurface, convert, grid, map_of
+from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.shape.part import Body
+from toolaxis.tolerances import Tolerance
+
+Array = NDArray[np.float64]
+
+ENDLESS = 1e50
+NATURAL = 1e-7
+
+
+class EndlessFace(UnsupportedGeometry):
+    """A face of endless extent without trim loops: in a file, one that lost them."""
+
+
+def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
+                    tolerance: Tolerance | None = None) -> ShapeRecord:
+    """Everything toolaxis needs of a kernel shape.
+
+    Parameters
+    ----------
+    faces : sequence of KernelFace
+        In the kernel's order.
+    bodies : sequence of KernelBody
+    tolerance : Tolerance, optional
+        Its `trim` is the chord tolerance of loops and edges, as a share of the face's diagonal.
+
+    Raises
+    ------
+    InvalidInput
+        When there are no faces.
+    UnsupportedGeometry
+        When not one face can be converted.
+    """
+    if not faces:
+        raise InvalidInput("the CAD shape has no faces: give a solid, a shell or a face")
+    record = ShapeRecord()
+    share = (tolerance or Tolerance()).trim
+    for number, face in enumerate(faces, 1):
+        try:
+            converted, warnings = record_of_face(face, number, share)
+        except UnsupportedGeometry as reason:
+            record.endless += isinstance(reason, EndlessFace)
+            record.warnings.append(f"face {number} was left out: {reason}")
+        else:
+            record.faces.append(converted)
+            record.warnings += [f"face {number}: {text}" for text in warnings]
+    if not record.faces:
+        raise UnsupportedGeometry(f"none of the part's {len(faces)} faces can be used; {record.warnings[0]}")
+    _add_bodies(record, bodies)
+    record.borders, record.free = borders_of((item, faces[item.number - 1]) for item in record.faces)
+    return record
+
+
+def record_of_face(face: KernelFace, number: int = 1, share: float = 1e-5) -> tuple[FaceRecord, list[str]]:
+    """One kernel face as plain arrays, and warnings.
+
+    Parameters
+    ----------
+    face : KernelFace
+    number : int
+    share : float
+        Chord tolerance of the loops as a share of the face's diagonal.
+
+    Raises
+    ------
+    UnsupportedGeometry
+        When the face has no surface (it is only tessellated), is endless, or cannot be approximated.
+    """
+    surface = face.surface
+    if surface is None:
+        raise UnsupportedGeometry("it has a mesh but no surface: export the part with exact geometry")
+    loops, box = _kernel_loops(face, surface, share)
+    plain = convert(surface, box)
+    low, high = _domain(plain)
+    polygons = tuple(_kept_inside(plain.map.to_ours(polygon), low, high) for polygon in loops.polygons)
+    if _covers_domain(polygons, low, high):
+        polygons = ()
+    record = FaceRecord(number, plain.knots_u, plain.knots_v, plain.control, plain.degree, polygons, face.flip,
+                        loops.reversed, plain.kind, plain.tolerance, plain.map)
+    return record, loops.warnings
+
+
+def _kernel_loops(face: KernelFace, surface: KernelSurface, share: float) -> tuple[Loops, Box]:
+    """Loops in the kernel's parameters and the box they need."""
+    wires = face.wires
+    if not wires:
+        box = surface.domain
+        if max(abs(value) for value in box) > ENDLESS:
+            raise EndlessFace("it has no borders and no end: trim the face in the CAD system")
+        u0, u1, v0, v1 = box
+        return Loops([np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]])]), box
+    box = coarse_box(wires)
+    if not (box[0] < box[1] and box[2] < box[3]):
+        raise UnsupportedGeometry("its trim loops enclose no area: repair the face in the CAD system")
+    to_ours, periods = map_of(surface, box).to_ours, surface.periods
+    chord = share * float(np.linalg.norm(np.ptp(surface.points(grid(box, 7)), axis=0)))
+    warnings: list[str] = []
+    polygons = [chained([discretised(edge, to_ours, surface.tangents, chord) for edge in wire], periods, warnings)
+                for wire in wires]
+    loops = arranged(polygons, periods, warnings)
+    low, high = loops.polygons[0].min(axis=0), loops.polygons[0].max(axis=0)
+    return loops, (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+
+
+def _domain(plain: PlainSurface) -> tuple[Array, Array]:
+    pu, pv = plain.degree
+    low = np.array([plain.knots_u[pu], plain.knots_v[pv]])
+    return low, np.array([plain.knots_u[-pu - 1], plain.knots_v[-pv - 1]])
+
+
+def _kept_inside(loop: Array, low: Array, high: Array) -> Array:
+    """A loop that strays over the end of its surface, as inaccurate files have it, brought back to the end."""
+    if (loop >= low).all() and (loop <= high).all():
+        return loop
+    inside = np.clip(loop, low, high)
+    return np.asarray(inside[(inside != np.roll(inside, 1, axis=0)).any(axis=1)])
+
+
+def _covers_domain(polygons: tuple[Array, ...], low: Array, high: Array) -> bool:
+    """Whether a single loop is just the rectangle of the surface's domain."""
+    if len(polygons) != 1 or len(polygons[0]) < 4:
+        return False
+    place = (polygons[0] - low) / (high - low)
+    on_border = (np.minimum(np.abs(place), np.abs(place - 1)) <= NATURAL).any(axis=1)
+    corners = (np.minimum(np.abs(place), np.abs(place - 1)) <= NATURAL).all(axis=1)
+    return bool(on_border.all() and len(np.unique(np.round(place[corners]), axis=0)) == 4
+                and np.ptp(place, axis=0).max() <= 1 + 2 * NATURAL)
+
+
+def _add_bodies(record: ShapeRecord, bodies: Sequence[KernelBody]) -> None:
+    """Bodies as they are, of usable faces; solids that are inside out are turned over."""
+    usable = {face.number for face in record.faces}
+    for body in bodies:
+        own = tuple(number for number in body.faces if number in usable)
+        if body.kind == "faces" and not own:
+            continue
+        record.bodies.append(Body(body.kind, own, body.closed))
+        if body.inside_out and own:
+            record.warnings.append(f"the solid with face {own[0]} is inside out: its faces were turned over")
+            record.faces = [replace(face, flip=not face.flip) if face.number in own else face for face in record.faces]
+        if body.kind == "shell" and not body.closed and own:
+            which = f"faces {own[0]} to {own[-1]} form" if len(own) > 1 else f"face {own[0]} forms"
+            record.warnings.append(f"{which} an open shell: which side the material is on was taken from the file")
