@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.limits import parse_limits
+from toolaxis.job.axes import search_task
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.indexed import Task, task
+from toolaxis.orient.indexed import Task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import smallest_cap
 from toolaxis.orient.sector import roman_axis, sectors
@@ -50,7 +50,7 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     largest = max(done, key=lambda op: op.face.area, default=None)
     for index, op in enumerate(plan.operations):
         progress.report("drawing", index, len(plan.operations))
-        job = _task(plan, op, Progress(None, progress.cancelled))
+        job = search_task(plan, op, Progress(None, progress.cancelled))
         if op.orientation.map is not None:
             marks = {**_marks(op), **_baselines(plan, job, op is largest)}
             hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
@@ -95,15 +95,6 @@ def _marks(op: Operation) -> Mapping[str, ArrayLike]:
         marks["other lobes"] = np.array(lobes)
     marks["mean normal"] = _mean_normal(op.face)
     return marks
-
-
-def _task(plan: Plan, op: Operation, progress: Progress) -> Task:
-    """What the search for the operation's axis went by."""
-    words = plan.inputs.limits
-    limits = parse_limits(words) if ":" in words else None
-    return task(op.face, plan.tool, plan.inputs.scallop, limits,
-                [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
-                part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance, progress=progress)
 
 
 def _baselines(plan: Plan, job: Task, sectors_too: bool) -> Mapping[str, ArrayLike]:

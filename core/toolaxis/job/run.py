@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
+from toolaxis.job.axes import frame_of
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits
-from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import best_axis, combined
 from toolaxis.orient.indexed import task as search_task
@@ -144,7 +144,7 @@ class _Job:
             return Operation(index + 1, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
-        return Operation(index + 1, face, found, path, None if path is None else self._frame(face, found))
+        return Operation(index + 1, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
     def _searched(self, face: Face, progress: Progress) -> Orientation:
         return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
@@ -162,12 +162,3 @@ class _Job:
                            objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
                            tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
         return task.made(found.axis, found.feed)
-
-    def _frame(self, face: Face, found: Orientation) -> WorkCoordinates:
-        d = face.evaluate(face.grid(16, 16))
-        feeds = d.su if found.feed == "u" else d.sv
-        middle = d.point[int(np.argmin(np.linalg.norm(d.point - d.point.mean(axis=0), axis=1)))]
-        assert found.axis is not None
-        return work_coordinates(found.axis, feeds, self.datum, middle)
-
-

@@ -1,7 +1,7 @@
 """Work off the GUI thread: one computation in a QThread, with progress by stage, cancel, and errors as sentences.
 
-The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded however
-often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
+The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded,
+however often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
 """
 
 from collections.abc import Callable

@@ -1,0 +1,133 @@
+"""One operation of a plan with another axis: what it comes to, and the plan that takes it over."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.limits import AxisLimits, parse_limits
+from toolaxis.machine.setup import WorkCoordinates, work_coordinates
+from toolaxis.orient.indexed import Task, evaluate_axis, task
+from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.sector import roman_axis
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+
+def _limits(plan: Plan) -> AxisLimits | None:
+    return parse_limits(plan.inputs.limits) if ":" in plan.inputs.limits else None
+
+
+def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Task:
+    """What the search for an operation's axis went by.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+    progress : Progress
+    """
+    return task(op.face, plan.tool, plan.inputs.scallop, _limits(plan),
+                [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
+                part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
+                direction=plan.inputs.direction, progress=progress)
+
+
+def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:
+    """The axis that Roman's rule gives an operation, (3,); it may be forbidden.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+    progress : Progress
+    """
+    job = search_task(plan, op, progress)
+    return roman_axis(Ledger(job.feasibility, job.worth, progress))
+
+
+def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinates:
+    """The work coordinate system that an orientation gives a face, drawn in its middle.
+
+    Parameters
+    ----------
+    face : Face
+    found : Orientation
+        With an axis.
+    datum : (3,) array_like
+        Its origin, mm.
+    """
+    d = face.evaluate(face.grid(16, 16))
+    feeds = d.su if found.feed == "u" else d.sv
+    middle = d.point[int(np.argmin(np.linalg.norm(d.point - d.point.mean(axis=0), axis=1)))]
+    assert found.axis is not None
+    return work_coordinates(found.axis, feeds, datum, middle)
+
+
+def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None,
+             progress: Progress = NO_PROGRESS) -> Operation:
+    """The operation as it would be with a given axis, judged as the search judges its own.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+    axis : (3,) array_like
+        From tip to spindle, in the part's frame.
+    feed : "u" or "v", optional
+        The better one unless given.
+    progress : Progress
+
+    Returns
+    -------
+    Operation
+        With passes and frame where the axis may be used, and with the map and lobes of the search; without them, and
+        with the reason, where it may not.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    inputs = plan.inputs
+    found = evaluate_axis(op.face, plan.tool, axis, inputs.scallop, _limits(plan),
+                          [face for body in plan.obstacles for face in body.faces], feed, inputs.objective,
+                          part=plan.part, tolerance=inputs.tolerance, allowance=inputs.allowance, progress=progress)
+    progress.check()
+    found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
+    if found.axis is None:
+        return Operation(op.number, op.face, found)
+    path = search_task(plan, op, progress).made(found.axis, found.feed)
+    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum))
+
+
+def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
+    """The plan with some of its operations replaced.
+
+    Parameters
+    ----------
+    plan : Plan
+    chosen : mapping of int to Operation
+        By number.
+
+    Raises
+    ------
+    InvalidInput
+        When the plan has no operation of a number.
+    """
+    known = {op.number for op in plan.operations}
+    unknown = sorted(set(chosen) - known)
+    if unknown:
+        raise InvalidInput(f"operation {unknown[0]} is not in the plan: it has {len(known)}, numbered from 1")
+    operations = tuple(chosen.get(op.number, op) for op in plan.operations)
+    outcome = plan.outcome
+    if outcome != "cancelled":
+        outcome = "complete" if all(op.done for op in operations) else "incomplete"
+    return replace(plan, operations=operations, outcome=outcome)
