@@ -1,5 +1,6 @@
 """One way in for everything that can be a part."""
 
+import sys
 from os import PathLike, fspath
 from typing import Any
 
@@ -11,12 +12,12 @@ MESHES = ("trimesh", "meshio", "pyvista", "open3d", "stl")
 
 
 def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool = False) -> Part:
-    """A part from a STEP file or from an object of a CAD library.
+    """A part from a STEP file, from an object of a CAD library, or from a FreeCAD document.
 
     Parameters
     ----------
-    source : path, cadquery Workplane, Shape or Assembly, build123d object or list of them, TopoDS_Shape, Face,
-        list of Face, or Part
+    source : path, cadquery Workplane, Shape or Assembly, build123d object or list of them, TopoDS_Shape,
+        FreeCAD document object or Part.Shape, Face, list of Face, or Part
     time_limit : float, optional
         s that the CAD kernel may take over a file.
     accept_lost_faces : bool
@@ -38,6 +39,10 @@ def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool =
             raise InvalidInput("the path of the part is empty: name a STEP file")
         return read_step(source, time_limit, accept_lost_faces)
     family = type(source).__module__.split(".")[0]
+    if _is_freecad(source):
+        from toolaxis.cad.freecad import part_from
+
+        return part_from(source)
     if family in ("cadquery", "build123d", "OCP"):
         return _from_library(source, family)
     if isinstance(source, list | tuple):
@@ -48,6 +53,13 @@ def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool =
     kind = type(source)
     raise InvalidInput(f"cannot make a part of {kind.__module__}.{kind.__name__}: give a STEP path, a CadQuery or "
                        "build123d object, or a list of faces")
+
+
+def _is_freecad(source: Any) -> bool:
+    """Whether it is an object of a FreeCAD document or a shape of its Part module; loads nothing of it."""
+    freecad, shapes = sys.modules.get("FreeCAD"), sys.modules.get("Part")
+    kinds = (getattr(freecad, "DocumentObject", None), getattr(shapes, "Shape", None))
+    return any(kind is not None and isinstance(source, kind) for kind in kinds)
 
 
 def _from_library(source: Any, family: str) -> Part:
