@@ -72,7 +72,7 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
 
 
 class FreecadFace:
-    """A Part.Face, as `toolaxis.cad.kernel.KernelFace` asks; edges get their keys from a numbering of the whole shape."""
+    """A Part.Face, as `toolaxis.cad.kernel.KernelFace` asks; edges get their keys from the whole shape."""
 
     def __init__(self, face: Any, edges: Numbering) -> None:
         self.flip = face.Orientation == "Reversed"
@@ -187,9 +187,10 @@ def _chained(edges: list[FreecadEdge], periods: tuple[float, float]) -> list[Fre
 
 def _bodies(shape: Any, faces: Numbering) -> Iterator[KernelBody]:
     """Solids, then shells outside solids, then loose faces."""
-    solids, shells, loose = list(shape.Solids), [], []
+    shells: list[Any] = []
+    loose: list[Any] = []
     _collect(shape, shells, loose)
-    for solid in solids:
+    for solid in shape.Solids:
         yield KernelBody("solid", _numbers(solid.Faces, faces), True, _inside_out(solid))
     for shell in shells:
         yield KernelBody("shell", _numbers(shell.Faces, faces), bool(shell.isClosed()))
