@@ -9,7 +9,8 @@ from pathlib import Path
 
 import FreeCAD
 
-FOLDER = Path(__file__).resolve().parents[3] / "tests" / "workbench"
+CLONE = Path(__file__).resolve().parents[3]
+FOLDER = CLONE / "tests" / "workbench"
 
 
 def _case(path: Path):
@@ -19,7 +20,7 @@ def _case(path: Path):
             self.skipTest("pytest is not installed in FreeCAD's Python: pip install pytest")
         import pytest
 
-        status = pytest.main([str(path), "--rootdir", str(FOLDER.parents[1]), "-c", str(FOLDER.parents[1] / "setup.cfg"),
+        status = pytest.main([str(path), "--rootdir", str(CLONE), "-c", str(CLONE / "setup.cfg"),
                               "-p", "no:cacheprovider", "-q"])
         self.assertIn(status, (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED), f"{path.name} failed")
 

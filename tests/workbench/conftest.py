@@ -1,0 +1,147 @@
+"""Tests of the FreeCAD add-on: plain pytest inside FreeCAD; outside, each file is started in the real FreeCAD.
+
+Which FreeCAD that is says the environment variable TOOLAXIS_FREECAD: the beginning of a command that runs the rest of
+it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets the tests
+without a window.  Without the first, a FreeCAD that is installed is looked for; where there is none the tests are
+skipped, and the reason is printed.
+"""
+
+import json
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+INSIDE = find_spec("FreeCAD") is not None
+MARK = "TOOLAXIS-INNER "
+TIME_LIMIT, LONG_TIME_LIMIT = 420.0, 1800.0
+TAIL = 40
+INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
+
+
+def pytest_configure(config):
+    if INSIDE and "TOOLAXIS_INNER" in os.environ:
+        config.pluginmanager.register(Teller(), "toolaxis-teller")
+
+
+def pytest_pycollect_makemodule(module_path, parent):
+    return None if INSIDE else InnerFile.from_parent(parent, path=module_path)
+
+
+class Teller:
+    """Inside FreeCAD: tells in one line what became of each test, then leaves at once, before FreeCAD crashes."""
+
+    def __init__(self):
+        self.outcomes, self.status = {}, 1
+
+    def pytest_runtest_logreport(self, report):
+        if report.outcome != "passed" or (report.when == "call" and report.nodeid not in self.outcomes):
+            self.outcomes[report.nodeid] = [report.outcome, _tail(str(report.longrepr or ""))]
+
+    def pytest_collectreport(self, report):
+        if report.outcome != "passed":
+            self.outcomes[report.nodeid] = [report.outcome, _tail(str(report.longrepr))]
+
+    def pytest_sessionfinish(self, exitstatus):
+        self.status = int(exitstatus)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_unconfigure(self):
+        sys.__stdout__.write(f"\n{MARK}{json.dumps(self.outcomes)}\n")
+        for stream in (sys.stdout, sys.stderr, sys.__stdout__, sys.__stderr__):
+            stream.flush()
+        os._exit(self.status)
+
+
+class InnerFile(pytest.File):
+    """Outside: a file of tests that runs in FreeCAD."""
+
+    def collect(self):
+        yield InnerRun.from_parent(self, name="in FreeCAD", variable="TOOLAXIS_FREECAD")
+        if "gui" not in self.path.parts and os.environ.get("TOOLAXIS_FREECAD_OLD"):
+            yield InnerRun.from_parent(self, name="in the older FreeCAD", variable="TOOLAXIS_FREECAD_OLD")
+
+
+class InnerFailure(Exception):
+    """What the tests inside said."""
+
+
+class InnerRun(pytest.Item):
+    """Outside: one run of a file, as one test with the failures of all inside."""
+
+    def __init__(self, variable, **rest):
+        super().__init__(**rest)
+        self.variable = variable
+
+    def runtest(self):
+        long = self.config.getoption("--long")
+        arguments = ["-p", "no:cacheprovider", *(["--long"] if long else []), self.path.relative_to(ROOT).as_posix()]
+        command = command_for(self.variable, arguments, window="gui" in self.path.parts)
+        judge(*ended(command, LONG_TIME_LIMIT if long else TIME_LIMIT))
+
+    def repr_failure(self, excinfo):
+        told = isinstance(excinfo.value, InnerFailure)
+        return str(excinfo.value) if told else super().repr_failure(excinfo)
+
+    def reportinfo(self):
+        return self.path, None, f"{self.path.name} {self.name}"
+
+
+def command_for(variable, arguments, window):
+    """The whole command that runs pytest with some arguments in FreeCAD; skips where there is no FreeCAD."""
+    prefix = shlex.split(os.environ.get(variable, ""))
+    if prefix:
+        return [*prefix, "env", "TOOLAXIS_INNER=1", "python3", "-m", "pytest", *arguments]
+    found = next(filter(None, map(shutil.which, INSTALLED[window])), None)
+    reason = os.environ.get("TOOLAXIS_FREECAD_MISSING", "none is installed")
+    if found is None:
+        pytest.skip(f"no FreeCAD: {reason} (TOOLAXIS_FREECAD names one; see tests/workbench/conftest.py)")
+    if window and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        pytest.skip("no display for FreeCAD's window: run under Xvfb")
+    start = ROOT / "tests" / "workbench" / "start.py"
+    return ["env", "TOOLAXIS_INNER=1", f"TOOLAXIS_ARGUMENTS={json.dumps(arguments)}", found, str(start)]
+
+
+def ended(command, limit):
+    """What a command wrote and how it ended; after a limit of seconds it is ended with all that it started."""
+    process = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        return process.communicate(timeout=limit)[0].decode(errors="replace"), f"ended with {process.returncode}"
+    except subprocess.TimeoutExpired:
+        output = b""
+    for sign in (signal.SIGTERM, signal.SIGKILL):
+        os.killpg(process.pid, sign)
+        try:
+            output = process.communicate(timeout=15)[0]
+            break
+        except subprocess.TimeoutExpired:
+            continue
+    return output.decode(errors="replace"), f"did not end within {limit:.0f} s"
+
+
+def judge(output, ending):
+    """Fail with what failed inside, or where nothing ran; skip where all was skipped."""
+    line = next((line for line in reversed(output.splitlines()) if line.startswith(MARK)), None)
+    if line is None:
+        raise InnerFailure(f"FreeCAD {ending} without telling what its tests did; its last lines:\n{_tail(output)}")
+    outcomes = json.loads(line.removeprefix(MARK))
+    failures = [f"{name} failed inside FreeCAD\n{text}" for name, (kind, text) in outcomes.items() if kind == "failed"]
+    if failures:
+        raise InnerFailure("\n\n".join([*failures, f"{len(failures)} of {len(outcomes)} failed inside FreeCAD"]))
+    reasons = [text for kind, text in outcomes.values() if kind == "skipped"]
+    if not outcomes or ending not in ("ended with 0", "ended with 5"):
+        raise InnerFailure(f"no test failed inside FreeCAD, but it {ending}; its last lines:\n{_tail(output)}")
+    if len(reasons) == len(outcomes):
+        pytest.skip(f"all inside were skipped, the first because of {reasons[0]}")
+
+
+def _tail(text):
+    return "\n".join(text.splitlines()[-TAIL:])
