@@ -1,0 +1,18 @@
+"""The commands, one file each."""
+
+
+def register():
+    """Make the commands known to FreeCAD; their names in the order of the toolbar."""
+    import FreeCADGui
+
+    from .plan import PlanOrientations
+    from .recompute import Recompute
+    from .verify import Verify
+
+    commands = {"ToolAxis_PlanOrientations": PlanOrientations(), "ToolAxis_Verify": Verify(),
+                "ToolAxis_Recompute": Recompute()}
+    known = FreeCADGui.listCommands()
+    for name, command in commands.items():
+        if name not in known:
+            FreeCADGui.addCommand(name, command)
+    return list(commands)

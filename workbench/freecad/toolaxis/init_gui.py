@@ -1,0 +1,45 @@
+"""The workbench "Tool Axis" and its commands; nothing heavy is imported before a command runs."""
+
+import FreeCAD
+import FreeCADGui
+
+from . import RESOURCES
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+FreeCADGui.addLanguagePath(str(RESOURCES / "translations"))
+
+
+class ToolAxisWorkbench(FreeCADGui.Workbench):
+    """Tool orientations for multi-axis machining of sculptured surfaces."""
+
+    MenuText = QT_TRANSLATE_NOOP("Workbench", "Tool Axis")
+    ToolTip = QT_TRANSLATE_NOOP("Workbench", "Tool axes, work coordinate systems and passes for sculptured faces")
+    Icon = str(RESOURCES / "icons" / "toolaxis.svg")
+
+    def Initialize(self):
+        """Register the commands, once, when the workbench is first shown."""
+        from .commands import register
+
+        names = register()
+        self.appendToolbar(QT_TRANSLATE_NOOP("Workbench", "Tool Axis"), names)
+        self.appendMenu(QT_TRANSLATE_NOOP("Workbench", "&Tool Axis"), names)
+        self._names = names
+
+    def ContextMenu(self, recipient):
+        """Offer the commands where something is selected.
+
+        Parameters
+        ----------
+        recipient : str
+            "View" or "Tree".
+        """
+        if FreeCADGui.Selection.hasSelection():
+            self.appendContextMenu("Tool Axis", self._names)
+
+    def GetClassName(self):
+        """Name of the C++ class that a Python workbench has."""
+        return "Gui::PythonWorkbench"
+
+
+FreeCADGui.addWorkbench(ToolAxisWorkbench())

@@ -1,0 +1,277 @@
+"""The tab of the result: the map, axes tried by a click, what they cost, and the tool on its passes."""
+
+import FreeCAD
+import numpy as np
+from PySide import QtCore, QtWidgets
+
+from ..tasks import Work
+from .fields import fine_text, length_text
+from .hemisphere import HemisphereMap
+from .legend import Legend
+
+translate = FreeCAD.Qt.translate
+
+
+class AxisView(QtCore.QObject):
+    """Shows a plan and lets its axes be changed.
+
+    Parameters
+    ----------
+    form : QWidget
+        Of plan.ui.
+    preview : object
+        With `show(plan, op)`, `move(share)` and `clear()`.
+    """
+
+    changed = QtCore.Signal()
+    """The plan has another axis."""
+    told = QtCore.Signal(str)
+    """A sentence for the message line; empty to clear it."""
+    busy = QtCore.Signal(bool)
+
+    def __init__(self, form, preview):
+        super().__init__(form)
+        self.form, self.preview = form, preview
+        self.map, self.legend = HemisphereMap(form), Legend(form)
+        form.mapPlace.layout().addWidget(self.map)
+        form.legendPlace.layout().addWidget(self.legend)
+        self.plan = self.found = None
+        self.pictures = {}
+        self.tried = None
+        self.work = None
+        self.map.hovered.connect(form.pointer.setText)
+        self.map.picked.connect(self.try_axis)
+        form.lock.clicked.connect(self.lock)
+        form.best.clicked.connect(self.back_to_best)
+        form.operation.currentIndexChanged.connect(self._show_operation)
+        form.slide.valueChanged.connect(lambda value: self.preview.move(value / form.slide.maximum()))
+        self.clear()
+
+    @property
+    def operation(self):
+        """The operation whose map is shown; None without a plan."""
+        index = self.form.operation.currentIndex()
+        return self.plan.operations[index] if self.plan is not None and index >= 0 else None
+
+    def clear(self):
+        """Show no plan."""
+        self.leave()
+        self.plan, self.found, self.pictures = None, None, {}
+        self.form.operation.clear()
+        self._show_operation()
+
+    def show(self, plan, pictures):
+        """Show a plan.
+
+        Parameters
+        ----------
+        plan : toolaxis.plan.plan.Plan
+        pictures : dict of int to AxisPicture or None
+            By the operations' numbers.
+        """
+        self.plan, self.found, self.pictures = plan, plan, pictures
+        combo = self.form.operation
+        blocked = combo.blockSignals(True)
+        combo.clear()
+        combo.addItems([_title(op) for op in plan.operations])
+        undone = [k for k, op in enumerate(plan.operations) if not op.done]
+        combo.setCurrentIndex(undone[0] if undone else 0)
+        combo.blockSignals(blocked)
+        self._show_operation()
+
+    def leave(self):
+        """Stop trying an axis."""
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+            self.busy.emit(False)
+
+    def _show_operation(self, *_):
+        self.leave()
+        op = self.operation
+        self.tried = None
+        picture = self.pictures.get(op.number) if op is not None else None
+        self.map.show_picture(picture)
+        self.legend.show_picture(picture)
+        self.form.operation.setVisible(self.plan is not None and len(self.plan.operations) > 1)
+        self.form.pointer.setText("")
+        self._show_numbers()
+        if op is None or not op.done:
+            self.preview.clear()
+        else:
+            self.preview.show(self.plan, op)
+            self.preview.move(self.form.slide.value() / self.form.slide.maximum())
+
+    def _show_numbers(self):
+        op, form = self.operation, self.form
+        _fill(form.results, op, self.tried)
+        form.results.setVisible(op is not None)
+        form.cost.setText(self._cost())
+        form.reasons.setText("" if op is None else _sentences((self.tried or op).orientation))
+        form.lock.setEnabled(self.tried is not None and self.tried.done)
+        form.best.setEnabled(op is not None and op is not self._best(op))
+        for widget in (form.slide, form.slideLabel, form.lock, form.best):
+            widget.setVisible(op is not None)
+        form.slide.setEnabled(op is not None and (self.tried or op).done)
+
+    def _best(self, op):
+        return next(one for one in self.found.operations if one.number == op.number)
+
+    def _cost(self):
+        """What the tried axis costs against the best one, a sentence."""
+        if self.operation is None:
+            return ""
+        if self.tried is None:
+            return translate("ToolAxis", "Click on the map to try an axis.") if self.map.picture is not None else ""
+        found, best = self.tried.orientation, self._best(self.operation).orientation
+        if not self.tried.done:
+            return translate("ToolAxis", "This axis cannot be used.")
+        if best.axis is None:
+            return translate("ToolAxis", "This axis can be used.")
+        return translate("ToolAxis", "Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip "
+                                     "width.").format(found.passes - best.passes, _percent(found.length, best.length),
+                                                      _percent(found.average_strip_width, best.average_strip_width))
+
+    def try_axis(self, axis):
+        """Try an axis off the GUI thread.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        from toolaxis.job.axes import try_axis
+
+        plan, op = self.plan, self.operation
+        if op is None or not self.map.isEnabled():
+            return
+        self.leave()
+        self.map.show_tried(axis)
+        self.legend.show_picture(self.map.picture, tried=True)
+        self.busy.emit(True)
+        self.form.cost.setText(translate("ToolAxis", "Trying this axis..."))
+        self.work = Work(lambda progress: try_axis(plan, op, axis, progress=progress), self)
+        self.work.done.connect(self._tried)
+        self.work.failed.connect(self._failed)
+        self.work.cancelled.connect(lambda: self._failed(""))
+        self.work.start()
+
+    def _tried(self, operation):
+        self.work = None
+        self.tried = operation
+        self.busy.emit(False)
+        self._show_numbers()
+        if operation.done:
+            self.preview.show(self.plan, operation)
+            self.preview.move(self.form.slide.value() / self.form.slide.maximum())
+        else:
+            self.preview.clear()
+
+    def _failed(self, message):
+        self.work = None
+        self.tried = None
+        self.map.show_tried(None)
+        self.busy.emit(False)
+        self._show_numbers()
+        self.told.emit(message)
+
+    def lock(self):
+        """Take the tried axis over into the plan."""
+        if self.tried is not None and self.tried.done:
+            self._take(self.tried)
+
+    def back_to_best(self):
+        """Take the axis that the search found back into the plan."""
+        if self.operation is not None:
+            self._take(self._best(self.operation))
+
+    def _take(self, operation):
+        from toolaxis.job.axes import with_operations
+
+        self.plan = with_operations(self.plan, {operation.number: operation})
+        picture = self.pictures.get(operation.number)
+        if picture is not None:
+            picture.marks.pop("chosen", None)
+            if operation.done:
+                picture.marks["chosen"] = np.atleast_2d(operation.orientation.axis)
+        self._show_operation()
+        self.changed.emit()
+
+
+def _title(op):
+    text = translate("ToolAxis", "Face {}") if op.done else translate("ToolAxis", "Face {}: no axis")
+    return text.format(op.face.label)
+
+
+def _percent(value, base):
+    return 100 * (value / base - 1) if base > 0 else 0.0
+
+
+def outcome_name(outcome):
+    """The outcome of a search as the user reads it.
+
+    Parameters
+    ----------
+    outcome : str
+        One of `toolaxis.plan.orientation.OUTCOMES`.
+    """
+    return {"optimal": translate("ToolAxis", "optimal (proven)"), "feasible": translate("ToolAxis", "feasible"),
+            "infeasible": translate("ToolAxis", "infeasible (proven)"),
+            "not_found": translate("ToolAxis", "none found"),
+            "cancelled": translate("ToolAxis", "cancelled")}.get(outcome, outcome)
+
+
+def _sentences(found):
+    return "\n".join(f"{text[:1].upper()}{text[1:]}." for text in found.reasons)
+
+
+def _room(found, name):
+    if name not in found.clearance:
+        return translate("ToolAxis", "not checked")
+    value = found.clearance[name]
+    return length_text(value) if np.isfinite(value) else translate("ToolAxis", "far")
+
+
+def measures(found):
+    """Rows of the result table: (name, text) pairs.
+
+    Parameters
+    ----------
+    found : toolaxis.plan.orientation.Orientation
+    """
+    rows = [(translate("ToolAxis", "Outcome"), outcome_name(found.outcome))]
+    there = found.axis is not None
+    texts = [(translate("ToolAxis", "Passes"), lambda: str(found.passes)),
+             (translate("ToolAxis", "Strip width"), lambda: length_text(found.average_strip_width)),
+             (translate("ToolAxis", "Cutting length"), lambda: length_text(found.length)),
+             (translate("ToolAxis", "Gouge, at most"), lambda: fine_text(found.gouge)),
+             (translate("ToolAxis", "Cutter clearance"), lambda: _room(found, "cutter")),
+             (translate("ToolAxis", "Shank clearance"), lambda: _room(found, "shank")),
+             (translate("ToolAxis", "Holder clearance"), lambda: _room(found, "holder")),
+             (translate("ToolAxis", "Left to clean-up"), lambda: f"{100 * found.unreached:.1f} %"),
+             (translate("ToolAxis", "Axis"), lambda: "(" + ", ".join(f"{x + 0.0:.3f}" for x in found.axis) + ")")]
+    return rows + [(name, text() if there else "-") for name, text in texts]
+
+
+def _fill(table, op, tried):
+    """Fill the result table for an operation, with a column for the tried axis beside it."""
+    columns = [] if op is None else [(translate("ToolAxis", "Plan"), measures(op.orientation))]
+    if tried is not None:
+        columns.append((translate("ToolAxis", "Tried"), measures(tried.orientation)))
+    table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
+    table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
+    table.setColumnCount(len(columns))
+    table.setRowCount(len(columns[0][1]) if columns else 0)
+    table.setHorizontalHeaderLabels([name for name, _ in columns])
+    if columns:
+        table.setVerticalHeaderLabels([name for name, _ in columns[0][1]])
+    for k, (_, rows) in enumerate(columns):
+        for i, (_, text) in enumerate(rows):
+            item = QtWidgets.QTableWidgetItem(text)
+            item.setToolTip(text)
+            table.setItem(i, k, item)
+    table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
+    table.verticalHeader().setDefaultSectionSize(20)
+    table.verticalHeader().setMinimumSectionSize(18)
+    height = table.horizontalHeader().sizeHint().height() + 20 * table.rowCount() + 4
+    table.setMinimumHeight(height)
+    table.setMaximumHeight(height)

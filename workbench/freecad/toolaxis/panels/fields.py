@@ -1,0 +1,271 @@
+"""Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder, lists of faces and bodies."""
+
+import FreeCAD
+import FreeCADGui
+from FreeCAD import Units
+from PySide import QtCore, QtWidgets
+
+from .. import RESOURCES
+
+translate = FreeCAD.Qt.translate
+
+_DATA = QtCore.Qt.UserRole
+
+
+def load_form(name):
+    """The widget of a layout file.
+
+    Parameters
+    ----------
+    name : str
+        Without its ending.
+    """
+    return FreeCADGui.PySideUic.loadUi(str(RESOURCES / "ui" / f"{name}.ui"))
+
+
+def length_text(value):
+    """A length as FreeCAD writes it.
+
+    Parameters
+    ----------
+    value : float
+        mm
+    """
+    return Units.Quantity(float(value), Units.Length).UserString
+
+
+def fine_text(value):
+    """A length that may be thousandths of a millimetre, with enough digits whatever FreeCAD's decimals are.
+
+    Parameters
+    ----------
+    value : float
+        mm
+    """
+    schema_is_metric = "in" not in length_text(10.0)
+    return f"{value:.4f} mm" if schema_is_metric else f"{value / 25.4:.5f} in"
+
+
+class QuantityField:
+    """A Gui::QuantitySpinBox, read and set in one unit.
+
+    Parameters
+    ----------
+    widget : QWidget
+    unit : str
+        The unit of `value`, for instance "mm", "deg" or "mm/min".
+    """
+
+    def __init__(self, widget, unit="mm"):
+        self.widget, self.unit = widget, unit
+        self._one = Units.Quantity(f"1 {unit}")
+        widget.setProperty("minimum", -1e9)
+        widget.setProperty("maximum", 1e9)
+
+    @property
+    def value(self):
+        """The number in the field's unit."""
+        return float(self.widget.property("rawValue")) / self._one.Value
+
+    @value.setter
+    def value(self, number):
+        self.widget.setProperty("rawValue", float(number) * self._one.Value)
+
+    def on_change(self, slot):
+        """Call a slot without arguments whenever the value changes.
+
+        Parameters
+        ----------
+        slot : callable
+        """
+        self.widget.connect(self.widget, QtCore.SIGNAL("valueChanged(double)"), lambda _: slot())
+
+
+class OutlineTable:
+    """Rows of diameter and height that make the outline of a shank or holder.
+
+    Parameters
+    ----------
+    form : QWidget
+    name : str
+        "shank" or "holder": the table's name, and the stem of its buttons' names.
+    """
+
+    def __init__(self, form, name):
+        self.name = name
+        self.table = form.findChild(QtWidgets.QTableWidget, name)
+        self.table.setColumnCount(2)
+        self.table.setHorizontalHeaderLabels([translate("ToolAxis", "Diameter"), translate("ToolAxis", "Height")])
+        self.table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
+        form.findChild(QtWidgets.QPushButton, f"{name}Add").clicked.connect(self._add)
+        form.findChild(QtWidgets.QPushButton, f"{name}Remove").clicked.connect(self._remove)
+        self._slot = None
+
+    def on_change(self, slot):
+        """Call a slot without arguments whenever a row changes.
+
+        Parameters
+        ----------
+        slot : callable
+        """
+        self._slot = slot
+        self.table.itemChanged.connect(lambda _: slot())
+
+    @property
+    def rows(self):
+        """(radius, height) rows, mm.
+
+        Raises
+        ------
+        ValueError
+            With a sentence, where a cell is no length.
+        """
+        return tuple((self._length(i, 0) / 2, self._length(i, 1)) for i in range(self.table.rowCount()))
+
+    @rows.setter
+    def rows(self, rows):
+        blocked = self.table.blockSignals(True)
+        self.table.setRowCount(0)
+        for radius, height in rows:
+            self._append(2 * radius, height)
+        self.table.blockSignals(blocked)
+
+    def _append(self, diameter, height):
+        row = self.table.rowCount()
+        self.table.insertRow(row)
+        for column, value in enumerate((diameter, height)):
+            self.table.setItem(row, column, QtWidgets.QTableWidgetItem(length_text(value)))
+
+    def _length(self, row, column):
+        item = self.table.item(row, column)
+        text = item.text().strip() if item is not None else ""
+        try:
+            quantity = Units.Quantity(text)
+            if quantity.Unit == Units.Unit():  # a bare number is in the unit that FreeCAD shows
+                quantity = Units.Quantity(text + " " + Units.Quantity(1.0, Units.Length).getUserPreferred()[2])
+            if not text or quantity.Unit != Units.Length:
+                raise ValueError
+        except Exception as reason:  # FreeCAD's parser raises an exception of its own kind
+            column_name = self.table.horizontalHeaderItem(column).text().lower()
+            raise ValueError(translate("ToolAxis", "{} row {}: {} '{}' is not a length").format(
+                self.name, row + 1, column_name, text)) from reason
+        return float(quantity.Value)
+
+    def _add(self):
+        count = self.table.rowCount()
+        if count == 0:
+            rows = [(40.0, 0.0), (40.0, 40.0)] if self.name == "holder" else [(12.0, 0.0), (12.0, 60.0)]
+        else:
+            try:
+                radius, height = self.rows[-1]
+                rows = [(2 * radius, height + 20.0)]
+            except ValueError:
+                rows = [(40.0, 40.0)]
+        for diameter, height in rows:
+            self._append(diameter, height)
+        if self._slot:
+            self._slot()
+
+    def _remove(self):
+        chosen = sorted({index.row() for index in self.table.selectedIndexes()}, reverse=True)
+        for row in chosen or ([self.table.rowCount() - 1] if self.table.rowCount() else []):
+            self.table.removeRow(row)
+        if self._slot:
+            self._slot()
+
+
+class FaceList:
+    """The list of faces to machine, as (object, "Face7").
+
+    Parameters
+    ----------
+    widget : QListWidget
+    """
+
+    def __init__(self, widget):
+        self.widget = widget
+
+    @property
+    def faces(self):
+        """What the list holds."""
+        return tuple(self.widget.item(i).data(_DATA) for i in range(self.widget.count()))
+
+    @faces.setter
+    def faces(self, faces):
+        self.widget.clear()
+        self.add(faces)
+
+    def add(self, faces):
+        """Add what is not there yet; how many were added.
+
+        Parameters
+        ----------
+        faces : sequence of (object, str)
+        """
+        known = {(thing.Document.Name, thing.Name, sub) for thing, sub in self.faces}
+        added = 0
+        for thing, sub in faces:
+            if (thing.Document.Name, thing.Name, sub) not in known:
+                known.add((thing.Document.Name, thing.Name, sub))
+                item = QtWidgets.QListWidgetItem(f"{thing.Label}: {sub}", self.widget)
+                item.setData(_DATA, (thing, sub))
+                added += 1
+        return added
+
+    def remove_marked(self):
+        """Remove the marked entries."""
+        for item in self.widget.selectedItems():
+            self.widget.takeItem(self.widget.row(item))
+
+    def remove_object(self, name):
+        """Remove the faces of an object that is about to be deleted; how many there were.
+
+        Parameters
+        ----------
+        name : str
+        """
+        kept = [(thing, sub) for thing, sub in self.faces if thing.Name != name]
+        gone = self.widget.count() - len(kept)
+        if gone:
+            self.faces = kept
+        return gone
+
+
+class BodyList:
+    """The list of bodies that may be avoided, with ticks.
+
+    Parameters
+    ----------
+    widget : QListWidget
+    """
+
+    def __init__(self, widget):
+        self.widget = widget
+        widget.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
+
+    def offer(self, bodies, ticked):
+        """Fill the list.
+
+        Parameters
+        ----------
+        bodies, ticked : sequence of objects
+        """
+        names = {body.Name for body in ticked}
+        blocked = self.widget.blockSignals(True)
+        self.widget.clear()
+        for body in bodies:
+            item = QtWidgets.QListWidgetItem(body.Label, self.widget)
+            item.setFlags(QtCore.Qt.ItemIsEnabled | QtCore.Qt.ItemIsUserCheckable)
+            item.setCheckState(QtCore.Qt.Checked if body.Name in names else QtCore.Qt.Unchecked)
+            item.setData(_DATA, body)
+        if not bodies:
+            item = QtWidgets.QListWidgetItem(translate("ToolAxis", "no other body in the document"), self.widget)
+            item.setFlags(QtCore.Qt.NoItemFlags)
+        self.widget.blockSignals(blocked)
+
+    @property
+    def ticked(self):
+        """The bodies to avoid."""
+        items = (self.widget.item(i) for i in range(self.widget.count()))
+        return tuple(item.data(_DATA) for item in items
+                     if item.data(_DATA) is not None and item.checkState() == QtCore.Qt.Checked)

@@ -1,0 +1,243 @@
+"""The fields of the planning panel: what they hold, and in one sentence why that is not possible."""
+
+from math import degrees
+
+import FreeCAD
+from PySide import QtWidgets
+
+from .fields import BodyList, FaceList, OutlineTable, QuantityField
+
+translate = FreeCAD.Qt.translate
+
+KINDS = ("torus", "ball", "flat", "tapered")
+OBJECTIVES = ("length", "passes")
+DIRECTIONS = ("zigzag", "climb", "conventional")
+_NO_LIMITS, _CONE, _ROTARY = range(3)
+
+
+class PlanForm:
+    """Reads and fills the fields of plan.ui.
+
+    Parameters
+    ----------
+    form : QWidget
+    """
+
+    def __init__(self, form):
+        self.form = form
+        self.faces = FaceList(self._find("faces", QtWidgets.QListWidget))
+        self.avoid = BodyList(self._find("avoid", QtWidgets.QListWidget))
+        self.shank, self.holder = OutlineTable(form, "shank"), OutlineTable(form, "holder")
+        lengths = ("diameter", "corner", "stickout", "scallop", "allowance")
+        angles = ("taper", "cone", "tiltLow", "tiltHigh", "turnLow", "turnHigh")
+        self.quantities = {name: QuantityField(self._find(name)) for name in lengths}
+        self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
+        self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min")
+        self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
+        self.limits = self._find("limits", QtWidgets.QComboBox)
+        self.spindle = self._find("spindle", QtWidgets.QSpinBox)
+        self.middle = [self._find(name, QtWidgets.QDoubleSpinBox) for name in ("limitX", "limitY", "limitZ")]
+        self._other_limits = ""
+        self.kind.currentIndexChanged.connect(self._show_what_counts)
+        self.limits.currentIndexChanged.connect(self._show_what_counts)
+        self._show_what_counts()
+
+    def _find(self, name, kind=QtWidgets.QWidget):
+        found = self.form.findChild(kind, name)
+        assert found is not None, name
+        return found
+
+    def on_change(self, slot):
+        """Call a slot without arguments whenever a field changes.
+
+        Parameters
+        ----------
+        slot : callable
+        """
+        for field in self.quantities.values():
+            field.on_change(slot)
+        for table in (self.shank, self.holder):
+            table.on_change(slot)
+        for name in ("kind", "limits", "objective", "direction"):
+            self._find(name, QtWidgets.QComboBox).currentIndexChanged.connect(lambda _: slot())
+        for spin in (*self.middle, self.spindle):
+            spin.valueChanged.connect(lambda _: slot())
+        self.avoid.widget.itemChanged.connect(lambda _: slot())
+        for model in (self.faces.widget.model(),):
+            model.rowsInserted.connect(lambda *_: slot())
+            model.rowsRemoved.connect(lambda *_: slot())
+
+    def _show_what_counts(self, *_):
+        kind, limits = KINDS[self.kind.currentIndex()], self.limits.currentIndex()
+        shown = {"corner": kind in ("torus", "tapered"), "taper": kind == "tapered", "cone": limits == _CONE,
+                 "limitX": limits != _NO_LIMITS and limits < 3, "tiltLow": limits == _ROTARY,
+                 "turnLow": limits == _ROTARY}
+        members = {"limitX": ("limitX", "limitY", "limitZ"), "tiltLow": ("tiltLow", "tiltHigh"),
+                   "turnLow": ("turnLow", "turnHigh")}
+        for name, visible in shown.items():
+            for member in (*members.get(name, (name,)), f"{name}Label"):
+                self._find(member).setVisible(visible)
+
+    def set_tool(self, text):
+        """Show the sizes of a cutter.
+
+        Parameters
+        ----------
+        text : str
+            Its short form, "torus:12x1".
+        """
+        kind, _, sizes = text.partition(":")
+        numbers = [float(size) for size in sizes.split("x")]
+        self.kind.setCurrentIndex(KINDS.index(kind))
+        self.quantities["diameter"].value = numbers[0]
+        if len(numbers) > 1:
+            self.quantities["corner"].value = numbers[1]
+        if len(numbers) > 2:
+            self.quantities["taper"].value = numbers[2]
+
+    def take_tool(self, tool):
+        """Show a tool of the document: its cutter, and what is known of shank, holder and stick-out.
+
+        Parameters
+        ----------
+        tool : toolaxis.tools.assembly.Tool
+        """
+        self.set_tool(tool.name)
+        if tool.stickout is not None:
+            self.quantities["stickout"].value = tool.stickout
+        if tool.shank is not None:
+            self.shank.rows = tool.shank.tolist()
+        if tool.holder is not None:
+            self.holder.rows = tool.holder.tolist()
+
+    @property
+    def tool_text(self):
+        """The cutter's short form."""
+        kind = KINDS[self.kind.currentIndex()]
+        names = {"torus": ("diameter", "corner"), "ball": ("diameter",), "flat": ("diameter",),
+                 "tapered": ("diameter", "corner", "taper")}[kind]
+        return f"{kind}:" + "x".join(f"{self.quantities[name].value:.12g}" for name in names)
+
+    @property
+    def limits_text(self):
+        """The axis limits in their short form; empty for none."""
+        choice = self.limits.currentIndex()
+        x, y, z = (f"{spin.value():.12g}" for spin in self.middle)
+        values = {name: f"{field.value:.12g}" for name, field in self.quantities.items()}
+        if choice == _CONE:
+            return f"cone:{x},{y},{z},{values['cone']}"
+        if choice == _ROTARY:
+            return (f"rotary:tilt={values['tiltLow']}..{values['tiltHigh']},turn={values['turnLow']}.."
+                    f"{values['turnHigh']},z={x}/{y}/{z}" + self._turn_zero())
+        return self._other_limits if choice > _ROTARY else ""
+
+    def _turn_zero(self):
+        """Where turn 0 points, when the middle lies along x and the usual +x has no direction across it."""
+        x, y, z = (spin.value() for spin in self.middle)
+        return ",x=0/1/0" if abs(y) + abs(z) < 1e-6 * abs(x) else ""
+
+    def set_limits(self, text):
+        """Show axis limits; a form that the fields cannot hold stays as a choice of its own.
+
+        Parameters
+        ----------
+        text : str
+            Short form, or empty.
+        """
+        from toolaxis.machine.limits import Cone, RotaryRanges, parse_limits
+
+        defaults = {"cone": 60.0, "tiltLow": 0.0, "tiltHigh": 90.0, "turnLow": -180.0, "turnHigh": 180.0}
+        found = parse_limits(text) if text else None
+        middle, choice = (0.0, 0.0, 1.0), _NO_LIMITS
+        if isinstance(found, Cone):
+            middle, choice, defaults["cone"] = found.direction, _CONE, degrees(found.tilt)
+        elif isinstance(found, RotaryRanges):
+            middle, choice = found.z, _ROTARY
+            for name in ("tilt", "turn"):
+                defaults[f"{name}Low"], defaults[f"{name}High"] = (degrees(v) for v in getattr(found, name))
+        elif text:
+            self._other_limits, choice = text, 3
+            self.limits.addItem(text)
+        for spin, value in zip(self.middle, middle, strict=True):
+            spin.setValue(value)
+        for name, value in defaults.items():
+            self.quantities[name].value = value
+        self.limits.setCurrentIndex(choice)
+
+    def fill(self, inputs):
+        """Show what a job was, or should be, given.
+
+        Parameters
+        ----------
+        inputs : freecad.toolaxis.bridge.Inputs
+        """
+        self.faces.faces = inputs.faces
+        self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
+        self.set_tool(inputs.tool)
+        self.shank.rows, self.holder.rows = inputs.shank or (), inputs.holder or ()
+        for name in ("stickout", "scallop", "allowance", "feedrate"):
+            self.quantities[name].value = getattr(inputs, name) or 0.0
+        self.spindle.setValue(int(inputs.spindle))
+        self._find("objective", QtWidgets.QComboBox).setCurrentIndex(OBJECTIVES.index(inputs.objective))
+        self._find("direction", QtWidgets.QComboBox).setCurrentIndex(DIRECTIONS.index(inputs.direction))
+        self.set_limits(inputs.limits)
+
+    def read(self):
+        """What the fields hold, as keyword arguments of `freecad.toolaxis.bridge.Inputs`.
+
+        Raises
+        ------
+        ValueError
+            With a sentence, where a cell of a table is no length.
+        """
+        return {"faces": self.faces.faces, "tool": self.tool_text, "shank": self.shank.rows,
+                "holder": self.holder.rows, "stickout": self.quantities["stickout"].value,
+                "scallop": self.quantities["scallop"].value, "allowance": self.quantities["allowance"].value,
+                "limits": self.limits_text, "obstacles": self.avoid.ticked,
+                "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
+                "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
+                "feedrate": self.quantities["feedrate"].value, "spindle": float(self.spindle.value())}
+
+    def refusal(self):
+        """Why the fields cannot be computed with, one sentence; empty where they can."""
+        from toolaxis.errors import ToolAxisError
+
+        try:
+            check(self.read())
+        except (ToolAxisError, ValueError) as reason:
+            return " ".join(str(reason).split()).rstrip(".")
+        if not self.faces.faces:
+            return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
+        return ""
+
+
+def check(values):
+    """Check what a job is given, without its faces.
+
+    Parameters
+    ----------
+    values : dict
+        As `PlanForm.read` gives it.
+
+    Raises
+    ------
+    InvalidInput
+        With quantity, value, rule and remedy.
+    """
+    from toolaxis.errors import InvalidInput
+    from toolaxis.machine.limits import parse_limits
+    from toolaxis.plan.plan import Inputs
+    from toolaxis.tools.assembly import Tool
+
+    body = {name: [list(row) for row in values[name]] for name in ("shank", "holder") if values[name]}
+    if values["stickout"] <= 0:
+        raise InvalidInput(f"stick-out is {values['stickout']:g} mm: it must be above zero")
+    tool = Tool.parse(values["tool"], stickout=values["stickout"], **body)
+    inputs = Inputs(values["scallop"], values["allowance"], objective=values["objective"],
+                    direction=values["direction"], limits=values["limits"], feedrate=values["feedrate"],
+                    spindle=values["spindle"])
+    inputs.check_tool(tool)
+    if values["limits"]:
+        parse_limits(values["limits"])
+
+

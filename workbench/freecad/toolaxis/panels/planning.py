@@ -1,0 +1,299 @@
+"""The task panel of Plan Orientations: fields, Compute, the map, and OK as one undo step."""
+
+from contextlib import suppress
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtWidgets
+
+from .. import bridge
+from ..tasks import Work, sentence
+from . import palette
+from .axisview import AxisView
+from .fields import load_form
+from .planform import PlanForm
+from .preview import Preview
+from .selected import bodies_in, faces_of, tools_in
+from .watching import Watch
+
+translate = FreeCAD.Qt.translate
+
+_TYPED = 0
+
+
+class PlanPanel:
+    """FreeCAD calls accept, reject and the functions about buttons; everything else is the panel's own.
+
+    Parameters
+    ----------
+    document : App.Document
+    inputs : freecad.toolaxis.bridge.Inputs, optional
+        What the fields show at first; sensible defaults for the selection unless given.
+    operation : object, optional
+        The operation that is planned again.
+    """
+
+    def __init__(self, document, inputs=None, operation=None):
+        self.operation = operation
+        self.document = document
+        self.form = load_form("plan")
+        self.fields = PlanForm(self.form)
+        self.preview = Preview(document)
+        self.view = AxisView(self.form, self.preview)
+        self.work = self.computed = self.buttons = None
+        self.over = False
+        self._fill(inputs)
+        self._connect()
+        self.watch = Watch(document, self)
+        self._changed()
+
+    # what FreeCAD calls
+
+    def getStandardButtons(self):
+        """OK and Cancel."""
+        return QtWidgets.QDialogButtonBox.Ok | QtWidgets.QDialogButtonBox.Cancel
+
+    def modifyStandardButtons(self, box):
+        """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan."""
+        self.buttons = box
+        self._show_state()
+
+    def isAllowedAlterDocument(self):
+        """Other commands may change the document meanwhile; the panel notices."""
+        return True
+
+    def accept(self):
+        """Put the plan into the document, as one undo step; refused without a plan."""
+        if not self.ready:
+            return False
+        inputs, plan = self.computed, self.view.plan
+        try:
+            bridge.apply(self.document, inputs, plan)
+        except Exception as reason:
+            self._tell(sentence(reason), bad=True)
+            FreeCAD.Console.PrintLog(f"{reason!r}\n")
+            return False
+        self._close()
+        return True
+
+    def reject(self):
+        """Stop what runs and leave the document as it is."""
+        self._close()
+        return True
+
+    # state
+
+    @property
+    def ready(self):
+        """Whether there is a plan for what the fields hold, with an axis for at least one face."""
+        plan = self.view.plan
+        return (plan is not None and self.work is None and self.computed is not None
+                and any(op.done for op in plan.operations))
+
+    def _fill(self, inputs):
+        faces, problems = faces_of(FreeCADGui.Selection.getSelectionEx(self.document.Name))
+        if inputs is None:
+            inputs = bridge.defaults(self.document, faces)
+        self.tools = tools_in(self.document)
+        self.form.tool.addItem(translate("ToolAxis", "typed in below"))
+        self.form.tool.addItems([name for name, _ in self.tools])
+        self.fields.fill(inputs)
+        bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
+        self.fields.avoid.offer(bodies, inputs.obstacles)
+        self.problem = "; ".join(problems)
+
+    def _connect(self):
+        form = self.form
+        self.fields.on_change(self._changed)
+        form.addFaces.clicked.connect(self._add_faces)
+        form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
+        form.faces.itemSelectionChanged.connect(self._point_out)
+        form.tool.activated.connect(self._tool_chosen)
+        form.compute.clicked.connect(self.compute)
+        form.stop.clicked.connect(self.stop)
+        self.view.changed.connect(self._show_state)
+        self.view.told.connect(lambda text: self._tell(text, bad=True))
+
+    def _add_faces(self):
+        faces, problems = faces_of(FreeCADGui.Selection.getSelectionEx(self.document.Name))
+        nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
+        self.problem = "; ".join(problems) or ("" if faces else nothing)
+        self.fields.faces.add(faces)
+        parts = [thing for thing, _ in self.fields.faces.faces]
+        self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
+        self._changed()
+
+    def _point_out(self):
+        """Select in the 3D view what is marked in the list."""
+        FreeCADGui.Selection.clearSelection(self.document.Name)
+        for item in self.form.faces.selectedItems():
+            thing, name = item.data(QtCore.Qt.UserRole)
+            FreeCADGui.Selection.addSelection(self.document.Name, thing.Name, name)
+
+    def _tool_chosen(self, index):
+        if index == _TYPED:
+            return
+        try:
+            found = self.tools[index - 1][1]
+            self.fields.take_tool(bridge.tool_from(found))
+        except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
+            self.form.tool.setCurrentIndex(_TYPED)
+            self.problem = sentence(reason)
+        self._changed()
+
+    def _changed(self):
+        """Something in the fields is different: check it, and lock OK until it is computed again."""
+        if self.work is None:
+            self.computed = None
+        self.refusal = self.fields.refusal()
+        self._show_state()
+
+    def _show_state(self):
+        form, computing = self.form, self.work is not None
+        form.compute.setEnabled(not computing and not self.refusal)
+        form.stop.setEnabled(computing)
+        form.progress.setVisible(computing)
+        for tab in (form.jobTab, form.toolTab, form.limitsTab, self.view.map):
+            tab.setEnabled(not computing)
+        if self.buttons is not None:
+            with suppress(RuntimeError):
+                self.buttons.button(QtWidgets.QDialogButtonBox.Ok).setEnabled(self.ready)
+        if not computing:
+            self._tell(*self._state())
+
+    def _state(self):
+        """The sentence that tells how things stand, and whether it is bad."""
+        if self.problem:
+            return self.problem, True
+        if self.refusal:
+            return self.refusal, bool(self.fields.faces.faces)
+        plan = self.view.plan
+        if plan is None:
+            return translate("ToolAxis", "Press Compute to find the axes."), False
+        if self.computed is None:
+            return translate("ToolAxis", "Something has changed: compute again."), True
+        done = sum(op.done for op in plan.operations)
+        if plan.outcome == "cancelled":
+            return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
+                len(plan.operations)), True
+        if done < len(plan.operations):
+            return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(
+                done, len(plan.operations)), True
+        return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
+
+    def _tell(self, text, bad=False):
+        label = self.form.message
+        dark = palette.is_dark(label.palette())
+        colour = ("#ff9e80" if dark else "#a33c00") if bad else ""
+        label.setStyleSheet(f"color: {colour};" if colour else "")
+        label.setText(text if not text or text.endswith(".") else f"{text}.")
+
+    # computing
+
+    def compute(self):
+        """Compute off the GUI thread; refused while the fields are not right."""
+        self.problem = ""
+        self.refusal = self.fields.refusal()
+        if self.refusal or self.work is not None:
+            self._show_state()
+            return
+        inputs = bridge.Inputs(**self.fields.read())
+        self.view.leave()
+        try:
+            task = bridge.task(inputs)
+        except Exception as reason:
+            self.problem = sentence(reason)
+            self._show_state()
+            return
+        self.work = Work(lambda progress: _planned(task, progress), self.form)
+        self.work.progressed.connect(self._progressed)
+        self.work.done.connect(lambda found: self._computed(inputs, *found))
+        self.work.failed.connect(self._not_computed)
+        self.work.cancelled.connect(lambda: self._not_computed(""))
+        self.form.progress.setMaximum(0)
+        self._tell(translate("ToolAxis", "Reading the part"))
+        self._show_state()
+        self.work.start()
+
+    def stop(self):
+        """Ask the computation to stop."""
+        if self.work is not None:
+            self.form.stop.setEnabled(False)
+            self._tell(translate("ToolAxis", "Stopping"))
+            self.work.cancel()
+
+    def _progressed(self, stage, share):
+        if self.work is None or not self.form.stop.isEnabled():
+            return
+        self.form.progress.setMaximum(1000 if share >= 0 else 0)
+        self.form.progress.setValue(int(1000 * max(share, 0.0)))
+        self._tell(f"{stage[:1].upper()}{stage[1:]}")
+
+    def _computed(self, inputs, plan, pictures):
+        self.work = None
+        if not plan.operations:
+            self._not_computed("")
+            return
+        self.computed = inputs
+        FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
+        self.view.show(plan, pictures)
+        self.form.tabs.setCurrentWidget(self.form.resultTab)
+        self._show_state()
+
+    def _not_computed(self, message):
+        self.work = None
+        self.problem = message
+        self._show_state()
+        if not message:
+            self._tell(translate("ToolAxis", "Stopped; the document is unchanged."))
+
+    # what happens to the document meanwhile
+
+    def document_closed(self):
+        """The document is about to close: stop, and close the panel."""
+        self.preview.forget()
+        self._close()
+        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
+
+    def object_deleted(self, name):
+        """A part is about to be deleted: take its faces off the list, and stop what is computed for them."""
+        if not self.fields.faces.remove_object(name):
+            return
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+        self.computed = None
+        self.view.clear()
+        self.problem = translate("ToolAxis", "The part was deleted: select other faces")
+        self._changed()
+
+    def object_changed(self, name):
+        """A part has changed: what was computed for it no longer counts."""
+        if any(thing.Name == name for thing, _ in self.fields.faces.faces) and self.work is None:
+            self._changed()
+
+    def _close(self):
+        if self.over:
+            return
+        self.over = True
+        self.watch.end()
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+        self.view.leave()
+        self.preview.clear()
+
+
+def _planned(task, progress):
+    """Plan and pictures; runs off the GUI thread."""
+    from toolaxis.progress import NO_PROGRESS
+
+    from .axispicture import axis_picture
+
+    plan = task(progress)
+    pictures = {}
+    for op in plan.operations:
+        if plan.outcome != "cancelled":
+            progress.report(translate("ToolAxis", "drawing the map"), op.number - 1, len(plan.operations))
+        pictures[op.number] = axis_picture(plan, op, NO_PROGRESS)
+    return plan, pictures
