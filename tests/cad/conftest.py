@@ -1,5 +1,6 @@
 """Real parts for the adapters, and the kernel's own answers about them."""
 
+import importlib.util
 import os
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,6 +23,15 @@ def pytest_generate_tests(metafunc):
         reason = "no shared parts: set TOOLAXIS_SHARED to the folder that has parts/*.step"
         missing = [pytest.param(None, marks=pytest.mark.skip(reason=reason), id="absent")]
         metafunc.parametrize("shared_part", [pytest.param(p, id=p.stem) for p in parts] or missing, scope="module")
+
+
+@pytest.fixture(scope="session")
+def contract():
+    """The checks that every adapter has to pass, shared with the FreeCAD tests."""
+    spec = importlib.util.spec_from_file_location("contract", Path(__file__).with_name("contract.py"))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture(scope="session")

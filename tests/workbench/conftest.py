@@ -6,6 +6,7 @@ without a window.  Without the first, a FreeCAD that is installed is looked for;
 skipped, and the reason is printed.
 """
 
+import importlib.util
 import json
 import os
 import shlex
@@ -13,16 +14,17 @@ import shutil
 import signal
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-INSIDE = find_spec("FreeCAD") is not None
+INSIDE = importlib.util.find_spec("FreeCAD") is not None
 MARK = "TOOLAXIS-INNER "
 TIME_LIMIT, LONG_TIME_LIMIT = 420.0, 1800.0
 TAIL = 40
+if INSIDE:
+    import FreeCAD  # noqa: F401  before any test's `import Part`, which crashes alone
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
 
 
@@ -84,6 +86,7 @@ class InnerRun(pytest.Item):
         long = self.config.getoption("--long")
         arguments = ["-p", "no:cacheprovider", *(["--long"] if long else []), self.path.relative_to(ROOT).as_posix()]
         command = command_for(self.variable, arguments, window="gui" in self.path.parts)
+        prepare(self.path)
         judge(*ended(command, LONG_TIME_LIMIT if long else TIME_LIMIT))
 
     def repr_failure(self, excinfo):
@@ -92,6 +95,42 @@ class InnerRun(pytest.Item):
 
     def reportinfo(self):
         return self.path, None, f"{self.path.name} {self.name}"
+
+
+def prepared_folder(path):
+    """Where the things that a file of tests needs from outside FreeCAD are."""
+    return ROOT / "out" / "freecad" / path.stem.removeprefix("test_")
+
+
+def prepare(path):
+    """Run the script beside a file of tests that makes what they need from outside FreeCAD."""
+    script = path.with_name(f"prepare_{path.stem.removeprefix('test_')}.py")
+    folder = prepared_folder(path)
+    if not script.exists():
+        return
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    output, ending = ended([sys.executable, str(script), str(folder)], TIME_LIMIT)
+    if ending != "ended with 0":
+        raise InnerFailure(f"{script.name} {ending}; its last lines:\n{_tail(output)}")
+
+
+@pytest.fixture(scope="module")
+def prepared(request):
+    """The folder that the script beside these tests filled outside FreeCAD."""
+    folder = prepared_folder(request.path)
+    if not folder.is_dir():
+        pytest.skip(f"{folder.relative_to(ROOT)} is missing: run the tests from outside FreeCAD first")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def contract():
+    """The checks that every adapter has to pass."""
+    spec = importlib.util.spec_from_file_location("contract", ROOT / "tests" / "cad" / "contract.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def command_for(variable, arguments, window):

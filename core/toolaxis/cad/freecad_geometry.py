@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
+import FreeCAD  # noqa: F401  first, because Part alone crashes
 import numpy as np
 import Part
 from numpy.typing import NDArray

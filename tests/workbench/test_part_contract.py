@@ -1,0 +1,155 @@
+"""The contract of the adapters for FreeCAD: the kernel's own answers, and the same parts as through Open CASCADE."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import Part as FreecadPart
+import pytest
+
+from toolaxis.cad.assembling import face_from_record, part_from_record
+from toolaxis.cad.freecad_shapes import shape_record
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "out" / "freecad" / "part_contract"
+NAMES = sorted(path.stem for path in FOLDER.glob("*.pickle"))
+PARTS = [name for name in NAMES if (FOLDER / f"{name}.step").exists()]
+EVERYTHING = pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
+
+
+def rows(*vectors):
+    return [np.array(vector) for vector in vectors]
+
+
+class FreecadFace:
+    """A face of the kernel as the contract asks it."""
+
+    def __init__(self, face):
+        self.face = face
+        self.surface = face.Surface
+        self.flip = face.Orientation == "Reversed"
+        self.tolerance = face.getTolerance(1)
+
+    def first(self, u, v):
+        return rows(self.face.valueAt(u, v), self.surface.getDN(u, v, 1, 0), self.surface.getDN(u, v, 0, 1))
+
+    def second(self, u, v):
+        return rows(*(self.surface.getDN(u, v, *order) for order in ((2, 0), (0, 2), (1, 1))))
+
+    def bend(self, u, v):
+        try:
+            high, low = (self.surface.curvature(u, v, which) for which in ("Max", "Min"))
+            if self.surface.isUmbillic(u, v):
+                return high, low, None, None
+            return high, low, *rows(*self.surface.curvatureDirections(u, v))
+        except FreecadPart.OCCError:
+            return None
+
+    def inside(self, u, v):
+        return bool(self.face.isPartOfDomain(u, v))
+
+
+class FreecadShape:
+    """A shape of the kernel as the contract asks it; the volume that FreeCAD shows is integrated coarsely."""
+
+    accuracy = 5e-4
+
+    def __init__(self, shape):
+        self.faces = dict(enumerate(map(FreecadFace, shape.Faces), 1))
+        self.solids = shape.Solids
+
+    @property
+    def volume(self):
+        return self.solids[0].Volume if self.solids else None
+
+    @property
+    def centre(self):
+        return np.array(self.solids[0].CenterOfMass)
+
+
+@pytest.fixture(scope="module", params=NAMES or [pytest.param(None, marks=pytest.mark.skip(reason="not prepared"))])
+def name(request, prepared):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def shape(name):
+    shape, path = FreecadPart.Shape(), FOLDER / f"{name}.step"
+    shape.read(str(path if path.exists() else path.with_suffix(".brep")))
+    return shape
+
+
+@pytest.fixture(scope="module")
+def asked(shape):
+    return FreecadShape(shape)
+
+
+@pytest.fixture(scope="module")
+def record(shape):
+    return shape_record(shape)
+
+
+@pytest.fixture(scope="module")
+def elsewhere(name):
+    return pickle.loads((FOLDER / f"{name}.pickle").read_bytes())
+
+
+@EVERYTHING
+def test_points_normals_and_curvatures_agree_with_the_kernel(contract, asked, record, everything):
+    contract.check_values(asked, record, everything)
+
+
+@EVERYTHING
+def test_derivatives_agree_with_the_kernel_where_parameters_are_the_same(contract, asked, record, everything):
+    contract.check_derivatives(asked, record, everything)
+
+
+def test_loops_stay_inside_the_domain_of_their_surface(contract, record):
+    contract.check_loops(record)
+
+
+@EVERYTHING
+def test_inside_and_outside_agree_with_the_kernel_away_from_borders(contract, asked, record, everything):
+    contract.check_inside(asked, record, everything)
+
+
+@EVERYTHING
+def test_faces_enclose_the_volume_that_the_kernel_says(contract, asked, record, everything):
+    contract.check_volume(asked, record, everything)
+
+
+def test_faces_are_those_of_the_other_adapter(record, elsewhere):
+    """Numbers, kinds, senses, knots, control points and loops, to 1e-9 of their size."""
+    assert [face.number for face in record.faces] == [face.number for face in elsewhere.faces]
+    for one, other in zip(record.faces, elsewhere.faces, strict=True):
+        assert (one.kind, one.flip, one.turned, one.degree) == (other.kind, other.flip, other.turned, other.degree)
+        exact = other.tolerance == 0
+        assert (one.tolerance == 0) == exact
+        pairs = [(one.knots_u, other.knots_u), (one.knots_v, other.knots_v), *zip(one.loops, other.loops, strict=True)]
+        for mine, theirs in [*pairs, (one.control, other.control)] if exact else pairs[2:]:
+            assert mine.shape == theirs.shape, one.number
+            assert np.abs(mine - theirs).max() <= 1e-9 * np.abs(theirs).max(), one.number
+
+
+def test_edges_bodies_and_warnings_are_those_of_the_other_adapter(record, elsewhere):
+    mine, theirs = part_from_record(record), part_from_record(elsewhere)
+
+    def listed(part):
+        return sorted((edge.faces, edge.kind, round(edge.angle, 6)) for edge in part.edges)
+
+    assert listed(mine) == listed(theirs)
+    assert mine.bodies == theirs.bodies
+    assert mine.warnings == theirs.warnings
+
+
+def test_normals_are_those_that_freecad_shows(shape, record, contract):
+    """face.normalAt respects the face's sense, as ours does."""
+    for item in contract.chosen(record, False):
+        if item.tolerance > 0:
+            continue
+        face = face_from_record(item)
+        uv = face.grid(3, 3)
+        ours = face.normal(uv)
+        for k, (u, v) in enumerate(item.map.to_kernel(uv).tolist()):
+            theirs = np.array(shape.Faces[item.number - 1].normalAt(u, v))
+            assert np.linalg.norm(ours[k]) < 0.5 or np.linalg.norm(ours[k] - theirs) < 1e-6, item.number
