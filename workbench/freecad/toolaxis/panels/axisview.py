@@ -5,7 +5,7 @@ import numpy as np
 from PySide import QtCore, QtWidgets
 
 from ..tasks import Work
-from .fields import fine_text, length_text
+from .fields import fine_text, fit_rows, length_text
 from .hemisphere import HemisphereMap
 from .legend import Legend
 
@@ -269,9 +269,6 @@ def _fill(table, op, tried):
             item = QtWidgets.QTableWidgetItem(text)
             item.setToolTip(text)
             table.setItem(i, k, item)
+    table.verticalHeader().setVisible(True)
     table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
-    table.verticalHeader().setDefaultSectionSize(20)
-    table.verticalHeader().setMinimumSectionSize(18)
-    height = table.horizontalHeader().sizeHint().height() + 20 * table.rowCount() + 4
-    table.setMinimumHeight(height)
-    table.setMaximumHeight(height)
+    fit_rows(table)

@@ -46,6 +46,22 @@ def fine_text(value):
     return f"{value:.4f} mm" if schema_is_metric else f"{value / 25.4:.5f} in"
 
 
+def fit_rows(table):
+    """Make a table as high as its rows, and the rows as high as their text.
+
+    Parameters
+    ----------
+    table : QTableWidget
+    """
+    row = table.fontMetrics().height() + 8
+    table.verticalHeader().setMinimumSectionSize(row)
+    table.verticalHeader().setDefaultSectionSize(row)
+    head = table.horizontalHeader()
+    height = row * table.rowCount() + 4 + (0 if head.isHidden() else head.sizeHint().height())
+    table.setMinimumHeight(height)
+    table.setMaximumHeight(height)
+
+
 class QuantityField:
     """A Gui::QuantitySpinBox, read and set in one unit.
 
@@ -96,6 +112,7 @@ class OutlineTable:
         self.table = form.findChild(QtWidgets.QTableWidget, name)
         self.table.setColumnCount(2)
         self.table.setHorizontalHeaderLabels([translate("ToolAxis", "Diameter"), translate("ToolAxis", "Height")])
+        self.table.verticalHeader().setDefaultSectionSize(22)
         self.table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
         form.findChild(QtWidgets.QPushButton, f"{name}Add").clicked.connect(self._add)
         form.findChild(QtWidgets.QPushButton, f"{name}Remove").clicked.connect(self._remove)

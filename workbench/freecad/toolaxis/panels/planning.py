@@ -4,9 +4,9 @@ from contextlib import suppress
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
-from .. import bridge
+from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
 from . import palette
 from .axisview import AxisView
@@ -37,6 +37,7 @@ class PlanPanel:
         self.operation = operation
         self.document = document
         self.form = load_form("plan")
+        self.form.setWindowIcon(QtGui.QIcon(str(RESOURCES / "icons" / "plan.svg")))
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)

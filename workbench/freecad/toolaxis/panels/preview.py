@@ -38,7 +38,7 @@ class Preview:
         from pivy import coin
 
         self.clear()
-        view = self._view()
+        view = view_of(self.name)
         if view is None:
             return
         root = coin.SoSeparator()
@@ -84,13 +84,21 @@ class Preview:
         """Let go without touching the view."""
         self.root = self.transform = self.view = self.stations = None
 
-    def _view(self):
-        document = FreeCADGui.getDocument(self.name)
-        view = document.ActiveView if document is not None else None
-        if hasattr(view, "getSceneGraph"):
-            return view
-        found = document.mdiViewsOfType("Gui::View3DInventor") if document is not None else []
-        return found[0] if found else None
+
+def view_of(name):
+    """The 3D view of a document; None where it has none.
+
+    Parameters
+    ----------
+    name : str
+        Of the document.
+    """
+    document = FreeCADGui.getDocument(name)
+    view = document.ActiveView if document is not None else None
+    if hasattr(view, "getSceneGraph"):
+        return view
+    found = document.mdiViewsOfType("Gui::View3DInventor") if document is not None else []
+    return found[0] if found else None
 
 
 class Stations:

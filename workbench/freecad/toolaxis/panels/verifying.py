@@ -1,0 +1,234 @@
+"""The task panel of Verify: the judge's map on the faces, its verdict, and the worst points to zoom to."""
+
+from contextlib import suppress
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from PySide import QtCore, QtGui, QtWidgets
+
+from .. import RESOURCES, bridge
+from ..tasks import Work, sentence
+from . import palette
+from .fields import fine_text, fit_rows, length_text, load_form
+from .paint import WHAT, Paint, skins_of
+from .preview import view_of
+from .scale import Scale
+from .watching import Watch
+
+translate = FreeCAD.Qt.translate
+
+#: The judge looks no farther, mm.
+_FAR = 100.0
+
+
+class VerifyPanel:
+    """FreeCAD calls reject and getStandardButtons.
+
+    Parameters
+    ----------
+    document : App.Document
+    operations : sequence of objects
+        Operations of Tool Axis; the verdict is on all of them.
+    """
+
+    def __init__(self, document, operations):
+        self.document, self.operations = document, list(operations)
+        self.form = load_form("verify")
+        self.form.setWindowIcon(QtGui.QIcon(str(RESOURCES / "icons" / "verify.svg")))
+        self.scale = Scale(self.form)
+        self.form.scalePlace.layout().addWidget(self.scale)
+        self.paint = Paint(view_of(document.Name))
+        self.work, self.found, self.over = None, None, False
+        self.form.verify.clicked.connect(self.verify)
+        self.form.stop.clicked.connect(self.stop)
+        self.form.operation.currentIndexChanged.connect(self._show)
+        self.form.what.currentIndexChanged.connect(self._show)
+        self.form.worst.currentRowChanged.connect(self._zoom)
+        self.form.worst.itemClicked.connect(lambda item: self._zoom(self.form.worst.row(item)))
+        self.watch = Watch(document, self)
+        self._show()
+        self.verify()
+
+    def getStandardButtons(self):
+        """Close."""
+        return QtWidgets.QDialogButtonBox.Close
+
+    def reject(self):
+        """Take the colours off and close."""
+        self._close()
+        return True
+
+    def verify(self):
+        """Judge off the GUI thread."""
+        if self.work is not None or not self.operations:
+            return
+        try:
+            judges = [bridge.verification(operation) for operation in self.operations]
+        except Exception as reason:
+            self._tell(sentence(reason), bad=True)
+            return
+        self.work = Work(lambda progress: [_judged(judge, progress) for judge in judges], self.form)
+        self.work.progressed.connect(self._progressed)
+        self.work.done.connect(self._done)
+        self.work.failed.connect(lambda text: self._ended(text))
+        self.work.cancelled.connect(lambda: self._ended(translate("ToolAxis", "Stopped")))
+        self._tell(translate("ToolAxis", "Removing material"))
+        self._show()
+        self.work.start()
+
+    def stop(self):
+        """Ask the judge to stop."""
+        if self.work is not None:
+            self.work.cancel()
+
+    def _progressed(self, stage, share):
+        self.form.progress.setMaximum(1000 if share >= 0 else 0)
+        self.form.progress.setValue(int(1000 * max(share, 0.0)))
+        self._tell(f"{stage[:1].upper()}{stage[1:]}")
+
+    def _done(self, found):
+        self.work = None
+        self.found = [one for verdict in found for one in verdict]
+        combo = self.form.operation
+        blocked = combo.blockSignals(True)
+        combo.clear()
+        combo.addItems([f"{verdict.name}" for verdict, _ in self.found])
+        combo.blockSignals(blocked)
+        failed = [verdict.name for verdict, _ in self.found if not verdict.passed]
+        if failed:
+            self._tell(translate("ToolAxis", "Not inside tolerance: {}").format(", ".join(failed)), bad=True)
+        else:
+            self._tell(translate("ToolAxis", "Inside tolerance"))
+        with suppress(Exception):  # an operation may have been deleted meanwhile
+            for operation, verdicts in zip(self.operations, found, strict=True):
+                bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts])
+        self._show()
+
+    def _ended(self, text):
+        self.work = None
+        self._tell(text, bad=True)
+        self._show()
+
+    def _tell(self, text, bad=False):
+        label = self.form.message
+        dark = palette.is_dark(label.palette())
+        label.setStyleSheet(("color: #ff9e80;" if dark else "color: #a33c00;") if bad else "")
+        label.setText(text if not text or text.endswith(".") else f"{text}.")
+
+    @property
+    def chosen(self):
+        """The verdict that is shown, with its skins; None before there is one."""
+        index = self.form.operation.currentIndex()
+        return self.found[index] if self.found and 0 <= index < len(self.found) else None
+
+    def _show(self, *_):
+        form, judging = self.form, self.work is not None
+        form.progress.setVisible(judging)
+        form.stop.setEnabled(judging)
+        form.verify.setEnabled(not judging)
+        chosen = self.chosen
+        several = self.found is not None and len(self.found) > 1
+        for widget in (form.operation, form.operationLabel):
+            widget.setVisible(several)
+        for widget in (form.what, form.whatLabel, self.scale, form.results, form.reasons, form.worst, form.worstLabel):
+            widget.setVisible(chosen is not None)
+        if chosen is None:
+            self.paint.clear()
+            return
+        verdict, skins = chosen
+        what = WHAT[form.what.currentIndex()]
+        limit = verdict.scallop_limit if what == "remaining" else verdict.gouge_allowed
+        self.scale.show_scale(form.what.currentText(), limit, what == "remaining")
+        self.paint.show(skins, what, limit)
+        _fill(form.results, _measures(verdict))
+        form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in verdict.reasons))
+        self.places = verdict.worst_scallop if what == "remaining" else verdict.worst_gouge
+        self._list_worst()
+
+    def _list_worst(self):
+        worst = self.form.worst
+        blocked = worst.blockSignals(True)
+        worst.clear()
+        for place in self.places:
+            value = fine_text(place.value) if np.isfinite(place.value) else translate("ToolAxis", "not reached")
+            x, y, z = (f"{v:.2f}" for v in place.point)
+            worst.addItem(translate("ToolAxis", "{} at ({}, {}, {}) on face {}").format(value, x, y, z, place.face))
+        if not self.places:
+            item = QtWidgets.QListWidgetItem(translate("ToolAxis", "none"), worst)
+            item.setFlags(QtCore.Qt.NoItemFlags)
+        worst.blockSignals(blocked)
+
+    def _zoom(self, row):
+        if self.chosen is not None and 0 <= row < len(self.places):
+            size = max(0.12 * float(np.sqrt(self.chosen[0].area)), 2.0)
+            self.paint.point_at(self.places[row].point, size)
+
+    def document_closed(self):
+        """The document is about to close: stop, and close the panel."""
+        self.paint.root = None
+        self._close()
+        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
+
+    def object_deleted(self, name):
+        """An operation is about to be deleted: stop and say so."""
+        if all(operation.Name != name for operation in self.operations):
+            return
+        self.operations = [operation for operation in self.operations if operation.Name != name]
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+        self.found = None
+        self._ended(translate("ToolAxis", "The operation was deleted"))
+
+    def object_changed(self, name):
+        """Changes of other objects do not matter: the verdict is on what was planned."""
+
+    def _close(self):
+        if self.over:
+            return
+        self.over = True
+        self.watch.end()
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+        self.paint.clear()
+
+
+def _judged(judge, progress):
+    """Verdicts of one operation with the skins to paint; runs off the GUI thread."""
+    verdicts = judge(progress).operations
+    return [(verdict, [skin for one in verdict.maps for skin in skins_of(one)]) for verdict in verdicts]
+
+
+def _measures(verdict):
+    def _room(name):
+        room = verdict.clearance.get(name)
+        distance = getattr(room, "distance", None)
+        if distance is None:
+            return translate("ToolAxis", "not checked")
+        return length_text(distance) if distance < _FAR else translate("ToolAxis", "over {}").format(length_text(_FAR))
+
+    height = verdict.scallop_max
+    return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
+            (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
+            (translate("ToolAxis", "Area within it"), f"{100 * verdict.share_within:.2f} %"),
+            (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
+            (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),
+            (translate("ToolAxis", "Cutter clearance"), _room("cutter")),
+            (translate("ToolAxis", "Shank clearance"), _room("shank")),
+            (translate("ToolAxis", "Holder clearance"), _room("holder"))]
+
+
+def _fill(table, rows):
+    table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
+    table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
+    table.horizontalHeader().setVisible(False)
+    table.verticalHeader().setVisible(True)
+    table.setColumnCount(1)
+    table.setRowCount(len(rows))
+    table.setVerticalHeaderLabels([name for name, _ in rows])
+    for i, (_, text) in enumerate(rows):
+        table.setItem(i, 0, QtWidgets.QTableWidgetItem(text))
+    table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
+    fit_rows(table)
