@@ -1,20 +1,46 @@
-"""FreeCAD's main window for the tests that drive it, and pictures of it."""
+"""A desk to drive FreeCAD's window as a user does: clicks, keys, waits with a limit, and screenshots to look at."""
 
-import importlib.util
+import gc
 import os
 import subprocess
 import sys
 import time
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-SHOTS = ROOT / "out" / "shots"
+SHOTS = Path(os.environ.get("TOOLAXIS_SHOTS", ROOT / "out" / "shots"))
+SIZE = (1400, 900)
+LIMIT = 90.0
+PACKS, STYLES = "Gui/PreferencePacks/{0}/{0}.cfg", "Gui/Stylesheets/parameters/{0}.yaml"
 
-if importlib.util.find_spec("FreeCAD") is not None:
+
+def set_theme(name):
+    """Put a theme of FreeCAD's own into the profile, before the window is made."""
     import FreeCAD
-    import FreeCADGui
+
+    folder = Path(FreeCAD.getResourceDir())
+    pack = folder / PACKS.format(name)
+    if not pack.is_file():
+        return
+    setters = {"FCText": lambda group, node: group.SetString(node.get("Name"), node.text or ""),
+               "FCBool": lambda group, node: group.SetBool(node.get("Name"), node.get("Value") == "1"),
+               "FCInt": lambda group, node: group.SetInt(node.get("Name"), int(node.get("Value"))),
+               "FCUInt": lambda group, node: group.SetUnsigned(node.get("Name"), int(node.get("Value"))),
+               "FCFloat": lambda group, node: group.SetFloat(node.get("Name"), float(node.get("Value")))}
+
+    def walk(node, path):
+        for child in node:
+            if child.tag == "FCParamGroup":
+                walk(child, [*path, child.get("Name")])
+            elif child.tag in setters:
+                setters[child.tag](FreeCAD.ParamGet("User parameter:" + "/".join(path)), child)
+
+    walk(ElementTree.parse(pack).getroot().find("FCParamGroup"), [])
+    window = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/MainWindow")
+    window.SetString("ThemeStyleParametersFile", str(folder / STYLES.format(name)))
 
 
 class Leaver:
@@ -33,74 +59,230 @@ class Leaver:
         os._exit(self.status)
 
 
-@pytest.fixture(scope="session", autouse=True)
-def window(request):
-    """FreeCAD's main window, made unless FreeCAD runs with one already."""
+class Desk:
+    """FreeCAD's window and what one does with it."""
+
+    def __init__(self, theme):
+        import FreeCAD
+        import FreeCADGui
+        from PySide import QtCore, QtWidgets
+
+        self.theme, self.app, self.gui = theme, QtWidgets.QApplication, FreeCADGui
+        self.qt, self.widgets = QtCore, QtWidgets
+        if not FreeCAD.GuiUp:
+            FreeCADGui.showMainWindow()
+        self.window = FreeCADGui.getMainWindow()
+        self.window.setGeometry(0, 0, *SIZE)
+        self.pump(0.5)
+        FreeCADGui.activateWorkbench("ToolAxisWorkbench")
+        self.pump(0.3)
+        self.errors = []
+        sys.excepthook = lambda kind, value, trace: self.errors.append(f"{kind.__name__}: {value}")
+
+    def pump(self, seconds=0.05):
+        """Let the window live for a while."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.app.processEvents(self.qt.QEventLoop.AllEvents, 10)
+            time.sleep(0.002)
+
+    def wait(self, condition, what, limit=LIMIT):
+        """Let the window live until something is so; fail after a limit of seconds."""
+        end = time.monotonic() + limit
+        while not condition():
+            assert time.monotonic() < end, f"waited {limit:.0f} s in vain until {what}"
+            self.pump(0.02)
+
+    def find(self, name, kind=None):
+        """A visible widget by its name."""
+        found = self.window.findChild(kind or self.widgets.QWidget, name)
+        assert found is not None, f"there is no widget {name}"
+        return found
+
+    def form(self, name):
+        """The form of a task panel, or None."""
+        found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
+        return found[-1] if found else None
+
+    def press(self, button):
+        """Click a button with the mouse."""
+        assert button.isEnabled(), f"{button.text()} is locked"
+        self.click(button, button.rect().center())
+
+    def click(self, widget, position):
+        """Click somewhere in a widget."""
+        for kind in (self.qt.QEvent.MouseButtonPress, self.qt.QEvent.MouseButtonRelease):
+            self._mouse(kind, widget, position)
+        self.pump(0.05)
+
+    def hover(self, widget, position):
+        """Move the pointer over a widget."""
+        self._mouse(self.qt.QEvent.MouseMove, widget, position)
+        self.pump(0.05)
+
+    def _mouse(self, kind, widget, position):
+        from PySide import QtGui
+
+        local = self.qt.QPointF(position.x(), position.y())
+        left, none = self.qt.Qt.LeftButton, self.qt.Qt.NoButton
+        button = none if kind == self.qt.QEvent.MouseMove else left
+        held = left if kind == self.qt.QEvent.MouseButtonPress else none
+        place = self.qt.QPointF(widget.mapToGlobal(local.toPoint()))
+        self.app.sendEvent(widget, QtGui.QMouseEvent(kind, local, place, button, held, self.qt.Qt.NoModifier))
+
+    def type(self, widget, text):
+        """Replace the text of a field by typing, and leave it."""
+        widget.setFocus()
+        self.pump(0.02)
+        line = widget if isinstance(widget, self.widgets.QLineEdit) else widget.findChild(self.widgets.QLineEdit)
+        line.selectAll()
+        for letter in text:
+            self._key(line, 0, letter)
+        self._key(line, self.qt.Qt.Key_Tab, "\t")
+        self.pump(0.1)
+
+    def _key(self, widget, key, text):
+        from PySide import QtGui
+
+        for kind in (self.qt.QEvent.KeyPress, self.qt.QEvent.KeyRelease):
+            self.app.sendEvent(widget, QtGui.QKeyEvent(kind, key, self.qt.Qt.NoModifier, text))
+
+    def standard_button(self, name):
+        """A button in the bar of the task panel."""
+        for box in self.window.findChildren(self.widgets.QDialogButtonBox):
+            button = box.button(getattr(self.widgets.QDialogButtonBox, name))
+            if button is not None and button.isVisible():
+                return button
+        raise AssertionError(f"there is no button {name}")
+
+    def dialog_text(self, action):
+        """The text of the message box that an action opens; it is answered with OK."""
+        seen = []
+
+        def answer():
+            box = self.app.activeModalWidget()
+            if box is not None:
+                seen.append(box.text())
+                self.shot("dialog")
+                box.accept()
+
+        timer = self.qt.QTimer()
+        timer.setInterval(200)
+        timer.timeout.connect(answer)
+        timer.start()
+        action()
+        self.pump(0.3)
+        timer.stop()
+        return seen[0] if seen else ""
+
+    def shot(self, name):
+        """A picture of the whole screen, which has the 3D view in it."""
+        SHOTS.mkdir(parents=True, exist_ok=True)
+        self.pump(0.3)
+        path = SHOTS / f"{name}-{self.theme}.png"
+        try:
+            subprocess.run(["import", "-window", "root", str(path)], check=True, timeout=30, stdin=subprocess.DEVNULL)
+        except (OSError, subprocess.SubprocessError):  # no tool for the whole screen here: the window without its view
+            self.window.grab().save(str(path))
+
+    def open(self, path):
+        """Open a STEP file in a document of its own; its part."""
+        import FreeCAD
+        import Import
+
+        document = FreeCAD.newDocument(Path(path).stem)
+        Import.insert(str(path), document.Name)
+        view = self.gui.getDocument(document.Name).ActiveView
+        view.viewIsometric()
+        view.fitAll()
+        self.pump(0.2)
+        return next(thing for thing in document.Objects if hasattr(thing, "Shape") and thing.Shape.Faces)
+
+    def start(self, thing=None, *faces):
+        """Select faces and run Plan Orientations; the panel's form."""
+        self.gui.Selection.clearSelection()
+        for face in faces:
+            self.gui.Selection.addSelection(thing.Document.Name, thing.Name, face)
+        if thing is not None and not faces:
+            self.gui.Selection.addSelection(thing.Document.Name, thing.Name)
+        self.gui.runCommand("ToolAxis_PlanOrientations")
+        self.pump(0.2)
+        form = self.form("ToolAxisPlan")
+        assert form is not None, f"no panel; {self.errors}"
+        return form
+
+    def computed(self, form):
+        """Press Compute and wait."""
+        self.press(form.compute)
+        self.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+
+    def reported(self):
+        """What stands in the report view that looks like an error."""
+        texts = [w.toPlainText() for w in self.window.findChildren(self.widgets.QTextEdit)
+                 if "Report" in w.objectName() or "Report" in w.metaObject().className()]
+        lines = [line for text in texts for line in text.splitlines()]
+        return [line for line in lines if "Traceback" in line or "Error" in line or "xception" in line]
+
+    def tidy(self):
+        """Close the panel and all documents, unsaved as they are."""
+        import FreeCAD
+
+        if self.gui.Control.activeDialog():
+            self.gui.Control.closeDialog()
+        self.pump(0.1)
+        for name in list(FreeCAD.listDocuments()):
+            FreeCAD.closeDocument(name)
+        self.pump(0.1)
+        gc.collect()
+
+
+@pytest.fixture(scope="session")
+def _desk(request):
+    pytest.importorskip("FreeCAD")
+    import FreeCAD
+
     if not FreeCAD.GuiUp:
         request.config.pluginmanager.register(Leaver(), "toolaxis-leaver")
-        FreeCADGui.showMainWindow()
-    main = FreeCADGui.getMainWindow()
-    main.resize(1400, 900)
-    pump()
-    return main
-
-
-@pytest.fixture(autouse=True)
-def closed_documents():
-    """No document outlives its test."""
-    yield
-    FreeCADGui.Control.closeDialog()
-    for name in list(FreeCAD.listDocuments()):
-        FreeCAD.closeDocument(name)
-    pump()
-
-
-def pump(seconds=0.05):
-    """Let Qt work for a while."""
-    from PySide import QtWidgets
-
-    end = time.monotonic() + seconds
-    while True:
-        QtWidgets.QApplication.processEvents()
-        if time.monotonic() >= end:
-            return
-        time.sleep(0.005)
-
-
-@pytest.fixture(name="pump")
-def pump_fixture():
-    return pump
+    dark = any("dark" in item.path.name for item in request.session.items)
+    theme = "dark" if dark else "light"
+    if os.environ.get("FREECAD_USER_HOME"):  # a profile made for the tests; somebody's own is left as it is
+        set_theme(f"FreeCAD {theme.title()}")
+    return Desk(theme)
 
 
 @pytest.fixture
-def until():
-    """Pump until something holds; fails after a limit of seconds."""
-    def wait(holds, limit=60.0):
-        end = time.monotonic() + limit
-        while not holds():
-            assert time.monotonic() < end, f"did not happen within {limit:.0f} s"
-            pump(0.02)
+def desk(_desk):
+    """The desk; afterwards nothing may stand on the report view, and no exception may have been raised in a slot."""
+    _desk.errors.clear()
+    before = len(_desk.reported())
+    yield _desk
+    _desk.tidy()
+    assert not _desk.errors, _desk.errors
+    assert not _desk.reported()[before:], _desk.reported()[before:]
 
-    return wait
+
+@pytest.fixture(scope="session")
+def part_file(tmp_path_factory, _desk):
+    """A STEP file of a small block with a wavy top, Face-numbers as FreeCAD reads them."""
+    from math import cos, sin
+
+    import FreeCAD
+    import Part
+
+    points = [[FreeCAD.Vector(x, y, 10 + 1.5 * sin(x / 9) * cos(y / 8)) for y in range(0, 17, 4)]
+              for x in range(0, 21, 5)]
+    surface = Part.BSplineSurface()
+    surface.interpolate(points)
+    wavy = surface.toShape()
+    solid = wavy.extrude(FreeCAD.Vector(0, 0, -20)).common(Part.makeBox(60, 60, 40, FreeCAD.Vector(-20, -20, 0)))
+    path = tmp_path_factory.mktemp("step") / "wavy.step"
+    solid.exportStep(str(path))
+    return path
 
 
 @pytest.fixture
-def shot(window):
-    """Save a picture of the main window as out/shots/NAME.png, and say where."""
-    def save(name):
-        SHOTS.mkdir(parents=True, exist_ok=True)
-        pump(0.3)
-        path = SHOTS / f"{name}.png"
-        if not (os.environ.get("DISPLAY") and _rooted(path)):
-            window.grab().save(str(path))
-        return path
-
-    return save
-
-
-def _rooted(path):
-    """A picture of the whole screen, which has the 3-D view in it; False where there is no tool for it."""
-    try:
-        return subprocess.run(["import", "-window", "root", str(path)], check=False, timeout=30).returncode == 0
-    except (FileNotFoundError, subprocess.TimeoutExpired):
-        return False
+def wavy(desk, part_file):
+    """The small block, opened, with the name of its wavy face."""
+    part = desk.open(part_file)
+    kinds = [type(face.Surface).__name__ for face in part.Shape.Faces]
+    return part, f"Face{kinds.index('BSplineSurface') + 1}"

@@ -33,6 +33,7 @@ class AxisView(QtCore.QObject):
         super().__init__(form)
         self.form, self.preview = form, preview
         self.map, self.legend = HemisphereMap(form), Legend(form)
+        self.map.setObjectName("axisMap")
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)
         self.plan = self.found = None

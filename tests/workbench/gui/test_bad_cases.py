@@ -1,0 +1,110 @@
+"""What is selected is not what is needed: a clear message in the panel or a dialog, nothing on the report view."""
+
+import pytest
+
+
+def add(document, kind):
+    """An object that cannot be planned, by its kind."""
+    import FreeCAD
+    import Part
+
+    if kind == "mesh":
+        import Mesh
+
+        thing = document.addObject("Mesh::Feature", "Mesh")
+        thing.Mesh = Mesh.createBox(10, 10, 10)
+    elif kind == "sketch":
+        thing = document.addObject("Sketcher::SketchObject", "Sketch")
+        thing.addGeometry(Part.LineSegment(FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(10, 0, 0)))
+    elif kind == "wire":
+        thing = document.addObject("Part::Feature", "Wire")
+        thing.Shape = Part.makePolygon([FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(10, 0, 0), FreeCAD.Vector(10, 9, 0)])
+    elif kind == "empty":
+        thing = document.addObject("Part::Feature", "Empty")
+    elif kind == "group":
+        thing = document.addObject("App::DocumentObjectGroup", "Group")
+    else:
+        thing = document.addObject("Part::Box", "Box")
+    document.recompute()
+    return thing
+
+
+@pytest.mark.parametrize(("kind", "words"), [
+    ("mesh", "is a mesh"), ("sketch", "is a sketch"), ("wire", "has no faces"), ("empty", "is empty"),
+    ("group", "has no shape"), ("box", "one by one")])
+def test_what_has_no_sculptured_face(desk, kind, words):
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Bad")
+    thing = add(document, kind)
+    desk.pump(0.1)
+    form = desk.start(thing)
+    assert words in form.message.text() and not form.compute.isEnabled()
+    if kind == "mesh":
+        desk.shot("20-mesh")
+
+
+def test_nothing_selected(desk):
+    import FreeCAD
+
+    FreeCAD.newDocument("Empty")
+    desk.pump(0.1)
+    form = desk.start()
+    assert "Select" in form.message.text() and not form.compute.isEnabled()
+    desk.shot("21-nothing")
+    desk.press(form.addFaces)
+    assert "Nothing is selected" in form.message.text()
+
+
+def test_edges_selected(desk, wavy):
+    form = desk.start(wavy[0], "Edge1", "Vertex2")
+    assert "Edge1" in form.message.text() and "select faces" in form.message.text()
+    assert not form.compute.isEnabled()
+
+
+def test_a_body_stands_for_its_sculptured_faces(desk, wavy):
+    form = desk.start(wavy[0])
+    names = [form.faces.item(k).text() for k in range(form.faces.count())]
+    assert any(wavy[1] in name for name in names) and form.compute.isEnabled()
+    assert len(names) < len(wavy[0].Shape.Faces)
+
+
+def test_faces_are_added_once_and_removed(desk, wavy):
+    part, face = wavy
+    form = desk.start(part, face)
+    for _ in range(2):
+        desk.gui.Selection.clearSelection()
+        desk.gui.Selection.addSelection(part.Document.Name, part.Name, "Face1")
+        desk.gui.Selection.addSelection(part.Document.Name, part.Name, face)
+        desk.press(form.addFaces)
+    assert form.faces.count() == len({"Face1", face})
+    form.faces.selectAll()
+    desk.press(form.removeFaces)
+    assert form.faces.count() == 0 and not form.compute.isEnabled()
+
+
+def test_no_operation_to_verify_or_recompute(desk, wavy):
+    for command in ("ToolAxis_Verify", "ToolAxis_Recompute"):
+        text = desk.dialog_text(lambda command=command: desk.gui.runCommand(command))
+        assert "Plan Orientations first" in text
+
+
+def test_commands_are_locked_without_a_document_and_beside_another_panel(desk, part_file):
+    action = desk.gui.Command.get("ToolAxis_PlanOrientations")
+    assert not action.isActive()
+    part = desk.open(part_file)
+    assert action.isActive()
+    desk.start(part, "Face1")
+    assert not action.isActive()
+
+
+def test_two_documents(desk, part_file):
+    first, second = desk.open(part_file), desk.open(part_file)
+    assert first.Document.Name != second.Document.Name
+    form = desk.start(second, "Face1")
+    assert form.faces.count() == 1
+    import FreeCAD
+
+    FreeCAD.closeDocument(first.Document.Name)
+    desk.pump(0.2)
+    assert desk.form("ToolAxisPlan") is form, "the other document does not matter"

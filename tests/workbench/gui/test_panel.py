@@ -1,0 +1,191 @@
+"""The planning panel, driven as a user does it, in the light theme."""
+
+import pytest
+
+
+@pytest.fixture
+def form(desk, wavy):
+    """The panel for the wavy face, with a scallop height that is quickly computed."""
+    part, face = wavy
+    form = desk.start(part, face)
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.2 mm")
+    return form
+
+
+def spot(chart, free):
+    """Where the widest free axis lies on the map, or the forbidden one that is missed by most."""
+    picture = chart.picture
+    usable = (picture.reason == 0) == free
+    usable &= picture.axes @ picture.pole > 0.1
+    assert usable.any()
+    rank = picture.passes if free else -picture.amount
+    rows = sorted((rank[i], i) for i in range(len(usable)) if usable[i])
+    return chart.position_of(picture.axes[rows[0][1]])
+
+
+def test_the_workbench_is_there_with_its_commands(desk):
+    assert desk.gui.activeWorkbench().name() == "ToolAxisWorkbench"
+    names = [name for name in desk.gui.listCommands() if name.startswith("ToolAxis_")]
+    assert set(names) >= {"ToolAxis_PlanOrientations", "ToolAxis_Verify", "ToolAxis_Recompute"}
+
+
+def test_plan_from_selection_to_objects_and_back(desk, wavy, form):
+    document = wavy[0].Document
+    before = [thing.Name for thing in document.Objects]
+    assert form.faces.count() == 1 and wavy[1] in form.faces.item(0).text()
+    desk.shot("1-job")
+    form.tabs.setCurrentWidget(form.toolTab)
+    desk.shot("2-tool")
+    form.tabs.setCurrentWidget(form.limitsTab)
+    desk.shot("3-limits")
+    desk.computed(form)
+    assert "Every face has an axis" in form.message.text()
+    assert form.tabs.currentWidget() is form.resultTab
+    assert [thing.Name for thing in document.Objects] == before, "nothing in the document before OK"
+    desk.shot("4-axis")
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    made = [thing for thing in document.Objects if thing.Name not in before]
+    assert made
+    desk.shot("5-objects")
+    document.undo()
+    desk.pump(0.2)
+    assert [thing.Name for thing in document.Objects] == before, "one undo step takes all back"
+
+
+def test_pointer_and_click_on_the_map(desk, form):
+    desk.computed(form)
+    chart = form.findChild(desk.widgets.QWidget, "axisMap")
+    centre, radius = chart.disc()
+    desk.hover(chart, spot(chart, free=False))
+    assert "forbidden" in form.pointer.text()
+    desk.hover(chart, spot(chart, free=True))
+    assert "strip width" in form.pointer.text()
+    assert not form.lock.isEnabled()
+    desk.click(chart, centre + desk.qt.QPointF(0.35 * radius, 0.2 * radius))
+    desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")
+    assert form.results.columnCount() == 2
+    assert "Against the best axis" in form.cost.text() and form.lock.isEnabled()
+    passes = [form.results.item(1, column).text() for column in (0, 1)]
+    assert int(passes[1]) >= int(passes[0])
+    desk.shot("6-tried")
+    desk.press(form.lock)
+    assert form.results.item(1, 0).text() == passes[1] and form.results.columnCount() == 1
+    desk.press(form.best)
+    assert form.results.item(1, 0).text() == passes[0]
+
+
+def test_a_forbidden_axis_says_why_and_cannot_be_locked(desk, form):
+    desk.computed(form)
+    chart = form.findChild(desk.widgets.QWidget, "axisMap")
+    desk.click(chart, spot(chart, free=False))
+    desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")
+    assert "cannot be used" in form.cost.text() and not form.lock.isEnabled()
+    assert "Infeasible" in form.reasons.text()
+
+
+def test_the_slider_moves_the_tool(desk, form):
+    desk.computed(form)
+    form.slide.setValue(0)
+    desk.pump(0.1)
+    desk.shot("7-slider-first")
+    form.slide.setValue(500)
+    desk.shot("8-slider-middle")
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.5])
+def test_stop_leaves_the_document_as_it_was(desk, wavy, form, delay):
+    before = [thing.Name for thing in wavy[0].Document.Objects]
+    desk.type(form.scallop, "0.01 mm")
+    desk.press(form.compute)
+    desk.pump(delay)
+    if form.stop.isEnabled():
+        desk.press(form.stop)
+    desk.wait(lambda: form.compute.isEnabled(), "the computation stops", 20)
+    assert "Stopped" in form.message.text() or "Every face" in form.message.text()
+    assert [thing.Name for thing in wavy[0].Document.Objects] == before
+
+
+def test_cancel_while_computing(desk, wavy, form):
+    before = [thing.Name for thing in wavy[0].Document.Objects]
+    desk.press(form.compute)
+    desk.pump(0.1)
+    desk.press(desk.standard_button("Cancel"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    assert [thing.Name for thing in wavy[0].Document.Objects] == before
+
+
+@pytest.mark.parametrize(("field", "text", "words"), [
+    ("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diameter"), ("scallop", "-1 mm", "scallop"),
+    ("stickout", "0.5 mm", "stick-out"), ("allowance", "-1 mm", "allowance")])
+def test_impossible_values_lock_compute_with_the_reason(desk, form, field, text, words):
+    widget = getattr(form, field)
+    form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
+    good = widget.property("text")
+    desk.type(widget, text)
+    assert not form.compute.isEnabled() and words in form.message.text()
+    if field == "corner":
+        desk.shot("9-refused")
+    desk.type(widget, good)
+    assert form.compute.isEnabled(), form.message.text()
+
+
+def test_a_change_after_computing_locks_ok(desk, form):
+    desk.computed(form)
+    assert desk.standard_button("Ok").isEnabled()
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.3 mm")
+    assert not desk.standard_button("Ok").isEnabled() and "compute again" in form.message.text()
+
+
+def test_limits_that_leave_no_axis(desk, form):
+    form.tabs.setCurrentWidget(form.limitsTab)
+    form.limits.setCurrentIndex(1)
+    form.limitZ.setValue(-1.0)
+    desk.type(form.cone, "10 deg")
+    desk.computed(form)
+    assert "0 of 1 faces" in form.message.text() and not desk.standard_button("Ok").isEnabled()
+    desk.shot("10-no-axis")
+
+
+def test_document_closed_while_computing(desk, wavy, form):
+    import FreeCAD
+
+    desk.press(form.compute)
+    desk.pump(0.2)
+    FreeCAD.closeDocument(wavy[0].Document.Name)
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes", 20)
+
+
+def test_part_deleted_while_computing(desk, wavy, form):
+    part = wavy[0]
+    desk.press(form.compute)
+    desk.pump(0.2)
+    part.Document.removeObject(part.Name)
+    desk.pump(0.5)
+    assert "deleted" in form.message.text() and not form.compute.isEnabled()
+    assert form.faces.count() == 0
+
+
+def test_the_window_stays_alive_while_computing(desk, form):
+    import time
+
+    desk.computed(form)  # what is loaded and compiled once is not what is measured
+    gaps, last = [], [time.perf_counter()]
+
+    def tick():
+        now = time.perf_counter()
+        gaps.append(now - last[0])
+        last[0] = now
+
+    timer = desk.qt.QTimer()
+    timer.setInterval(5)
+    timer.timeout.connect(tick)
+    form.compute.click()
+    last[0] = time.perf_counter()
+    timer.start()
+    desk.wait(lambda: form.compute.isEnabled() or form.stop.isEnabled() is False, "the computation ends")
+    timer.stop()
+    print(f"longest pause {1000 * max(gaps):.0f} ms")
+    assert len(gaps) > 5 and sorted(gaps)[len(gaps) // 2] < 0.05
