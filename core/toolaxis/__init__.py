@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from toolaxis.job.judge import verify as verify
     from toolaxis.job.run import plan as plan
     from toolaxis.orient.indexed import best_axis as best_axis
+    from toolaxis.partition.regions import partition as partition
     from toolaxis.path.count import count as count
     from toolaxis.path.estimate import estimate as estimate
     from toolaxis.path.isoparametric import passes as passes
@@ -38,9 +39,10 @@ _HOME = {
     "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
     "load": "cad.loading", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
     "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.estimate",
-    "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed", "plan": "job.run",
-    "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors", "UnsupportedGeometry": "errors",
-    "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
+    "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
+    "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
+    "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
+    "Cancelled": "errors",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605
@@ -62,11 +64,12 @@ def __dir__() -> list[str]:
 
 
 class _Package(ModuleType):
-    """The package as an object: `plan` and `verify` stay the public functions.
+    """The package as an object: `partition`, `plan` and `verify` stay the public functions.
 
-    Subpackages have the same two names, and the import system would put them in the functions' place.
+    Subpackages have the same names, and the import system would put them in the functions' place.
     """
 
+    partition = property(lambda self: _resolve("partition"), lambda self, subpackage: None)
     plan = property(lambda self: _resolve("plan"), lambda self, subpackage: None)
     verify = property(lambda self: _resolve("verify"), lambda self, subpackage: None)
 

@@ -171,3 +171,16 @@ def test_a_plan_survives_its_pictures(sheet: Path, tmp_path: Path, capsys: Captu
     assert main(["plan", str(sheet), *FAST, "--faces=1", "--out", str(tmp_path / "out")]) == 0
     assert said in capsys.readouterr().err
     assert strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "complete"
+
+
+def test_a_face_is_planned_in_regions_and_verified(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--faces=1", "--regions=2",
+                 "--no-pictures", "--out", str(out)]) == 0
+    document = strict((out / "plan.json").read_text())
+    assert [op["label"] for op in document["operations"]] == ["1a", "1b"]
+    assert all(op["region"] for op in document["operations"])
+    assert main(["verify", str(out), "--no-pictures"]) == 0
+    capsys.readouterr()
+    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--regions=17", "--out", str(out)]) == 2
+    assert "from 1 to 16" in capsys.readouterr().err

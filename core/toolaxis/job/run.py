@@ -15,8 +15,10 @@ from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.orient.indexed import best_axis, combined
+from toolaxis.orient.indexed import Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
+from toolaxis.partition.regions import checked_count
+from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
@@ -31,7 +33,7 @@ Array = NDArray[np.float64]
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
-         faces: Sequence[int] | str | None = None, regions: None = None, orientations: None = None,
+         faces: Sequence[int] | str | None = None, regions: int | str | None = None, orientations: None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
@@ -49,7 +51,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
         Limits of the axis, or their short form ("cone:0,0,1,45"); see `toolaxis.machine.limits`.
     faces : sequence of int, "all" or text such as "3,5-8", optional
         The sculptured faces unless given.
-    regions, orientations, strategy
+    regions : int or "auto", optional
+        Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
+        unless given.
+    orientations, strategy
         Not part of this version: every sub-surface gets one fixed axis of its own.
     objective : str
         "length" or "passes".
@@ -79,7 +84,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     InvalidInput
         When an argument is out of range.
     """
-    _refuse_later(regions=regions, orientations=orientations, strategy=None if strategy == "indexed" else strategy)
+    _refuse_later(orientations=orientations, strategy=None if strategy == "indexed" else strategy)
+    checked_count(regions)
     limits = parse_limits(machine) if isinstance(machine, str) and machine else machine or None
     words = machine if isinstance(machine, str) else "" if limits is None else f"a {type(limits).__name__}"
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
@@ -89,15 +95,15 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     loaded = load(part)
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
-    job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0])
+    job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions)
     return job.carried_out(targets, progress)
 
 
 def _refuse_later(**given: Any) -> None:
     for name, value in given.items():
         if value is not None:
-            raise InvalidInput(f"{name} {value!r} is not part of this version: every face gets one fixed axis of its "
-                               f"own; leave {name} out")
+            raise InvalidInput(f"{name} {value!r} is not part of this version: every sub-surface gets one fixed axis "
+                               f"of its own; leave {name} out")
 
 
 def _listed(obstacles: Any) -> list[Any]:
@@ -118,12 +124,14 @@ class _Job:
     limits: AxisLimits | None
     bodies: tuple[Part, ...]
     datum: Array
+    regions: int | str | None = None
 
-    def carried_out(self, targets: Sequence[Face], progress: Progress) -> Plan:
-        """The plan for sub-surfaces, one after the other."""
+    def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
+        """The plan for faces, divided where asked for, one sub-surface after the other."""
         done: list[Operation] = []
         outcome = "complete"
         try:
+            targets = [piece for face in faces for piece in self._divided(face, progress)]
             for index, face in enumerate(targets):
                 done.append(self._operation(face, index, len(targets), progress))
         except Cancelled:
@@ -131,6 +139,12 @@ class _Job:
         if outcome == "complete" and not all(op.done for op in done):
             outcome = "incomplete"
         return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome)
+
+    def _divided(self, face: Face, progress: Progress) -> tuple[Face, ...]:
+        if self.regions is None:
+            return (face,)
+        task = self._task(face, progress)
+        return regions_of(task, self.regions, progress=progress.within(f"face {face.label}")).faces
 
     def _operation(self, face: Face, index: int, count: int, progress: Progress) -> Operation:
         inner = progress.within(f"face {face.label} ({index + 1} of {count})")
@@ -158,7 +172,9 @@ class _Job:
     def _traced(self, face: Face, found: Orientation, progress: Progress) -> ToolPath:
         """The very passes, links and ramps included, that the search has proven."""
         assert found.axis is not None
-        task = search_task(face, self.tool, self.inputs.scallop, self.limits, self._obstacles,
+        return self._task(face, progress).made(found.axis, found.feed)
+
+    def _task(self, face: Face, progress: Progress) -> Task:
+        return search_task(face, self.tool, self.inputs.scallop, self.limits, self._obstacles,
                            objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
                            tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
-        return task.made(found.axis, found.feed)

@@ -31,6 +31,8 @@ class Spec:
     stickout : float or None
     obstacles : tuple of str
         Paths of STEP files.
+    regions : int, "auto" or None
+        Sub-surfaces for each face; None leaves faces whole.
     """
 
     part: str
@@ -40,6 +42,7 @@ class Spec:
     holder: str = ""
     stickout: float | None = None
     obstacles: tuple[str, ...] = ()
+    regions: int | str | None = None
 
     def resolved_tool(self) -> Tool:
         """The tool with its holder.

@@ -70,8 +70,8 @@ class Task:
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The passes with an axis, cut out where the tool must not go.
 
-        Next to walls and where the skin goes on beyond the face they begin and end without ramps: a ramp goes on along
-        the feed, into what stands there.
+        Next to walls and where the skin goes on beyond the sub-surface they begin and end without ramps: a ramp goes on
+        along the feed, into what stands there.
 
         Parameters
         ----------
@@ -81,7 +81,8 @@ class Task:
         worth, feasibility = self.worth, self.feasibility
         low, high = self.box
         height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
-        walls = any(group.role == OTHER or (group.role == SKIN and len(group.faces) > 1) for group in self.groups)
+        walls = any(group.role == OTHER or (group.role == SKIN and any(one is not worth.face for one in group.faces))
+                    for group in self.groups)
         return passes(worth.face, worth.tool, axis, worth.scallop, feed, direction=self.direction,
                       allowance=worth.allowance, reach=lambda uv: feasibility.reach(uv, axis),
                       tolerance=feasibility.tolerance,

@@ -1,0 +1,188 @@
+"""The best division of a lattice into rectangles by cuts from side to side."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+Corners = tuple[int, int, int, int]
+#: Sums of rates above this hold a forbidden node.
+_TOO_MUCH = 1e9
+_CHUNK = 32
+
+
+class Offers(NamedTuple):
+    """The cheapest axis and feed of every rectangle, each array indexed by first and last line along u, then along v.
+
+    cost : mm of cutting length, inf where no axis serves;  axis, feed : indices of the cheapest.
+    """
+
+    cost: Array
+    axis: Index
+    feed: Index
+
+
+def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0) -> Offers:
+    """The cheapest axis and feed of every rectangle of a lattice.
+
+    A rectangle's passes run from side to side, each as far from the next as the narrowest place on it allows: with
+    feed u their number is the integral over v of the greatest rate in the row, and half a pass more, as a whole number
+    is made.
+
+    Parameters
+    ----------
+    rates : (k, 2, nu + 1, nv + 1) array
+        Passes for a unit of the step, with feed u and v.
+    gaps : pair of (nu, nv + 1) and (nu + 1, nv) arrays
+        Length of the lines between neighbouring nodes along u and along v, mm; 0 off the face.
+    pitch : pair of (nu,) and (nv,) arrays
+        Distances of neighbouring lines in u and in v.
+    ends : float
+        By how much a pass is longer than its line on the face, mm.
+    """
+    nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
+    cost = np.full((nu + 1, nu + 1, nv + 1, nv + 1), np.inf)
+    axis, feed = np.zeros(cost.shape, dtype=np.intp), np.zeros(cost.shape, dtype=np.intp)
+    rows = _rows(gaps[0], ends), _rows(gaps[1].T, ends)
+    for first in range(0, len(rates), _CHUNK):
+        part = slice(first, first + _CHUNK)
+        for number in (0, 1):
+            if number == 0:
+                table = _lengths(rates[part, 0], rows[0], pitch[1])
+            else:
+                table = _lengths(rates[part, 1].swapaxes(1, 2), rows[1], pitch[0]).transpose(0, 3, 4, 1, 2)
+            best = table.argmin(axis=0)
+            least = np.take_along_axis(table, best[None], axis=0)[0]
+            better = least < np.minimum(cost, _TOO_MUCH)
+            cost[better] = least[better]
+            axis[better], feed[better] = best[better] + first, number
+    cost[~proper(nu, nv)] = np.inf
+    return Offers(cost, axis, feed)
+
+
+def proper(nu: int, nv: int) -> NDArray[np.bool_]:
+    """Which pairs of lines make a rectangle, by first and last along u and along v.
+
+    Parameters
+    ----------
+    nu, nv : int
+        Cells of the lattice.
+    """
+    u, v = np.arange(nu + 1), np.arange(nv + 1)
+    return np.asarray((u[:, None] < u)[:, :, None, None] & (v[:, None] < v))
+
+
+def _rows(gaps: Array, ends: float) -> Array:
+    """Length of passes over all ranges along, (first, last, step), mm; 0 off the face."""
+    length = np.concatenate([np.zeros((1, gaps.shape[1])), np.cumsum(gaps, axis=0)])
+    rows = length[None] - length[:, None]
+    return np.asarray(np.where(rows > 1e-9, rows + ends, 0.0))
+
+
+def _lengths(rates: Array, rows: Array, pitch: Array) -> Array:
+    """Cutting length of all ranges along (first, last) and across (first, last), (k, na, na, ns, ns).
+
+    rates (k, along, step);  rows (first, last, step);  pitch (step - 1).
+    """
+    k, na, ns = rates.shape
+    table = np.full((k, na, na, ns), _TOO_MUCH)
+    for a in range(na):
+        most = np.maximum.accumulate(rates[:, a:], axis=1)
+        table[:, a, a:] = np.where(most < _TOO_MUCH, most * rows[a, a:], _TOO_MUCH)
+    bad = np.maximum(table[..., 1:], table[..., :-1]) >= _TOO_MUCH
+    middle = np.where(bad, _TOO_MUCH, (table[..., 1:] + table[..., :-1]) / 2 * pitch)
+    count = np.arange(ns)[None, :] - np.arange(ns)[:, None] + 1
+    mean = _between(np.cumsum(np.insert(rows, 0, 0.0, axis=-1), axis=-1))[..., :-1, 1:] / np.maximum(count, 1)
+    total = np.concatenate([np.zeros((k, na, na, 1)), np.cumsum(middle, axis=-1)], axis=-1)
+    return np.asarray(_between(total) + mean / 2)
+
+
+def _between(total: Array) -> Array:
+    """Differences of running sums, (…, first, last)."""
+    return np.asarray(total[..., None, :] - total[..., :, None])
+
+
+class Division:
+    """The cheapest divisions of every rectangle into 1, 2, … rectangles.
+
+    Parameters
+    ----------
+    cost : (nu + 1, nu + 1, nv + 1, nv + 1) array
+        Price of each rectangle as one piece, by first and last line along u and v; inf where that cannot be.
+    empty : array of bool of the same shape
+        Rectangles with nothing in them: they cost nothing and are no piece.
+    most : int
+        Greatest number of pieces.
+
+    Notes
+    -----
+    Least cost of a rectangle with k pieces: as one piece, or over all cuts from side to side and all shares of k.
+    Exact among divisions by such cuts.
+    """
+
+    def __init__(self, cost: Array, empty: NDArray[np.bool_], most: int) -> None:
+        self._most = most
+        self.least = np.full((*cost.shape, most + 1), np.inf)
+        self.least[..., 1] = np.where(empty, np.inf, cost)
+        self.least[empty, 0] = 0.0
+        nu, nv = cost.shape[0] - 1, cost.shape[2] - 1
+        for w in range(1, nu + 1):
+            for h in range(1, nv + 1):
+                self._solve(w, h, nu, nv)
+
+    def _solve(self, w: int, h: int, nu: int, nv: int) -> None:
+        """Fill in all rectangles of w x h cells, smaller ones being known."""
+        u, v = np.arange(nu - w + 1)[:, None], np.arange(nv - h + 1)[None]
+        best = self.least[u, u + w, v, v + h]
+        for c in range(1, w):
+            best = _merged(best, self.least[u, u + c, v, v + h], self.least[u + c, u + w, v, v + h])
+        for c in range(1, h):
+            best = _merged(best, self.least[u, u + w, v, v + c], self.least[u, u + w, v + c, v + h])
+        self.least[u, u + w, v, v + h] = best
+
+    @property
+    def curve(self) -> Array:
+        """Least cost of the whole lattice in 0, 1, … pieces, (most + 1,)."""
+        return np.asarray(self.least[0, -1, 0, -1])
+
+    def pieces(self, count: int) -> list[Corners]:
+        """The rectangles of the cheapest division into a number of pieces, from low to high parameters.
+
+        Parameters
+        ----------
+        count : int
+            With a finite cost on the `curve`.
+        """
+        nu, nv = self.least.shape[0] - 1, self.least.shape[2] - 1
+        return sorted(self._followed((0, nu, 0, nv), count))
+
+    def _followed(self, box: Corners, count: int) -> Iterator[Corners]:
+        if count == 0:
+            return
+        goal = self.least[box][count]
+        for one, other in _cuts(box):
+            for k in range(count + 1):
+                if self.least[one][k] + self.least[other][count - k] == goal:
+                    yield from self._followed(one, k)
+                    yield from self._followed(other, count - k)
+                    return
+        yield box
+
+
+def _merged(best: Array, one: Array, other: Array) -> Array:
+    """The least of what is known and of all shares of pieces between two sides, (…, most + 1)."""
+    for k in range(best.shape[-1]):
+        best[..., k:] = np.minimum(best[..., k:], one[..., k, None] + other[..., : best.shape[-1] - k])
+    return best
+
+
+def _cuts(box: Corners) -> Iterator[tuple[Corners, Corners]]:
+    u0, u1, v0, v1 = box
+    for c in range(u0 + 1, u1):
+        yield (u0, c, v0, v1), (c, u1, v0, v1)
+    for c in range(v0 + 1, v1):
+        yield (u0, u1, v0, c), (u0, u1, c, v1)

@@ -1,0 +1,120 @@
+"""What axes cost at the nodes of a lattice: where they are forbidden, and how many passes a unit of the step takes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.strip import step_widths
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.orient.contacts import contacts_at
+from toolaxis.orient.feasible import Feasibility
+from toolaxis.orient.setting import OTHER
+from toolaxis.orient.verdicts import FREE
+from toolaxis.orient.worth import FEEDS, Worth
+from toolaxis.partition.lattice import Lattice
+from toolaxis.progress import NO_PROGRESS, Progress
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Rate of passes where an axis is forbidden; finite, so that sums stay numbers.
+FORBIDDEN = 1e12
+
+
+@dataclass(frozen=True, eq=False)
+class Prices:
+    """Rates of passes at the nodes of a lattice.
+
+    Attributes
+    ----------
+    axes : (k, 3) array
+    rates : (k, 2, nu + 1, nv + 1) array
+        Passes for a unit of the step parameter with feed u and feed v; 0 off the face and at walls, `FORBIDDEN` where
+        the axis may not be used.
+    left : (k, nu + 1, nv + 1) array of bool
+        Whether the node lies at a wall and is left to a clean-up tool.
+    """
+
+    axes: Array
+    rates: Array
+    left: Bools
+
+    def joined(self, other: "Prices") -> "Prices":
+        """The prices of more axes after these.
+
+        Parameters
+        ----------
+        other : Prices
+        """
+        return Prices(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
+                      np.concatenate([self.left, other.left]))
+
+
+def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array,
+           progress: Progress = NO_PROGRESS) -> Prices:
+    """Prices of axes at every node.
+
+    Parameters
+    ----------
+    lattice : Lattice
+    worth : Worth
+        Tool, scallop height and allowance.
+    feasibility : Feasibility
+        Of the whole face.
+    axes : (k, 3) array
+        Unit vectors.
+    progress : Progress
+
+    Returns
+    -------
+    Prices
+        Judged at the nodes alone, with angles to the normal kept as if half-way to the next node: a screen, not a
+        proof.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    nodes = np.flatnonzero(lattice.material)
+    allowed, left = _usable(lattice, feasibility, axes, nodes, progress)
+    rates = np.zeros((len(axes), 2, lattice.material.size))
+    rates[:, :, nodes] = np.where(left | allowed, 0.0, FORBIDDEN)[:, None]
+    axis, node = np.nonzero(allowed & ~left)
+    uv = lattice.uv.reshape(-1, 2)[nodes[node]]
+    for feed, name in enumerate(FEEDS):
+        if len(axis):
+            halves = step_widths(lattice.face, worth.tool, uv, axes[axis], worth.scallop, name, worth.allowance)
+            width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0)
+            rates[axis, feed, nodes[node]] = 1 / np.maximum(width, 1 / FORBIDDEN)
+    shape = lattice.material.shape
+    everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)
+    everywhere[:, nodes] = left
+    return Prices(axes, rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape))
+
+
+def _usable(lattice: Lattice, feasibility: Feasibility, axes: Array, nodes: NDArray[np.intp],
+            progress: Progress) -> tuple[Bools, Bools]:
+    """Which axes may be used at which nodes, and where a wall leaves the node to a clean-up tool, (k, n) each."""
+    uv, spread = lattice.uv.reshape(-1, 2)[nodes], lattice.spread.reshape(-1)[nodes]
+    angle = np.asarray(angle_between(axes[:, None], lattice.normals.reshape(-1, 3)[nodes][None]))
+    allowed = angle + spread <= feasibility.greatest_angle
+    if feasibility.least_angle > 0:
+        allowed &= angle - spread >= feasibility.least_angle
+    if feasibility.limits is not None:
+        allowed &= feasibility.limits.allowed(axes)[:, None]
+    left = np.zeros_like(allowed)
+    walls = tuple(face for group in feasibility.groups if group.role == OTHER for face in group.faces)
+    reach = 2 * feasibility.tool.radius + feasibility.tolerance.cutter_clearance
+    contacts = contacts_at(lattice.face, uv, len(uv), walls, reach)
+    for k in range(len(axes)):
+        progress.report("axes at the lattice", k, len(axes))
+        some = np.flatnonzero(allowed[k])
+        if len(some):
+            here = contacts._replace(uv=contacts.uv[some], point=contacts.point[some], normal=contacts.normal[some],
+                                     share=contacts.share[some], near=contacts.near[some])
+            trouble = feasibility.trouble(axes[k], here)
+            left[k, some] = trouble.wall & (trouble.reason != FREE)
+            allowed[k, some] = (trouble.reason == FREE) | left[k, some]
+    return allowed, left

@@ -1,0 +1,73 @@
+"""The cheapest division of a lattice, against plain enumeration."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from toolaxis.partition.guillotine import Corners, Division, offers, proper
+
+
+def shapes(nu: int, nv: int) -> tuple[int, int, int, int]:
+    return nu + 1, nu + 1, nv + 1, nv + 1
+
+
+def enumerated(box: Corners, cost: np.ndarray, empty: np.ndarray,
+               known: dict[Corners, dict[int, float]]) -> dict[int, float]:
+    """Least cost by number of pieces, by trying all cuts."""
+    if box in known:
+        return known[box]
+    best = {0: 0.0} if empty[box] else {1: float(cost[box])}
+    u0, u1, v0, v1 = box
+    cuts = [((u0, c, v0, v1), (c, u1, v0, v1)) for c in range(u0 + 1, u1)]
+    cuts += [((u0, u1, v0, c), (u0, u1, c, v1)) for c in range(v0 + 1, v1)]
+    for one, other in cuts:
+        left, right = enumerated(one, cost, empty, known), enumerated(other, cost, empty, known)
+        for (k, a), (m, b) in itertools.product(left.items(), right.items()):
+            best[k + m] = min(best.get(k + m, np.inf), a + b)
+    known[box] = best
+    return best
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_division_is_the_cheapest(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    nu, nv, most = 4, 3, 6
+    cost = rng.uniform(1, 9, shapes(nu, nv)) ** 2
+    cost[rng.random(cost.shape) < 0.3] = np.inf
+    cells = rng.random((nu, nv)) < 0.2
+    empty = np.zeros(cost.shape, dtype=bool)
+    for box in np.argwhere(proper(nu, nv)):
+        u0, u1, v0, v1 = box
+        empty[u0, u1, v0, v1] = cells[u0:u1, v0:v1].all()
+    found = Division(cost, empty, most)
+    wanted = enumerated((0, nu, 0, nv), cost, empty, {})
+    for count in range(most + 1):
+        assert found.curve[count] == pytest.approx(wanted.get(count, np.inf), rel=1e-12)
+        if np.isfinite(found.curve[count]):
+            pieces = found.pieces(count)
+            assert len(pieces) == count
+            covered = np.zeros((nu, nv), dtype=int)
+            for u0, u1, v0, v1 in pieces:
+                covered[u0:u1, v0:v1] += 1
+            assert covered.max(initial=0) <= 1 and cells[covered == 0].all()
+            assert sum(cost[box] for box in pieces) == pytest.approx(found.curve[count], rel=1e-12)
+
+
+def test_offers_are_integrals_over_the_narrowest_places() -> None:
+    rng = np.random.default_rng(3)
+    nu, nv, k = 4, 5, 40
+    rates = rng.uniform(0.5, 2.0, (k, 2, nu + 1, nv + 1))
+    rates[rng.random(rates.shape) < 0.02] = 1e12
+    gaps = rng.uniform(1, 3, (nu, nv + 1)), rng.uniform(1, 3, (nu + 1, nv))
+    pitch = rng.uniform(0.1, 0.2, nu), rng.uniform(0.1, 0.2, nv)
+    found = offers(rates, gaps, pitch, ends=0.7)
+    for u0, u1, v0, v1 in np.argwhere(proper(nu, nv)):
+        best = np.inf
+        for axis, feed in itertools.product(range(k), (0, 1)):
+            rate = rates[axis, feed, u0:u1 + 1, v0:v1 + 1].max(axis=feed)
+            row = (gaps[0][u0:u1, v0:v1 + 1].sum(axis=0) if feed == 0 else gaps[1][u0:u1 + 1, v0:v1].sum(axis=1)) + 0.7
+            step = pitch[1][v0:v1] if feed == 0 else pitch[0][u0:u1]
+            if rate.max() < 1e9:
+                best = min(best, np.trapezoid(rate * row, np.concatenate([[0], np.cumsum(step)])) + row.mean() / 2)
+        assert found.cost[u0, u1, v0, v1] == pytest.approx(best, rel=1e-6)
