@@ -6,12 +6,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import AxisLimits, parse_limits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
-from toolaxis.orient.indexed import Task, evaluate_axis, task
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.orient.indexed import Task, finished, task
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
+from toolaxis.orient.sphere import counted
+from toolaxis.orient.worth import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
@@ -71,6 +76,28 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
     return work_coordinates(found.axis, feeds, datum, middle)
 
 
+class _Remembering(Task):
+    """A task that keeps the passes it made last."""
+
+    path: ToolPath | None
+
+    def __init__(self, job: Task) -> None:
+        super().__init__(job.feasibility, job.worth, job.groups, job.progress, job.direction)
+        object.__setattr__(self, "path", None)
+
+    def made(self, axis: Array, feed: str) -> ToolPath:
+        """The passes with an axis.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        path = super().made(axis, feed)
+        object.__setattr__(self, "path", path)
+        return path
+
+
 def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None,
              progress: Progress = NO_PROGRESS) -> Operation:
     """The operation as it would be with a given axis, judged as the search judges its own.
@@ -96,16 +123,23 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
     Cancelled
         When the user asked to stop.
     """
-    inputs = plan.inputs
-    found = evaluate_axis(op.face, plan.tool, axis, inputs.scallop, _limits(plan),
-                          [face for body in plan.obstacles for face in body.faces], feed, inputs.objective,
-                          part=plan.part, tolerance=inputs.tolerance, allowance=inputs.allowance, progress=progress)
+    job = _Remembering(search_task(plan, op, progress))
+    t = unit(as_rows(axis, 3, "axis")[0])
+    witness = job.feasibility.witness(t)
+    found = Orientation(None, outcome="infeasible")
+    if witness is None:
+        ledger = Ledger(job.feasibility, job.worth, progress)
+        ledger.look(t[None])
+        found, proof = finished(job, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
+        witness = proof.witness
     progress.check()
+    if witness is not None:
+        reasons = (f"infeasible: {sentence(witness, job.feasibility)}",)
+        found = Orientation(None, found.feed, outcome="infeasible", reasons=reasons)
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if found.axis is None:
         return Operation(op.number, op.face, found)
-    path = search_task(plan, op, progress).made(found.axis, found.feed)
-    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum))
+    return Operation(op.number, op.face, found, job.path, frame_of(op.face, found, plan.datum))
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
