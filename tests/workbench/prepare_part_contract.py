@@ -29,6 +29,43 @@ def made_faces():
             yield "reversed_torus", face.Reversed()
 
 
+def bare_face():
+    """A patch of a cylinder over its seam whose edges have no curves in its parameters."""
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
+    from OCP.Geom import Geom_CylindricalSurface
+    from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
+    from OCP.TopoDS import TopoDS, TopoDS_Face
+
+    surface = Geom_CylindricalSurface(gp_Ax3(gp_Pnt(3, -2, 5), gp_Dir(1, 2, 3), gp_Dir(2, -1, 0.5)), 7.0)
+    (u0, u1), (v0, v1) = (5.5, 7.5), (-3.0, 4.0)
+    edges = [(surface.VIso(v0), u0, u1), (surface.UIso(u1), v0, v1), (surface.VIso(v1), u1, u0),
+             (surface.UIso(u0), v1, v0)]
+    wire = BRepBuilderAPI_MakeWire()
+    for curve, start, end in edges:
+        edge = BRepBuilderAPI_MakeEdge(curve, min(start, end), max(start, end)).Edge()
+        wire.Add(edge if start < end else TopoDS.Edge_s(edge.Reversed()))
+    face, builder = TopoDS_Face(), BRep_Builder()
+    builder.MakeFace(face, surface, 1e-7)
+    builder.Add(face, wire.Wire())
+    return face
+
+
+def mesh_face():
+    """A face that is only a triangle of a mesh."""
+    from OCP.BRep import BRep_Builder
+    from OCP.gp import gp_Pnt
+    from OCP.Poly import Poly_Triangle, Poly_Triangulation
+    from OCP.TopoDS import TopoDS_Face
+
+    mesh, face = Poly_Triangulation(3, 1, False), TopoDS_Face()
+    for k, point in enumerate([(0, 0, 0), (1, 0, 0), (0, 1, 0)]):
+        mesh.SetNode(k + 1, gp_Pnt(*point))
+    mesh.SetTriangle(1, Poly_Triangle(1, 2, 3))
+    BRep_Builder().MakeFace(face, mesh)
+    return face
+
+
 def write(folder):
     from OCP.BRepTools import BRepTools
 
@@ -44,6 +81,8 @@ def write(folder):
     for name, face in made_faces():
         BRepTools.Write_s(face, str(folder / f"{name}.brep"))
         (folder / f"{name}.pickle").write_bytes(pickle.dumps(shape_record(face)))
+    BRepTools.Write_s(bare_face(), str(folder / "bare.brep"))
+    BRepTools.Write_s(mesh_face(), str(folder / "mesh.brep"))
 
 
 if __name__ == "__main__":

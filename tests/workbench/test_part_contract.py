@@ -9,6 +9,7 @@ import pytest
 
 from toolaxis.cad.assembling import face_from_record, part_from_record
 from toolaxis.cad.freecad_shapes import shape_record
+from toolaxis.errors import UnsupportedGeometry
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "out" / "freecad" / "part_contract"
@@ -74,9 +75,8 @@ def name(request, prepared):
 
 @pytest.fixture(scope="module")
 def shape(name):
-    shape, path = FreecadPart.Shape(), FOLDER / f"{name}.step"
-    shape.read(str(path if path.exists() else path.with_suffix(".brep")))
-    return shape
+    path = FOLDER / f"{name}.step"
+    return read(path if path.exists() else path.with_suffix(".brep"))
 
 
 @pytest.fixture(scope="module")
@@ -153,3 +153,24 @@ def test_normals_are_those_that_freecad_shows(shape, record, contract):
         for k, (u, v) in enumerate(item.map.to_kernel(uv).tolist()):
             theirs = np.array(shape.Faces[item.number - 1].normalAt(u, v))
             assert np.linalg.norm(ours[k]) < 0.5 or np.linalg.norm(ours[k] - theirs) < 1e-6, item.number
+
+
+def read(path):
+    shape = FreecadPart.Shape()
+    shape.read(str(path))
+    return shape
+
+
+def test_an_edge_without_a_curve_in_the_parameters_gets_one(prepared):
+    """A patch of a cylinder over its seam, 2 rad by 7 mm."""
+    shape = read(prepared / "bare.brep")
+    assert shape.Faces[0].curveOnSurface(shape.Edges[0]) is None
+    face = part_from_record(shape_record(shape)).face(1)
+    assert face.area == pytest.approx(2 * 7 * 7, rel=1e-9)
+    u0, u1, v0, v1 = face.bounds
+    assert (u1 - u0, v0, v1) == pytest.approx((2, -3, 4), abs=1e-9)
+
+
+def test_a_face_that_is_only_a_mesh_is_named_as_such(prepared):
+    with pytest.raises(UnsupportedGeometry, match=r"none of the part's 1 faces can be used; .* mesh but no surface"):
+        shape_record(read(prepared / "mesh.brep"))

@@ -19,10 +19,11 @@ def part_from(thing: Any, selected: Sequence[Any] = ()) -> Part:
 
     Parameters
     ----------
-    thing : FreeCAD.DocumentObject or Part.Shape
+    thing : FreeCAD.DocumentObject, Part.Shape, or list of them
         An object comes with the placements of everything that it lies in: Part containers, bodies, links, arrays.
+        The faces of a list are numbered through, in its order.
     selected : sequence of str or Part.Face
-        Faces that the user picked, by name ("Face7") or as faces of the same shape.
+        Faces that the user picked, by name ("Face7", or "Box.Face7" in a container) or as faces of the same shape.
 
     Raises
     ------
@@ -32,31 +33,32 @@ def part_from(thing: Any, selected: Sequence[Any] = ()) -> Part:
         When none of its faces can be used.
     """
     shape, name = shape_of(thing), name_of(thing)
-    faces = [_picked(shape, item, name) for item in selected]
+    faces = [_picked(thing, shape, item) for item in selected]
     return part_from_record(shape_record(shape, faces), name)
 
 
 def shape_of(thing: Any) -> Any:
-    """The Part.Shape of an object in the document's space, or the shape itself.
+    """The Part.Shape of an object in the document's space, or the shape itself; a compound of several.
 
     Parameters
     ----------
-    thing : FreeCAD.DocumentObject or Part.Shape
+    thing : FreeCAD.DocumentObject, Part.Shape, or list of them
 
     Raises
     ------
     InvalidInput
         When there is none with faces.
     """
+    if isinstance(thing, list | tuple):
+        if not thing:
+            raise InvalidInput("the selection is empty: pick a solid, a shell or faces")
+        return FreecadPart.Compound([shape_of(item) for item in thing])
     if isinstance(thing, FreecadPart.Shape):
         return _with_faces(thing, name_of(thing))
     if not isinstance(thing, FreeCAD.DocumentObject):
         raise InvalidInput(f"cannot make a part of {type(thing).__name__}: give an object of a FreeCAD document")
     name = name_of(thing)
-    if thing.isDerivedFrom("Mesh::Feature"):
-        raise InvalidInput(f"{name} is a mesh and has no exact surfaces: pick the solid that it was made from")
-    if thing.isDerivedFrom("Sketcher::SketchObject"):
-        raise InvalidInput(f"{name} is a sketch and has no surfaces: pick a solid, a shell or faces")
+    _check_object(thing, name)
     shape = FreecadPart.getShape(thing)
     if shape.isNull():
         raise InvalidInput(f"{name} has no shape: recompute it, or pick a solid, a shell or faces")
@@ -64,10 +66,25 @@ def shape_of(thing: Any) -> Any:
 
 
 def name_of(thing: Any) -> str:
-    """What a thing is called in messages."""
-    if isinstance(thing, FreeCAD.DocumentObject):
+    """What a thing is called in messages.
+
+    Parameters
+    ----------
+    thing : FreeCAD.DocumentObject, Part.Shape, or list of them
+
+    Raises
+    ------
+    InvalidInput
+        When the object was deleted.
+    """
+    if isinstance(thing, list | tuple):
+        return ", ".join(dict.fromkeys(name_of(item) for item in thing))
+    if not isinstance(thing, FreeCAD.DocumentObject):
+        return f"the {type(thing).__name__.lower()}"
+    try:
         return str(thing.Label)
-    return f"the {type(thing).__name__.lower()}"
+    except ReferenceError as reason:
+        raise InvalidInput("the object was deleted from its document: pick another one") from reason
 
 
 def container_placement(thing: Any) -> Any:
@@ -81,11 +98,28 @@ def container_placement(thing: Any) -> Any:
     -------
     FreeCAD.Placement
     """
-    placement, parent = FreeCAD.Placement(), thing.getParentGeoFeatureGroup()
+    placement, parent = FreeCAD.Placement(), _parent(thing)
     while parent is not None:
         placement = parent.Placement.multiply(placement)
-        parent = parent.getParentGeoFeatureGroup()
+        parent = _parent(parent)
     return placement
+
+
+def _parent(thing: Any) -> Any:
+    """What moves an object along: the array of an array's element, else the container; None without one."""
+    if thing.isDerivedFrom("App::LinkElement"):
+        arrays = [other for other in thing.InList if thing in (getattr(other, "ElementList", None) or ())]
+        return arrays[0] if arrays else None
+    return thing.getParentGeoFeatureGroup()
+
+
+def _check_object(thing: Any, name: str) -> None:
+    if thing.isDerivedFrom("Mesh::Feature"):
+        raise InvalidInput(f"{name} is a mesh and has no exact surfaces: pick the solid that it was made from")
+    if thing.isDerivedFrom("Sketcher::SketchObject"):
+        raise InvalidInput(f"{name} is a sketch and has no surfaces: pick a solid, a shell or faces")
+    if "Invalid" in thing.State:
+        raise InvalidInput(f"{name} could not be computed ({thing.getStatusString()}): repair it first")
 
 
 def _moved(shape: Any, placement: Any) -> Any:
@@ -104,12 +138,22 @@ def _with_faces(shape: Any, name: str) -> Any:
     return shape
 
 
-def _picked(shape: Any, item: Any, name: str) -> Any:
-    """A face by its name; faces come as they are."""
+def _nearest(shape: Any, face: Any) -> Any:
+    """The face of a shape that is another one's copy in the same place."""
+    copies = [other for other in shape.Faces if other.isPartner(face)]
+    return min(copies, key=lambda other: other.CenterOfMass.distanceToPoint(face.CenterOfMass), default=face)
+
+
+def _picked(thing: Any, shape: Any, item: Any) -> Any:
+    """A face by its name, also below the objects of a container; faces come as they are."""
     if not isinstance(item, str):
         return item
+    name = name_of(thing)
     digits = item.removeprefix("Face")
-    number = int(digits) if item.startswith("Face") and digits.isdigit() else 0
-    if not 1 <= number <= len(shape.Faces):
-        raise InvalidInput(f"{item} is no face of {name}: it has Face1 to Face{len(shape.Faces)}")
-    return shape.Faces[number - 1]
+    if item.startswith("Face") and digits.isdigit() and 1 <= int(digits) <= len(shape.Faces):
+        return shape.Faces[int(digits) - 1]
+    if "." in item and isinstance(thing, FreeCAD.DocumentObject):
+        found = FreecadPart.getShape(thing, item, needSubElement=True)
+        if not found.isNull() and found.ShapeType == "Face":
+            return _nearest(shape, _moved(found, container_placement(thing)).Faces[0])
+    raise InvalidInput(f"{item} is no face of {name}: it has Face1 to Face{len(shape.Faces)}")

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 CLOSE = 1e-6
 FAR = 10.0
+PROJECTED = 65
 
 
 class Numbering:
@@ -108,13 +109,10 @@ class FreecadEdge:
 
     def __init__(self, edge: Any, face: Any, key: int) -> None:
         self.key = key
-        self.edge = edge
+        self.edge, self.face = edge, face
         self.forward = edge.Orientation != "Reversed"
         self.degenerate = bool(edge.Degenerated)
-        found = face.curveOnSurface(edge)
-        if found is None:
-            raise UnsupportedGeometry("an edge has no curve in the parameters of its face: repair the part in the "
-                                      "CAD system")
+        found: tuple[Any, float, float] = face.curveOnSurface(edge) or _projected(edge, face)
         self.curve, first, last = found
         self.range = first, last
         self.first, self.last = (first, last) if self.forward else (last, first)
@@ -125,10 +123,18 @@ class FreecadEdge:
         """Smooth pieces in the parameters."""
         return smooth_pieces(self.curve, *self.range)
 
+    @cached_property
+    def space(self) -> Any:
+        """The curve in space; None where the edge is only a curve on its faces."""
+        try:
+            return self.edge.Curve
+        except (AttributeError, TypeError, RuntimeError):
+            return None
+
     @property
     def space_spans(self) -> int:
         """Smooth pieces in space."""
-        return smooth_pieces(self.edge.Curve, *self.edge.ParameterRange)
+        return smooth_pieces(self.space, *self.edge.ParameterRange) if self.space else self.spans
 
     def parameters(self, share: Array) -> Array:
         """(u, v) at shares of the way from its start (0) to its end (1), (n, 2)."""
@@ -137,6 +143,9 @@ class FreecadEdge:
 
     def points(self, share: Array) -> Array:
         """Points at shares of the edge's own range, (n, 3)."""
+        if self.space is None:
+            places = self.parameters(share if self.forward else 1 - share)
+            return rows(self.face.valueAt(u, v) for u, v in places.tolist())
         start, end = self.edge.ParameterRange
         return rows(self.edge.valueAt(t) for t in (start + (end - start) * share).tolist())
 
@@ -144,6 +153,34 @@ class FreecadEdge:
     def ends(self) -> Array:
         """Parameters of its start and its end, (2, 2)."""
         return self.parameters(np.array([0.0, 1.0]))
+
+
+class ProjectedCurve:
+    """The curve of an edge in the parameters of its face, by projection, where the shape has none."""
+
+    def __init__(self, edge: Any, surface: Any, periods: tuple[float, float]) -> None:
+        self.edge, self.surface, self.periods = edge, surface, np.array(periods)
+        first, last = edge.ParameterRange
+        self.times = np.linspace(first, last, PROJECTED)
+        self.places = np.array([surface.parameter(edge.valueAt(t)) for t in self.times.tolist()])
+        for column, period in enumerate(periods):
+            if period > 0:
+                self.places[:, column] = np.unwrap(self.places[:, column], period=period)
+
+    def value(self, t: float) -> Any:
+        """(u, v) at a parameter of the edge, without jumps over the seam of the surface."""
+        place = np.array(self.surface.parameter(self.edge.valueAt(t)))
+        near = np.array([np.interp(t, self.times, column) for column in self.places.T])
+        turns = np.round((near - place) / np.where(self.periods > 0, self.periods, np.inf))
+        return FreeCAD.Base.Vector2d(*(place + turns * self.periods))
+
+
+def _projected(edge: Any, face: Any) -> tuple[ProjectedCurve, float, float]:
+    surface = FreecadSurface(face.Surface)
+    if edge.Degenerated or edge.isSeam(face):
+        raise UnsupportedGeometry("an edge has no curve in the parameters of its face: repair the part in the "
+                                  "CAD system")
+    return ProjectedCurve(edge, surface.basis, surface.periods), *edge.ParameterRange
 
 
 def smooth_pieces(curve: Any, low: float, high: float) -> int:

@@ -8,7 +8,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
-MESHES = ("trimesh", "meshio", "pyvista", "open3d", "stl")
+MESHES = ("trimesh", "meshio", "pyvista", "open3d", "stl", "Mesh")
 
 
 def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool = False) -> Part:
@@ -17,7 +17,7 @@ def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool =
     Parameters
     ----------
     source : path, cadquery Workplane, Shape or Assembly, build123d object or list of them, TopoDS_Shape,
-        FreeCAD document object or Part.Shape, Face, list of Face, or Part
+        FreeCAD document object or Part.Shape or list of them, Face, list of Face, or Part
     time_limit : float, optional
         s that the CAD kernel may take over a file.
     accept_lost_faces : bool
@@ -39,7 +39,7 @@ def load(source: Any, time_limit: float | None = None, accept_lost_faces: bool =
             raise InvalidInput("the path of the part is empty: name a STEP file")
         return read_step(source, time_limit, accept_lost_faces)
     family = type(source).__module__.split(".")[0]
-    if _is_freecad(source):
+    if _is_freecad(source) or (isinstance(source, list | tuple) and source and all(map(_is_freecad, source))):
         from toolaxis.cad.freecad import part_from
 
         return part_from(source)
