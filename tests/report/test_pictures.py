@@ -1,5 +1,6 @@
 """Every picture is drawn from data without a display, and says what it shows."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
+from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
     WidthStudy,
     cutting_lines,
@@ -66,6 +68,18 @@ def test_operation_picture_shows_part_passes_and_tool(tmp_path: Path) -> None:
     labels = [text.get_text() for ax in made.axes for text in ax.get_legend().get_texts()]
     assert {"face", "contact line", "machined face", "cutter", "shank", "holder"} <= set(labels)
     assert len(colours_of(made, tmp_path / "op.png")) > 20
+
+
+def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
+    plan, op = planned()
+    halves = [np.array([[a, 0.0], [a + 0.5, 0.0], [a + 0.5, 1.0], [a, 1.0]]) for a in (0.0, 0.5)]
+    both = (replace(op, face=op.face.trimmed((halves[0],), "1a")),
+            Operation(2, op.face.trimmed((halves[1],), "1b"), Orientation(None), None, None))
+    made = overview_picture(replace(plan, operations=both))
+    ax = made.axes[0]
+    assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
+    assert "1 of 2 sub-surfaces" in ax.get_title()
+    assert len(colours_of(made, tmp_path / "plan.png")) > 10
 
 
 def test_cutting_lines_are_the_uninterrupted_cuts() -> None:

@@ -54,7 +54,13 @@ def figure(width: float, height: float) -> Figure:
     return made
 
 
-def _bare(ax: Axes) -> None:
+def bare(ax: Axes) -> None:
+    """Lengths to scale, no frame.
+
+    Parameters
+    ----------
+    ax : Axes
+    """
     ax.set_aspect("equal")
     ax.set_axis_off()
 
@@ -96,8 +102,8 @@ def _close_up(ax: Axes, op: Operation, view: tuple[Array, Array]) -> None:
     slack = 0.01 * op.face.diagonal + 4 * canvas.camera.pixel
     _draw_cuts(ax, canvas, op.path, slack)
     _legend(ax, {"face": _FACE}, {"contact line": BLUE, "beyond the border": SKY})
-    _scale_bar(ax, canvas.camera)
-    _bare(ax)
+    scale_bar(ax, canvas.camera)
+    bare(ax)
 
 
 def _draw_cuts(ax: Axes, canvas: Canvas, path: ToolPath, slack: float) -> None:
@@ -164,8 +170,8 @@ def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -
     ax.annotate("T", line[1], textcoords="offset points", xytext=(6, -2), fontsize=11, style="italic")
     _legend(ax, {"machined face": _FACE, "part": _PART, **{name: colours[name] for name in outlines}},
             {"contact line": BLUE})
-    _scale_bar(ax, seen)
-    _bare(ax)
+    scale_bar(ax, seen)
+    bare(ax)
 
 
 def _standing(path: ToolPath) -> Array:
@@ -181,7 +187,14 @@ def _legend(ax: Axes, areas: Mapping[str, tuple[float, float, float]], lines: Ma
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
 
 
-def _scale_bar(ax: Axes, seen: Camera) -> None:
+def scale_bar(ax: Axes, seen: Camera) -> None:
+    """Draw a scale bar in the lower left corner.
+
+    Parameters
+    ----------
+    ax : Axes
+    seen : Camera
+    """
     left, right, low, high = seen.extent
     rough = (right - left) / 5
     decade = 10.0 ** np.floor(np.log10(rough))
@@ -246,8 +259,8 @@ def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, 
     handles = [Patch(facecolor=VERMILION, label="above 1.1 times the limit")]
     handles += [Patch(facecolor=GREY, label="not reached")] if lost.any() else []
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, fontsize=8, frameon=False)
-    _scale_bar(ax, seen)
-    _bare(ax)
+    scale_bar(ax, seen)
+    bare(ax)
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,8 +341,8 @@ def widths_picture(lines: Sequence[tuple[Array, Array]], area: tuple[Face, Tool]
     plan.set_ylim(*seen.extent[2:])
     if image is not None:
         made.colorbar(image, ax=plan, shrink=0.85, extend="max").set_label("strip width, mm")
-    _scale_bar(plan, seen)
-    _bare(plan)
+    scale_bar(plan, seen)
+    bare(plan)
     plan.set_title(f"{name}: strip width along the passes, {tool.name}", fontsize=10)
     graph.set_xlabel("way along the pass, mm")
     graph.set_ylabel("strip width, mm")

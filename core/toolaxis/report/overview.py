@@ -1,0 +1,105 @@
+"""The whole plan in one picture: the part coloured by sub-surface, its passes, and an arrow for each axis."""
+
+import numpy as np
+from matplotlib import patheffects
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from toolaxis.numeric.vectors import unit
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.report.plots import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    bare,
+    cutting_lines,
+    figure,
+    scale_bar,
+)
+from toolaxis.report.raster import Canvas, camera, face_splats, mean_direction, visible_runs
+
+Array = NDArray[np.float64]
+
+_YELLOW = "#F0E442"
+_COLOURS = tuple(tuple(0.45 + 0.55 * part for part in to_rgb(name))
+                 for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, BLUE, VERMILION))
+_PART, _NO_AXIS = (0.86, 0.86, 0.86), tuple(0.4 + 0.3 * part for part in to_rgb(GREY))
+
+
+def overview_picture(plan: Plan) -> Figure:
+    """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
+
+    Neighbours have different colours; a sub-surface without an axis is dark and crossed.
+
+    Parameters
+    ----------
+    plan : Plan
+        With at least one operation.
+    """
+    operations = plan.operations
+    normals = np.array([mean_direction(op.face.normal(op.face.grid(12, 12))) for op in operations])
+    middle = mean_direction(normals)
+    corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
+    arrow = 0.22 * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    roots = np.array([_root(op) for op in operations])
+    heads = np.array([root + (op.orientation.axis if op.orientation.axis is not None else 0 * root) * arrow
+                      for op, root in zip(operations, roots, strict=True)])
+    seen = camera(*_view(middle), np.concatenate([corners, roots, heads]), pixels=1100)
+    canvas = Canvas(seen)
+    whole = {op.face.number for op in operations}
+    for face in plan.part.faces:
+        if face.number not in whole:
+            canvas.splat(*face_splats(face, seen), _PART)
+    for index, op in enumerate(operations):
+        canvas.splat(*face_splats(op.face, seen), _COLOURS[index % len(_COLOURS)] if op.done else _NO_AXIS)
+    canvas.close()
+    made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
+    ax = made.subplots()
+    ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
+    for op, root, head in zip(operations, roots, heads, strict=True):
+        _passes(ax, canvas, op)
+        _arrow(ax, op, *seen.project(np.array([root, head]))[:, :2])
+    done = sum(op.done for op in operations)
+    ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(operations)} sub-surfaces, "
+                 f"cutting length {plan.length:.0f} mm", fontsize=10)
+    scale_bar(ax, seen)
+    bare(ax)
+    return made
+
+
+def _view(middle: Array) -> tuple[Array, Array]:
+    """Towards the viewer and upright: obliquely onto the mean normal."""
+    up = np.array([0.0, 0.0, 1.0]) if abs(middle[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    side = unit(np.cross(up, middle))
+    return middle + 0.45 * side - 0.65 * np.cross(middle, side), middle if abs(middle[2]) >= 0.9 else up
+
+
+def _root(op: Operation) -> Array:
+    """The point of a sub-surface nearest to its middle, (3,) mm."""
+    points = op.face.evaluate(op.face.grid(16, 16)).point
+    if not len(points):
+        points = op.face.evaluate(op.face.outline[0]).point
+    return np.asarray(points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))])
+
+
+def _passes(ax: Axes, canvas: Canvas, op: Operation) -> None:
+    if op.path is not None:
+        slack = 0.01 * op.face.diagonal + 4 * canvas.camera.pixel
+        runs = [run for line in cutting_lines(op.path) for run in visible_runs(canvas, line, slack)]
+        ax.add_collection(LineCollection(runs, colors="#333333", linewidths=0.25))
+
+
+def _arrow(ax: Axes, op: Operation, foot: Array, head: Array) -> None:
+    halo = [patheffects.withStroke(linewidth=3, foreground="white")]
+    if op.done:
+        ax.annotate("", head, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
+    text = f"{op.number}" if op.done else f"{op.number}: no axis"
+    ax.annotate(text, head, textcoords="offset points", xytext=(5, 3), fontsize=11, weight="bold", path_effects=halo)
