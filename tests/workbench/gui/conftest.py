@@ -206,10 +206,18 @@ class Desk:
         if thing is not None and not faces:
             self.gui.Selection.addSelection(thing.Document.Name, thing.Name)
         self.gui.runCommand("ToolAxis_PlanOrientations")
-        self.pump(0.2)
-        form = self.form("ToolAxisPlan")
-        assert form is not None, f"no panel; {self.errors}"
-        return form
+        self.wait(lambda: self.form("ToolAxisPlan") or self.errors, "the panel opens", 20)
+        assert not self.errors, self.errors
+        return self.form("ToolAxisPlan")
+
+    def down(self, form, widget):
+        """Scroll the task panel until a widget is in sight."""
+        above = form.parentWidget()
+        while above is not None and not isinstance(above, self.widgets.QScrollArea):
+            above = above.parentWidget()
+        if above is not None:
+            above.ensureWidgetVisible(widget, 0, 400)
+            self.pump(0.1)
 
     def computed(self, form):
         """Press Compute and wait."""

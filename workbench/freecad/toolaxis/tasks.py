@@ -14,7 +14,7 @@ import FreeCAD
 from PySide import QtCore
 
 #: Interval at which progress is read, ms.
-_TICK = 80
+_TICK = 150
 #: How long the end of the application waits for a computation that was told to stop, ms.
 _PATIENCE = 3000
 

@@ -97,6 +97,11 @@ class AxisView(QtCore.QObject):
         self.form.operation.setVisible(self.plan is not None and len(self.plan.operations) > 1)
         self.form.pointer.setText("")
         self._show_numbers()
+        self.show_tool()
+
+    def show_tool(self):
+        """Show passes and tool of the tried axis, or of the plan's, in the 3D view."""
+        op = self.tried or self.operation
         if op is None or not op.done:
             self.preview.clear()
         else:
@@ -151,21 +156,23 @@ class AxisView(QtCore.QObject):
         self.busy.emit(True)
         self.form.cost.setText(translate("ToolAxis", "Trying this axis..."))
         self.work = Work(lambda progress: try_axis(plan, op, axis, progress=progress), self)
+        self.work.progressed.connect(self._trying)
         self.work.done.connect(self._tried)
         self.work.failed.connect(self._failed)
         self.work.cancelled.connect(lambda: self._failed(""))
         self.work.start()
+
+    def _trying(self, stage, share):
+        names = {"axes": translate("ToolAxis", "screening"), "passes": translate("ToolAxis", "making passes"),
+                 "proof": translate("ToolAxis", "checking for gouges and collisions")}
+        self.form.cost.setText(translate("ToolAxis", "Trying this axis: {}...").format(names.get(stage, stage)))
 
     def _tried(self, operation):
         self.work = None
         self.tried = operation
         self.busy.emit(False)
         self._show_numbers()
-        if operation.done:
-            self.preview.show(self.plan, operation)
-            self.preview.move(self.form.slide.value() / self.form.slide.maximum())
-        else:
-            self.preview.clear()
+        self.show_tool()
 
     def _failed(self, message):
         self.work = None

@@ -6,6 +6,7 @@ from FreeCAD import Units
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES
+from . import palette
 
 translate = FreeCAD.Qt.translate
 
@@ -60,6 +61,24 @@ def fit_rows(table):
     height = row * table.rowCount() + 4 + (0 if head.isHidden() else head.sizeHint().height())
     table.setMinimumHeight(height)
     table.setMaximumHeight(height)
+
+
+def tell(label, text, bad=False):
+    """Show a sentence on a label, in a warning colour where it is bad; nothing is drawn anew without need.
+
+    Parameters
+    ----------
+    label : QLabel
+    text : str
+    bad : bool
+    """
+    colour = ("#ff9e80" if palette.is_dark(label.parentWidget().palette()) else "#a33c00") if bad else ""
+    style = f"color: {colour};" if colour else ""
+    if label.styleSheet() != style:
+        label.setStyleSheet(style)
+    sentence = text if not text or text.endswith((".", "...")) else f"{text}."
+    if label.text() != sentence:
+        label.setText(sentence)
 
 
 class QuantityField:

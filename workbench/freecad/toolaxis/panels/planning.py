@@ -8,9 +8,8 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
-from . import palette
 from .axisview import AxisView
-from .fields import load_form
+from .fields import load_form, tell
 from .planform import PlanForm
 from .preview import Preview
 from .selected import bodies_in, faces_of, tools_in
@@ -183,11 +182,7 @@ class PlanPanel:
         return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
 
     def _tell(self, text, bad=False):
-        label = self.form.message
-        dark = palette.is_dark(label.palette())
-        colour = ("#ff9e80" if dark else "#a33c00") if bad else ""
-        label.setStyleSheet(f"color: {colour};" if colour else "")
-        label.setText(text if not text or text.endswith(".") else f"{text}.")
+        tell(self.form.message, text, bad)
 
     # computing
 
@@ -200,6 +195,7 @@ class PlanPanel:
             return
         inputs = bridge.Inputs(**self.fields.read())
         self.view.leave()
+        self.preview.clear()
         try:
             task = bridge.task(inputs)
         except Exception as reason:
@@ -244,6 +240,7 @@ class PlanPanel:
     def _not_computed(self, message):
         self.work = None
         self.problem = message
+        self.view.show_tool()
         self._show_state()
         if not message:
             self._tell(translate("ToolAxis", "Stopped; the document is unchanged."))

@@ -1,6 +1,7 @@
 """What the panel shows in the 3D view before anything is in the document: passes, tool with holder, and frame."""
 
 from contextlib import suppress
+from itertools import pairwise
 
 import FreeCADGui
 import numpy as np
@@ -178,24 +179,18 @@ def _polylines(colour, lines, width):
 
 
 def _lines(path):
-    """The path at the cutter's contact while it cuts, and at its tip between the passes."""
+    """The way of the tool's tip, in one colour where it cuts and in another between the passes."""
     from pivy import coin
 
     from toolaxis.cldata.toolpath import Motion
 
     node = coin.SoSeparator()
-    cut = path.kind == Motion.CUT
-    lines, links = [], []
-    for k in range(1, len(path.cl)):
-        target = lines if cut[k] else links
-        if k > 1 and cut[k] == cut[k - 1] and target:
-            target[-1].append(path.cl[k])
-        else:
-            target.append([path.cl[k - 1], path.cl[k]])
-    if lines:
-        node.addChild(_polylines(_CUT, [np.array(line) for line in lines], 1.6))
-    if links:
-        node.addChild(_polylines(_LINK, [np.array(line) for line in links], 1.0))
+    cut = np.asarray(path.kind[1:]) == Motion.CUT
+    bounds = np.concatenate([[0], np.flatnonzero(np.diff(cut)) + 1, [len(cut)]])
+    for flag, colour, width in ((True, _CUT, 1.6), (False, _LINK, 1.0)):
+        lines = [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == flag]
+        if lines:
+            node.addChild(_polylines(colour, lines, width))
     return node
 
 

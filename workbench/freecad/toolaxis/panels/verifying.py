@@ -9,8 +9,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
-from . import palette
-from .fields import fine_text, fit_rows, length_text, load_form
+from .fields import fine_text, fit_rows, length_text, load_form, tell
 from .paint import WHAT, Paint, skins_of
 from .preview import view_of
 from .scale import Scale
@@ -111,10 +110,7 @@ class VerifyPanel:
         self._show()
 
     def _tell(self, text, bad=False):
-        label = self.form.message
-        dark = palette.is_dark(label.palette())
-        label.setStyleSheet(("color: #ff9e80;" if dark else "color: #a33c00;") if bad else "")
-        label.setText(text if not text or text.endswith(".") else f"{text}.")
+        tell(self.form.message, text, bad)
 
     @property
     def chosen(self):
