@@ -14,7 +14,6 @@ from toolaxis.plan.plan import Plan
 from toolaxis.report.plots import (
     BLUE,
     GREEN,
-    GREY,
     ORANGE,
     PURPLE,
     SKY,
@@ -29,15 +28,21 @@ from toolaxis.report.raster import Canvas, camera, face_splats, mean_direction, 
 Array = NDArray[np.float64]
 
 _YELLOW = "#F0E442"
-_COLOURS = tuple(tuple(0.45 + 0.55 * part for part in to_rgb(name))
-                 for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, BLUE, VERMILION))
-_PART, _NO_AXIS = (0.86, 0.86, 0.86), tuple(0.4 + 0.3 * part for part in to_rgb(GREY))
+_PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
+
+
+def _pale(name: str) -> tuple[float, float, float]:
+    red, green, blue = to_rgb(name)
+    return 0.45 + 0.55 * red, 0.45 + 0.55 * green, 0.45 + 0.55 * blue
+
+
+_COLOURS = tuple(_pale(name) for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, BLUE, VERMILION))
 
 
 def overview_picture(plan: Plan) -> Figure:
     """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
 
-    Neighbours have different colours; a sub-surface without an axis is dark and crossed.
+    Neighbours have different colours; a sub-surface without an axis is grey and says so.
 
     Parameters
     ----------
@@ -98,8 +103,9 @@ def _passes(ax: Axes, canvas: Canvas, op: Operation) -> None:
 
 
 def _arrow(ax: Axes, op: Operation, foot: Array, head: Array) -> None:
+    tip, root = (float(head[0]), float(head[1])), (float(foot[0]), float(foot[1]))
     halo = [patheffects.withStroke(linewidth=3, foreground="white")]
     if op.done:
-        ax.annotate("", head, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
+        ax.annotate("", tip, root, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
     text = f"{op.number}" if op.done else f"{op.number}: no axis"
-    ax.annotate(text, head, textcoords="offset points", xytext=(5, 3), fontsize=11, weight="bold", path_effects=halo)
+    ax.annotate(text, tip, textcoords="offset points", xytext=(5, 3), fontsize=11, weight="bold", path_effects=halo)
