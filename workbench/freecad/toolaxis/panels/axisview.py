@@ -239,6 +239,10 @@ def _room(found, name):
     return length_text(value) if np.isfinite(value) else translate("ToolAxis", "far")
 
 
+def _angle(y, x):
+    return f"{np.degrees(np.arctan2(y, x)) + 0.0:.2f}°"
+
+
 def measures(found):
     """Rows of the result table: (name, text) pairs.
 
@@ -256,7 +260,8 @@ def measures(found):
              (translate("ToolAxis", "Shank clearance"), lambda: _room(found, "shank")),
              (translate("ToolAxis", "Holder clearance"), lambda: _room(found, "holder")),
              (translate("ToolAxis", "Left to clean-up"), lambda: f"{100 * found.unreached:.1f} %"),
-             (translate("ToolAxis", "Axis"), lambda: "(" + ", ".join(f"{x + 0.0:.3f}" for x in found.axis) + ")")]
+             (translate("ToolAxis", "Tilt from Z"), lambda: _angle(np.hypot(*found.axis[:2]), found.axis[2])),
+             (translate("ToolAxis", "Turn about Z"), lambda: _angle(found.axis[1], found.axis[0]))]
     return rows + [(name, text() if there else "-") for name, text in texts]
 
 

@@ -1,0 +1,105 @@
+"""Work off the GUI thread: one outcome, on the GUI thread, whatever the computation does."""
+
+import gc
+import threading
+import time
+
+import pytest
+
+
+class Ears:
+    """Hears what a work tells, and on which thread."""
+
+    def __init__(self, work):
+        self.heard, self.stages, self.threads = [], [], set()
+        work.done.connect(lambda result: self.hear("done", result))
+        work.failed.connect(lambda text: self.hear("failed", text))
+        work.cancelled.connect(lambda: self.hear("cancelled", None))
+        work.progressed.connect(lambda stage, share: self.stages.append((stage, share)))
+
+    def hear(self, *what):
+        self.heard.append(what)
+        self.threads.add(threading.current_thread())
+
+
+def patient(progress):
+    """Works for a long while, and looks often whether to stop."""
+    for k in range(2000):
+        progress.report("stage", k, 2000)
+        time.sleep(0.005)
+    return "done"
+
+
+def started(compute):
+    from freecad.toolaxis.tasks import Work
+
+    work = Work(compute)
+    return work, Ears(work.start())
+
+
+def test_a_result_arrives_once_on_the_gui_thread(desk):
+    from freecad.toolaxis.tasks import Work
+
+    worked_in = []
+    work = Work(lambda progress: worked_in.append(threading.current_thread()) or 42)
+    ears = Ears(work)
+    work.start()
+    assert work.running
+    desk.wait(lambda: ears.heard, "the result arrives", 10)
+    desk.pump(0.3)
+    assert ears.heard == [("done", 42)] and not work.running
+    assert ears.threads == {threading.main_thread()} and worked_in[0] is not threading.main_thread()
+
+
+def test_stages_are_told_but_not_each_report(desk):
+    work, ears = started(patient)
+    desk.pump(1.0)
+    work.cancel()
+    desk.wait(lambda: ears.heard, "it stops", 10)
+    assert ears.heard == [("cancelled", None)]
+    assert 1 <= len(ears.stages) < 30 and all(0 <= share <= 1 for _, share in ears.stages)
+
+
+@pytest.mark.parametrize(("reason", "words"), [
+    (ValueError("odd"), "please report it"), (MemoryError(), "memory"), (ImportError("No module named x"), "Addon")])
+def test_errors_are_sentences(desk, reason, words):
+    def compute(progress):
+        raise reason
+
+    _, ears = started(compute)
+    desk.wait(lambda: ears.heard, "it fails", 10)
+    assert ears.heard[0][0] == "failed" and words in ears.heard[0][1]
+
+
+def test_an_error_of_the_library_is_its_own_sentence(desk):
+    def compute(progress):
+        from toolaxis.errors import InvalidInput
+
+        raise InvalidInput("scallop is 0 mm:\n it must be above zero.")
+
+    _, ears = started(compute)
+    desk.wait(lambda: ears.heard, "it fails", 10)
+    assert ears.heard == [("failed", "scallop is 0 mm: it must be above zero")]
+
+
+def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotten(desk):
+    work, ears = started(patient)
+    desk.pump(0.1)
+    work.leave()
+    del work
+    gc.collect()
+    desk.pump(0.5)
+    assert ears.heard == []
+    from freecad.toolaxis import tasks
+
+    desk.wait(lambda: not tasks._running, "the thread is let go", 10)
+
+
+def test_the_end_of_the_application_waits_for_what_stops(desk):
+    from freecad.toolaxis import tasks
+
+    _, ears = started(patient)
+    desk.pump(0.1)
+    tasks.stop_all()
+    desk.wait(lambda: ears.heard, "it stops", 5)
+    assert ears.heard == [("cancelled", None)]
