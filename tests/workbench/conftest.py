@@ -86,7 +86,7 @@ class InnerRun(pytest.Item):
         long = self.config.getoption("--long")
         arguments = ["-p", "no:cacheprovider", *(["--long"] if long else []), self.path.relative_to(ROOT).as_posix()]
         command = command_for(self.variable, arguments, window="gui" in self.path.parts)
-        prepare(self.path)
+        prepare(self.path, long)
         judge(*ended(command, LONG_TIME_LIMIT if long else TIME_LIMIT))
 
     def repr_failure(self, excinfo):
@@ -102,7 +102,7 @@ def prepared_folder(path):
     return ROOT / "out" / "freecad" / path.stem.removeprefix("test_")
 
 
-def prepare(path):
+def prepare(path, long):
     """Run the script beside a file of tests that makes what they need from outside FreeCAD."""
     script = path.with_name(f"prepare_{path.stem.removeprefix('test_')}.py")
     folder = prepared_folder(path)
@@ -110,7 +110,7 @@ def prepare(path):
         return
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    output, ending = ended([sys.executable, str(script), str(folder)], TIME_LIMIT)
+    output, ending = ended([sys.executable, str(script), str(folder), *(["--long"] if long else [])], LONG_TIME_LIMIT)
     if ending != "ended with 0":
         raise InnerFailure(f"{script.name} {ending}; its last lines:\n{_tail(output)}")
 

@@ -1,0 +1,88 @@
+"""plan.json made through FreeCAD against the command's for the same STEP file."""
+
+import json
+from pathlib import Path
+
+import FreeCAD
+import Part as FreecadPart
+import pytest
+
+import toolaxis as ta
+from toolaxis.job.folder import write_plan
+from toolaxis.orient.indexed import evaluate_axis
+from toolaxis.plan.document import tool_from
+from toolaxis.shape.kinks import split_at_kinks
+
+FOLDER = Path(__file__).resolve().parents[2] / "out" / "freecad" / "same_plan"
+NAMES = sorted(path.parent.name for path in FOLDER.glob("*/plan.json"))
+FIGURES = ("count", "length", "average_strip_width", "gouge", "unreached")
+
+
+@pytest.fixture(scope="module", params=NAMES or [pytest.param(None, marks=pytest.mark.skip(reason="not prepared"))])
+def name(request, prepared):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def commands(name):
+    """The command's plan.json."""
+    return json.loads((FOLDER / name / "plan.json").read_text())
+
+
+@pytest.fixture(scope="module")
+def thing(name):
+    """The part as an object of a document."""
+    document = FreeCAD.newDocument("Plan")
+    made = document.addObject("Part::Feature", "Imported")
+    made.Shape = FreecadPart.read(str(FOLDER / f"{name}.step"))
+    document.recompute()
+    yield made
+    FreeCAD.closeDocument(document.Name)
+
+
+@pytest.fixture(scope="module")
+def part(thing):
+    return ta.load(thing)
+
+
+@pytest.fixture(scope="module")
+def again(thing, commands, tmp_path_factory):
+    """plan.json made through FreeCAD with the command's inputs."""
+    scallop, folder = commands["inputs"]["scallop"], tmp_path_factory.mktemp("plan")
+    faces = sorted({op["face"] for op in commands["operations"]})
+    write_plan(ta.plan(thing, tool_from(commands["tool"]), scallop, faces=faces), folder)
+    return json.loads((folder / "plan.json").read_text())
+
+
+def test_the_command_found_an_axis_somewhere(commands):
+    assert commands["operations"]
+
+
+def test_the_same_axis_comes_to_the_same(commands, part):
+    """Figures to 1e-6, passes within 0.1 %."""
+    for op in commands["operations"]:
+        theirs = op["orientation"]
+        if theirs["axis"] is None:
+            continue
+        face = next(piece for piece in split_at_kinks(part.face(op["face"])) if piece.label == op["label"])
+        ours = evaluate_axis(face, tool_from(commands["tool"]), theirs["axis"], commands["inputs"]["scallop"],
+                             part=part, feed=theirs["feed"])
+        assert ours.outcome == theirs["outcome"]
+        assert ours.passes == pytest.approx(theirs["passes"], rel=1e-3)
+        for figure in FIGURES:
+            assert getattr(ours, figure) == pytest.approx(theirs[figure], rel=1e-6, abs=1e-9), figure
+        for member, distance in theirs["clearance"].items():
+            assert ours.clearance[member] == pytest.approx(distance, rel=1e-6), member
+
+
+def test_the_search_through_freecad_comes_to_the_same_plan(commands, again):
+    assert again["outcome"] == commands["outcome"]
+    assert again["units"] == commands["units"]
+    assert again["inputs"] == commands["inputs"]
+    for ours, theirs in zip(again["operations"], commands["operations"], strict=True):
+        assert (ours["face"], ours["label"], ours["kind"]) == (theirs["face"], theirs["label"], theirs["kind"])
+        assert ours["area"] == pytest.approx(theirs["area"], rel=1e-9)
+        assert ours["orientation"]["outcome"] == theirs["orientation"]["outcome"]
+        assert ours["orientation"]["axis"] == pytest.approx(theirs["orientation"]["axis"], abs=1e-6)
+        assert ours["orientation"]["length"] == pytest.approx(theirs["orientation"]["length"], rel=1e-3)
+        assert ours["travel"] == pytest.approx(theirs["travel"], rel=1e-3)
