@@ -189,3 +189,29 @@ def test_the_window_stays_alive_while_computing(desk, form):
     timer.stop()
     print(f"longest pause {1000 * max(gaps):.0f} ms")
     assert len(gaps) > 5 and sorted(gaps)[len(gaps) // 2] < 0.05
+
+
+@pytest.mark.parametrize("schema", ["ImperialDecimal", "MmMin", "Internal"])
+def test_units_follow_freecads_settings(desk, wavy, schema):
+    import FreeCAD
+
+    names = FreeCAD.Units.listSchemas()
+    before = FreeCAD.Units.getSchema()
+    FreeCAD.Units.setSchema(names.index(schema))
+    try:
+        form = desk.start(*wavy)
+        inches = schema == "ImperialDecimal"
+        form.tabs.setCurrentWidget(form.toolTab)
+        assert ("in" in form.diameter.property("text")) == inches
+        desk.type(form.diameter, "0.25 in")
+        assert form.diameter.property("rawValue") == pytest.approx(6.35)
+        assert ("in" in form.holder.item(0, 0).text()) == inches
+        form.tabs.setCurrentWidget(form.jobTab)
+        desk.type(form.scallop, "0.0125 mm")
+        assert form.scallop.property("rawValue") == pytest.approx(0.0125, rel=0.02)
+        desk.shot(f"11-units-{schema}")
+        desk.type(form.scallop, "0.2 mm")
+        desk.computed(form)
+        assert any("in" in form.results.item(row, 0).text().split() for row in (2, 3)) == inches
+    finally:
+        FreeCAD.Units.setSchema(before)

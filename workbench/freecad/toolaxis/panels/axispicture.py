@@ -100,13 +100,13 @@ def missed(code, amount):
     amount : float
         mm or rad.
     """
-    from FreeCAD import Units
+    from .fields import fine_text
 
     if not (np.isfinite(amount) and amount > 0):
         return ""
     if code in _ANGLES:
         return f"{np.degrees(amount):.1f}°"
-    return f"{amount:.3f} mm" if amount < 0.1 else Units.Quantity(float(amount), Units.Length).UserString
+    return fine_text(amount)
 
 
 def reason_name(code):

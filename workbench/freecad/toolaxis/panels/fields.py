@@ -1,5 +1,7 @@
 """Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder, lists of faces and bodies."""
 
+from math import ceil, floor, log10
+
 import FreeCAD
 import FreeCADGui
 from FreeCAD import Units
@@ -36,15 +38,17 @@ def length_text(value):
 
 
 def fine_text(value):
-    """A length that may be thousandths of a millimetre, with enough digits whatever FreeCAD's decimals are.
+    """A length that may be thousandths of a millimetre: in FreeCAD's unit, with three digits that count.
 
     Parameters
     ----------
     value : float
         mm
     """
-    schema_is_metric = "in" not in length_text(10.0)
-    return f"{value:.4f} mm" if schema_is_metric else f"{value / 25.4:.5f} in"
+    _, factor, unit = Units.Quantity(float(value), Units.Length).getUserPreferred()
+    number = float(value) / factor
+    digits = 2 if number == 0 else min(max(2 - floor(log10(abs(number))), 0), 6)
+    return f"{number:.{digits}f}" + ("" if unit == '"' else " ") + unit
 
 
 def fit_rows(table):
@@ -89,10 +93,12 @@ class QuantityField:
     widget : QWidget
     unit : str
         The unit of `value`, for instance "mm", "deg" or "mm/min".
+    decimals : int, optional
+        Digits behind the point at least.
     """
 
-    def __init__(self, widget, unit="mm"):
-        self.widget, self.unit = widget, unit
+    def __init__(self, widget, unit="mm", decimals=None):
+        self.widget, self.unit, self.decimals = widget, unit, decimals
         self._one = Units.Quantity(f"1 {unit}")
         widget.setProperty("minimum", -1e9)
         widget.setProperty("maximum", 1e9)
@@ -104,7 +110,18 @@ class QuantityField:
 
     @value.setter
     def value(self, number):
-        self.widget.setProperty("rawValue", float(number) * self._one.Value)
+        quantity = Units.Quantity(float(number) * self._one.Value, self._one.Unit)
+        form = quantity.Format
+        form["Precision"] = max(self._digits(), int(form["Precision"]))
+        quantity.Format = form  # the field keeps it, and rounds what is typed to as many digits
+        self.widget.setProperty("value", quantity)
+
+    def _digits(self):
+        """Digits behind the point that show thousandths of a millimetre in FreeCAD's unit too."""
+        if self.decimals is None:
+            return 0
+        factor = Units.Quantity(10.0, Units.Length).getUserPreferred()[1]
+        return self.decimals + max(0, ceil(log10(factor)))
 
     def on_change(self, slot):
         """Call a slot without arguments whenever the value changes.
@@ -170,11 +187,16 @@ class OutlineTable:
         row = self.table.rowCount()
         self.table.insertRow(row)
         for column, value in enumerate((diameter, height)):
-            self.table.setItem(row, column, QtWidgets.QTableWidgetItem(length_text(value)))
+            item = QtWidgets.QTableWidgetItem(length_text(value))
+            item.setData(_DATA, float(value))  # the text may be rounded
+            self.table.setItem(row, column, item)
 
     def _length(self, row, column):
         item = self.table.item(row, column)
         text = item.text().strip() if item is not None else ""
+        known = item.data(_DATA) if item is not None else None
+        if known is not None and text == length_text(known):
+            return float(known)
         try:
             quantity = Units.Quantity(text)
             if quantity.Unit == Units.Unit():  # a bare number is in the unit that FreeCAD shows

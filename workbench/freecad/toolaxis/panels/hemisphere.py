@@ -117,7 +117,7 @@ class HemisphereMap(QtWidgets.QWidget):
 
     def mouseMoveEvent(self, event):
         """Tell what stands under the pointer."""
-        self.hovered.emit(self.text_at(event.position()))
+        self.hovered.emit(self.text_at(_place(event)))
 
     def leaveEvent(self, event):
         """Tell that the pointer left."""
@@ -125,7 +125,7 @@ class HemisphereMap(QtWidgets.QWidget):
 
     def mousePressEvent(self, event):
         """Pick the axis under the pointer."""
-        axis = self.axis_at(event.position()) if event.button() == QtCore.Qt.LeftButton else None
+        axis = self.axis_at(_place(event)) if event.button() == QtCore.Qt.LeftButton else None
         if axis is not None and self.isEnabled():
             self.picked.emit(axis)
 
@@ -205,6 +205,11 @@ class HemisphereMap(QtWidgets.QWidget):
     def _point(self, place):
         centre, radius = self.disc()
         return QtCore.QPointF(centre.x() + radius * place[0], centre.y() - radius * place[1])
+
+
+def _place(event):
+    """Where a mouse event is; FreeCAD 1.0 has a Qt that calls it otherwise."""
+    return event.position() if hasattr(event, "position") else event.localPos()
 
 
 def _disc_image(picture, size, dark):

@@ -28,10 +28,11 @@ class PlanForm:
         self.faces = FaceList(self._find("faces", QtWidgets.QListWidget))
         self.avoid = BodyList(self._find("avoid", QtWidgets.QListWidget))
         self.shank, self.holder = OutlineTable(form, "shank"), OutlineTable(form, "holder")
-        lengths = ("diameter", "corner", "stickout", "scallop", "allowance")
+        lengths = ("diameter", "corner", "stickout")
         angles = ("taper", "cone", "tiltLow", "tiltHigh", "turnLow", "turnHigh")
-        self.quantities = {name: QuantityField(self._find(name)) for name in lengths}
+        self.quantities = {name: QuantityField(self._find(name), decimals=3) for name in lengths}
         self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
+        self.quantities |= {name: QuantityField(self._find(name), decimals=4) for name in ("scallop", "allowance")}
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min")
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.limits = self._find("limits", QtWidgets.QComboBox)
