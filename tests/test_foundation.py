@@ -36,6 +36,17 @@ def test_wrong_tolerances(name: str, value: float) -> None:
         Tolerance(**{name: value})
 
 
+def test_progress_offers_what_is_made_only_when_asked_for() -> None:
+    taken: list[object] = []
+    makes = iter([True, False])
+    progress = Progress(None, None, lambda make: taken.append(make()) if next(makes) else None)
+    for part in (progress, progress.within("face 1")):
+        part.offer(lambda: "map")
+    assert taken == ["map"]
+    NO_PROGRESS.offer(lambda: taken.append("never"))
+    assert taken == ["map"]
+
+
 def test_progress_reports_and_stops() -> None:
     seen: list[tuple[str, float, float]] = []
     asked = iter([False, False, True])

@@ -16,10 +16,13 @@ class Progress:
         Called with (stage, done, total) as work proceeds.
     cancelled : callable or None
         Returns True once the user has asked to stop.
+    on_offer : callable or None
+        Called with a callable that makes an intermediate result; it need not call it.
     """
 
     on_report: Callable[[str, float, float], None] | None = None
     cancelled: Callable[[], bool] | None = None
+    on_offer: Callable[[Callable[[], object]], None] | None = None
 
     def check(self) -> None:
         """Stop here if the user asked to.
@@ -51,14 +54,26 @@ class Progress:
         if self.on_report is not None:
             self.on_report(stage, done, total)
 
+    def offer(self, make: Callable[[], object]) -> None:
+        """Offer an intermediate result to whoever wants to look at one; it is made only when asked for.
+
+        Parameters
+        ----------
+        make : callable
+            Makes the result; called at once or never.
+        """
+        if self.on_offer is not None:
+            self.on_offer(make)
+
     def within(self, name: str) -> "Progress":
-        """The same for a part of the work: stages are led by its name, cancellation is shared.
+        """The same for a part of the work: stages are led by its name, the rest is shared.
 
         Parameters
         ----------
         name : str
         """
-        return Progress(lambda stage, done, total: self.report(f"{name}: {stage}", done, total), self.cancelled)
+        return Progress(lambda stage, done, total: self.report(f"{name}: {stage}", done, total), self.cancelled,
+                        self.on_offer)
 
 
 NO_PROGRESS = Progress()

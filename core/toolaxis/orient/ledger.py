@@ -87,6 +87,7 @@ class Ledger:
             self.unreached = np.concatenate([self.unreached, verdict.unreached])
             self.passes = np.concatenate([self.passes, price.passes * charge])
             self.length = np.concatenate([self.length, price.length * charge])
+        self.progress.offer(lambda: (self.worth.face, self.map()))
         return slice(first, len(self.axes))
 
     @property
