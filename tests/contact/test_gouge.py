@@ -220,7 +220,7 @@ def test_plain_twin_says_the_same(tool, monkeypatch):
 
 def test_bad_input():
     with pytest.raises(InvalidInput, match="length 1"):
-        gouge(_plane(), TOOLS[0], [[0.5, 0.5]], [0, 0, 2.0])
+        penetration(TOOLS[0], [[0, 0, 0]], [0, 0, 2.0], (_plane(),))
     with pytest.raises(InvalidInput, match="finite"):
         penetration(TOOLS[0], [[0, 0, np.nan]], [0, 0, 1], (_plane(),))
     with pytest.raises(InvalidInput, match="2 axes are given for 3"):

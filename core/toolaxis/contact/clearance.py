@@ -1,7 +1,7 @@
 """How far cutter, shank and holder stay from everything else: a lower bound that holds between all points."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.distances import bounded, judged, motions, segment_motions
 from toolaxis.contact.placing import place
 from toolaxis.contact.surroundings import IGNORED, Surroundings
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import axis_rows
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import COMPONENTS
 
@@ -20,6 +23,7 @@ RESOLUTION = 0.001
 CUTOFF = 10.0
 
 
+@runtime_checkable
 class PartLike(Protocol):
     """What `clearance` asks of a part."""
 
@@ -29,6 +33,9 @@ class PartLike(Protocol):
 
     def skin(self, number: int) -> Sequence[Face]:
         """The face of that number with its tangent-continuous neighbours."""
+
+
+Obstacles: TypeAlias = PartLike | Face | Sequence[Face] | None
 
 
 class Clearances(NamedTuple):
@@ -61,7 +68,7 @@ class Verdicts(NamedTuple):
     face: Indices
 
 
-def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles: PartLike | Sequence[Face], *,
+def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles: Obstacles, *,
               allowance: float = 0.0) -> Array:
     """Lower bound of the distance between the whole tool and obstacles, for contacts of a face.
 
@@ -72,9 +79,10 @@ def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles:
     uv : (n, 2) array_like
         Parameters of the contacts.
     axis : (3,) or (n, 3) array_like
-        Unit tool axis, tip to spindle.
-    obstacles : Part or sequence of Face
-        The machined face itself (of a part: its whole skin) is left out for the cutter, not for shank and holder.
+        Tool axis, tip to spindle, of any length.
+    obstacles : Part, Face, sequence of Face, or None
+        The machined face itself (where the part is the face's own: its whole skin) is left out for the cutter, not for
+        shank and holder.
     allowance : float
         Stock left on the face, mm.
 
@@ -89,14 +97,34 @@ def clearance(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, obstacles:
     **Properties**: 1. never above the distance of any point of an obstacle; 2. moves with the part; 3. more obstacles
     never enlarge it.
     """
-    skin: tuple[Face, ...] = (face,)
-    if isinstance(obstacles, Sequence):
-        faces = tuple(obstacles)
-    else:
-        faces, skin = tuple(obstacles.faces), (face, *obstacles.skin(face.number))
-    around = Surroundings.of(faces, skin=skin)
-    found = clearances(tool, place(face, tool, uv, axis, allowance), axis, around)
+    tips = place(face, tool, uv, axis, allowance)
+    faces = _faces_of(obstacles)
+    skin = (face, *obstacles.skin(face.number)) if _is_own(obstacles, face) else (face,)
+    found = clearances(tool, tips, axis_rows(axis, len(tips)), Surroundings.of(faces, skin=skin))
     return np.asarray(found.distance.min(axis=1))
+
+
+def _faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
+    if obstacles is None:
+        return ()
+    if isinstance(obstacles, Face):
+        return (obstacles,)
+    faces = obstacles.faces if isinstance(obstacles, PartLike) else obstacles
+    if isinstance(faces, Sequence) and all(isinstance(one, Face) for one in faces):
+        return tuple(faces)
+    raise InvalidInput(f"obstacles are {type(obstacles).__name__}: give a part, a face or a sequence of faces "
+                       "(toolaxis.load reads them from a file)")
+
+
+def _is_own(obstacles: Obstacles, face: Face) -> TypeGuard[PartLike]:
+    """Whether obstacles are the part that a face belongs to: numbers alone do not tell, each part has a face 1."""
+    if not isinstance(obstacles, PartLike) or not 1 <= face.number <= len(obstacles.faces):
+        return False
+    named = obstacles.faces[face.number - 1]
+    if named.surface is face.surface:
+        return True
+    points = face.evaluate(np.vstack([face.grid(5, 5), *face.outline])).point
+    return bool(nearest(named, points).distance.max() <= 1e-6 * face.diagonal + face.tolerance)
 
 
 def clearances(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings, cutoff: float = CUTOFF,

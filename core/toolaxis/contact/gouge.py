@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.distances import bounded, judged, motions, segment_motions
 from toolaxis.contact.placing import place
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import axis_rows
 from toolaxis.shape.cells import Cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -40,7 +41,7 @@ def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | 
     uv : (n, 2) array_like
         Parameters of the contacts.
     axis : (3,) or (n, 3) array_like
-        Unit tool axis, tip to spindle.
+        Tool axis, tip to spindle, of any length.
     skin : Cells or sequence of Face, optional
         The face (the default) with its tangent-continuous neighbours.
     allowance : float
@@ -57,7 +58,7 @@ def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | 
     see the shank and the holder.
     """
     tips = place(face, tool, uv, axis, allowance)
-    return penetration(tool, tips, axis, (face,) if skin is None else skin, allowance=allowance)
+    return penetration(tool, tips, axis_rows(axis, len(tips)), (face,) if skin is None else skin, allowance=allowance)
 
 
 def penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], *,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.vectors import dot
+from toolaxis.numeric.vectors import as_rows, axis_rows, dot
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
@@ -51,13 +51,18 @@ def place(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, allowance: flo
     uv : (n, 2) array_like
         Parameters of the contacts.
     axis : (3,) or (n, 3) array_like
-        Unit tool axis, tip to spindle.
+        Tool axis, tip to spindle, of any length.
     allowance : float
         Stock left on the surface, mm.
 
     Returns
     -------
     (n, 3) array of tips, mm
+
+    Raises
+    ------
+    InvalidInput
+        When an array has a wrong shape, a number is not finite, or an axis has no direction.
     """
-    rows = np.asarray(uv, dtype=float).reshape(-1, 2)
-    return tips(face.evaluate(rows).point, face.normal(rows), axis, tool, allowance)
+    rows = as_rows(uv, 2, "uv")
+    return tips(face.evaluate(rows).point, face.normal(rows), axis_rows(axis, len(rows)), tool, allowance)

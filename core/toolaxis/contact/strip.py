@@ -15,7 +15,7 @@ from toolaxis.contact.sizes import cutter_numbers
 from toolaxis.contact.strip_numpy import half_widths_numpy
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.numeric.vectors import as_rows, axis_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
@@ -109,7 +109,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     """
     geometry, sizes = _checked(face, tool, scallop, allowance)
     contacts = contact_rows(uv, feed, True)
-    axes = np.ascontiguousarray(np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(contacts), 3)))
+    axes = np.ascontiguousarray(axis_rows(axis, len(contacts)))
     out = np.empty((len(contacts), 2))
     _fill(geometry, contacts, axes, sizes, out)
     return out[:, ::-1].copy()

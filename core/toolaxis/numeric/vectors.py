@@ -25,7 +25,10 @@ def as_rows(values: ArrayLike, columns: int, name: str) -> Array:
     InvalidInput
         When the shape does not fit or a number is not finite.
     """
-    rows = np.atleast_2d(np.asarray(values, dtype=float))
+    try:
+        rows = np.atleast_2d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{name} is {values!r}: rows of {columns} numbers are needed") from None
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise InvalidInput(f"{name} has shape {np.shape(values)}: rows of {columns} numbers are needed")
     bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
@@ -57,6 +60,25 @@ def unit(vectors: ArrayLike) -> Array:
         raise InvalidInput(f"vector {rows.tolist() if rows.ndim == 1 else 'array'} has no direction: "
                            "its length must be finite and above zero")
     return np.asarray(rows / length)
+
+
+def axis_rows(axis: ArrayLike, count: int) -> Array:
+    """Unit axes of a number of contacts, (count, 3), from vectors of any length.
+
+    Parameters
+    ----------
+    axis : (3,) or (count, 3) array_like
+    count : int
+
+    Raises
+    ------
+    InvalidInput
+        When there is neither one axis nor one for each contact, or one has no direction.
+    """
+    rows = unit(as_rows(axis, 3, "axis"))
+    if len(rows) not in (1, count):
+        raise InvalidInput(f"{len(rows)} axes for {count} contacts: give one axis, or one for each contact")
+    return np.broadcast_to(rows, (count, 3))
 
 
 def angle_between(a: Array, b: Array) -> Array:
