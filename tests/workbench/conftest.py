@@ -21,11 +21,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = importlib.util.find_spec("FreeCAD") is not None
 MARK = "TOOLAXIS-INNER "
-TIME_LIMIT, LONG_TIME_LIMIT = 420.0, 1800.0
+TIME_LIMIT, LONG_TIME_LIMIT = 600.0, 3600.0
 TAIL = 40
+INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
+READY = set()
+
 if INSIDE:
     import FreeCAD  # noqa: F401  before any test's `import Part`, which crashes alone
-INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
 
 
 def pytest_configure(config):
@@ -106,13 +108,14 @@ def prepare(path, long):
     """Run the script beside a file of tests that makes what they need from outside FreeCAD."""
     script = path.with_name(f"prepare_{path.stem.removeprefix('test_')}.py")
     folder = prepared_folder(path)
-    if not script.exists():
+    if path in READY or not script.exists():
         return
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     output, ending = ended([sys.executable, str(script), str(folder), *(["--long"] if long else [])], LONG_TIME_LIMIT)
     if ending != "ended with 0":
         raise InnerFailure(f"{script.name} {ending}; its last lines:\n{_tail(output)}")
+    READY.add(path)
 
 
 @pytest.fixture(scope="module")

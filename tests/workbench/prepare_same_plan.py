@@ -1,9 +1,11 @@
-"""Run outside FreeCAD before test_same_plan.py: the command's plans, and the parts they are for.
+"""Run outside FreeCAD before test_same_plan.py: the command's plans, the library's figures, and the parts for them.
 
-``python prepare_same_plan.py FOLDER [--long]`` leaves in FOLDER, for each part, a copy of it (NAME.step) and what the
-command made of it (NAME/plan.json); with --long of all parts, else of a few.
+``python prepare_same_plan.py FOLDER [--long]`` leaves in FOLDER, for each part, a copy of it (NAME.step), what the
+command made of it (NAME/plan.json), and figures of some of its faces at one axis (figures.json); with --long of all
+parts, else of a few.
 """
 
+import json
 import os
 import shutil
 import subprocess
@@ -13,31 +15,47 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
 EXAMPLES = ROOT / "examples"
-SHORT = {
-    "freeform": (EXAMPLES, "torus:12x1", "0.05", "1"),
-    "trimmed": (EXAMPLES, "ball:8", "0.05", "1"),
-    "mousecover": (SHARED, "ball:2", "0.05", "33"),
+PLANS = {"freeform": ("torus:12x1", "0.05"), "trimmed": ("ball:8", "0.05")}
+LONG_PLANS = {
+    "saddle": ("torus:12x1", "0.02"), "hyperbolic_paraboloid": ("torus:10x1", "0.01"),
+    "hyperbolic_paraboloid_rules": ("torus:10x1", "0.01"), "manta": ("torus:16x2", "0.05"),
+    "biquintic": ("torus:12x1", "0.02"),
 }
-LONG: dict[str, tuple[Path, str, str, str]] = {
-    "saddle": (EXAMPLES, "torus:12x1", "0.02", "1"),
-    "hyperbolic_paraboloid": (EXAMPLES, "torus:10x1", "0.01", "1"),
-    "hyperbolic_paraboloid_rules": (EXAMPLES, "torus:10x1", "0.01", "1"),
-    "manta": (EXAMPLES, "torus:16x2", "0.05", "1"),
-    "biquintic": (EXAMPLES, "torus:12x1", "0.02", "1"),
-}
+FIGURES = {"mousecover": ("ball:2", 0.05, [3, 5, 33, 37, 64]), "saddle": ("torus:12x1", 0.05, [1])}
+LONG_FIGURES = {name: ("torus:12x1", 0.05, [1]) for name in [*PLANS, *LONG_PLANS]}
 
 
-def write(folder, jobs):
-    for name, (source, tool, scallop, faces) in jobs.items():
-        part = source / f"{name}.step"
-        if not part.exists():
-            continue
-        shutil.copy(part, folder / part.name)
-        command = [sys.executable, "-m", "toolaxis.cli.main", "plan", str(folder / part.name), "--tool", tool,
-                   "--scallop", scallop, "--faces", faces, "--no-pictures", "--out", str(folder / name)]
+def copied(name, folder):
+    """The part beside what is made of it; None where it is absent."""
+    source = next((path for path in (EXAMPLES / f"{name}.step", SHARED / f"{name}.step") if path.exists()), None)
+    return shutil.copy(source, folder / f"{name}.step") if source else None
+
+
+def write_plans(folder, jobs):
+    for name, (tool, scallop) in jobs.items():
+        command = [sys.executable, "-m", "toolaxis.cli.main", "plan", str(copied(name, folder)), "--tool", tool,
+                   "--scallop", scallop, "--no-pictures", "--out", str(folder / name)]
         run = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT / "core")}, check=False)
         assert run.returncode in (0, 1), f"the command ended with {run.returncode}"
 
 
+def write_figures(folder, jobs):
+    from evaluation import evaluated
+
+    import toolaxis as ta
+
+    written = {}
+    for name, (tool, scallop, numbers) in jobs.items():
+        path = copied(name, folder)
+        if path:
+            part = ta.load(path)
+            faces = {number: evaluated(part, number, tool, scallop) for number in numbers}
+            written[name] = {"tool": tool, "scallop": scallop, "faces": faces}
+    (folder / "figures.json").write_text(json.dumps(written))
+
+
 if __name__ == "__main__":
-    write(Path(sys.argv[1]), SHORT | (LONG if "--long" in sys.argv else {}))
+    sys.path.insert(0, str(ROOT / "core"))
+    target, long = Path(sys.argv[1]), "--long" in sys.argv
+    write_figures(target, FIGURES | (LONG_FIGURES if long else {}))
+    write_plans(target, PLANS | (LONG_PLANS if long else {}))
