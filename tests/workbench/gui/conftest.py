@@ -65,12 +65,13 @@ class Desk:
     def __init__(self, theme):
         import FreeCAD
         import FreeCADGui
+
+        if not FreeCAD.GuiUp:
+            FreeCADGui.showMainWindow()
         from PySide import QtCore, QtWidgets
 
         self.theme, self.app, self.gui = theme, QtWidgets.QApplication, FreeCADGui
         self.qt, self.widgets = QtCore, QtWidgets
-        if not FreeCAD.GuiUp:
-            FreeCADGui.showMainWindow()
         self.window = FreeCADGui.getMainWindow()
         self.window.setGeometry(0, 0, *SIZE)
         self.pump(0.5)

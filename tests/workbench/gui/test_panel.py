@@ -54,6 +54,19 @@ def test_plan_from_selection_to_objects_and_back(desk, wavy, form):
     assert [thing.Name for thing in document.Objects] == before, "one undo step takes all back"
 
 
+def test_the_map_grows_while_computing(desk, form):
+    chart = form.findChild(desk.widgets.QWidget, "axisMap")
+    desk.type(form.scallop, "0.01 mm")
+    desk.press(form.compute)
+    desk.wait(lambda: chart.picture is not None, "the first map appears")
+    looked = len(chart.picture.axes)
+    assert form.stop.isEnabled() and form.tabs.currentWidget() is form.resultTab
+    desk.shot("12-growing")
+    assert not chart.isEnabled() and not desk.standard_button("Ok").isEnabled()
+    desk.wait(lambda: form.compute.isEnabled(), "the computation ends")
+    assert len(chart.picture.axes) >= looked and "chosen" in chart.picture.marks
+
+
 def test_pointer_and_click_on_the_map(desk, form):
     desk.computed(form)
     chart = form.findChild(desk.widgets.QWidget, "axisMap")

@@ -60,6 +60,25 @@ def test_stages_are_told_but_not_each_report(desk):
     assert 1 <= len(ears.stages) < 30 and all(0 <= share <= 1 for _, share in ears.stages)
 
 
+def test_intermediate_results_are_digested_off_the_gui_thread(desk):
+    from freecad.toolaxis.tasks import Work
+
+    def compute(progress):
+        for k in range(400):
+            progress.offer(lambda k=k: k)
+            time.sleep(0.005)
+        return "done"
+
+    digested, seen = [], []
+    work = Work(compute, None, lambda offered: digested.append(threading.current_thread()) or f"got {offered}")
+    ears = Ears(work)
+    work.interim.connect(seen.append)
+    work.start()
+    desk.wait(lambda: ears.heard, "the result arrives", 20)
+    assert 1 <= len(seen) < 10 and seen[0].startswith("got ")
+    assert threading.main_thread() not in digested
+
+
 @pytest.mark.parametrize(("reason", "words"), [
     (ValueError("odd"), "please report it"), (MemoryError(), "memory"), (ImportError("No module named x"), "Addon")])
 def test_errors_are_sentences(desk, reason, words):

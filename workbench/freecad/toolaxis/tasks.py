@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from threading import Event
+from time import monotonic
 from typing import Any
 
 import FreeCAD
@@ -15,6 +16,8 @@ from PySide import QtCore
 
 #: Interval at which progress is read, ms.
 _TICK = 150
+#: Least time between intermediate results, s.
+_PACE = 0.4
 #: How long the end of the application waits for a computation that was told to stop, ms.
 _PATIENCE = 3000
 
@@ -25,9 +28,11 @@ _running: set["_Thread"] = set()
 class _Thread(QtCore.QThread):
     """Runs a callable(progress); its outcome stays in attributes."""
 
-    def __init__(self, compute: Callable[[Any], Any]) -> None:
+    def __init__(self, compute: Callable[[Any], Any], digest: Callable[[Any], Any] | None) -> None:
         super().__init__()
-        self.compute = compute
+        self.compute, self.digest = compute, digest
+        self.interim: Any = None
+        self.taken = monotonic()
         self.stop = Event()
         self.latest: tuple[str, float, float] | None = None
         self.result: Any = None
@@ -43,7 +48,8 @@ class _Thread(QtCore.QThread):
             self.message = f"{reason}: install what is missing by the Addon Manager"
             return
         try:
-            self.result = self.compute(Progress(self._report, self.stop.is_set))
+            offered = None if self.digest is None else self._offered
+            self.result = self.compute(Progress(self._report, self.stop.is_set, offered))
         except Cancelled:
             self.stopped = True
         except ToolAxisError as reason:
@@ -60,6 +66,11 @@ class _Thread(QtCore.QThread):
 
     def _report(self, stage: str, done: float, total: float) -> None:
         self.latest = (stage, done, total)
+
+    def _offered(self, make: Callable[[], Any]) -> None:
+        if monotonic() - self.taken > _PACE and self.digest is not None:
+            self.interim = self.digest(make())
+            self.taken = monotonic()
 
 
 def sentence(reason: BaseException) -> str:
@@ -83,19 +94,24 @@ class Work(QtCore.QObject):
     compute : callable
         Called with a `toolaxis.progress.Progress` in another thread; it must touch no document and no widget.
     parent : QObject, optional
+    digest : callable, optional
+        Makes of an intermediate result, in the other thread, what `interim` is emitted with.
     """
 
     progressed = QtCore.Signal(str, float)
     """Stage, and the share that is done, 0 to 1; negative where it is not known."""
+    interim = QtCore.Signal(object)
+    """An intermediate result, digested."""
     done = QtCore.Signal(object)
     """What the callable returned."""
     failed = QtCore.Signal(str)
     """Why it could not be done, one sentence."""
     cancelled = QtCore.Signal()
 
-    def __init__(self, compute: Callable[[Any], Any], parent: QtCore.QObject | None = None) -> None:
+    def __init__(self, compute: Callable[[Any], Any], parent: QtCore.QObject | None = None,
+                 digest: Callable[[Any], Any] | None = None) -> None:
         super().__init__(parent)
-        self._thread = _Thread(compute)
+        self._thread = _Thread(compute, digest)
         self._thread.finished.connect(self._ended)
         self._timer = QtCore.QTimer(self)
         self._timer.setInterval(_TICK)
@@ -125,6 +141,9 @@ class Work(QtCore.QObject):
             self._thread.finished.disconnect(self._ended)
 
     def _tick(self) -> None:
+        interim, self._thread.interim = self._thread.interim, None
+        if interim is not None:
+            self.interim.emit(interim)
         latest = self._thread.latest
         if latest is None or latest == self._told:
             return

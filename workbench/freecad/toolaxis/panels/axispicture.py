@@ -120,8 +120,33 @@ def reason_name(code):
     return REASONS[int(code)]
 
 
+def picture_of(face, found):
+    """The picture of a map, with the mean normal marked; None where nothing was looked at.
+
+    Parameters
+    ----------
+    face : toolaxis.shape.face.Face
+    found : toolaxis.plan.orientation.AxisMap or None
+    """
+    from scipy.spatial import cKDTree
+
+    if found is None or not len(found.axis):
+        return None
+    pole = mean_direction(face.normal(face.grid(24, 24)))
+    right = perpendicular(pole)[0]
+    line = (np.arange(SIDE) + 0.5) / SIDE * 2.0 - 1.0
+    x, y = np.meshgrid(line, -line)
+    flat = np.stack([x.ravel(), y.ravel()], axis=1)
+    nearest = cKDTree(found.axis).query(from_equal_area(flat, pole, right))[1]
+    nearest = np.where((flat**2).sum(axis=1) <= 1.0, nearest, -1).reshape(SIDE, SIDE)
+    free = (found.reason == 0) & np.isfinite(found.length) & (found.length > 0)
+    width = np.where(free, face.area / np.where(free, found.length, 1.0), np.nan)
+    return AxisPicture(found.axis, width, found.passes, found.reason.astype(int), found.amount, pole, right, nearest,
+                       {"mean normal": pole[None]})
+
+
 def axis_picture(plan, op, progress):
-    """The picture of an operation's map, or None where the search left none.
+    """The picture of an operation's map, with all its marks, or None where the search left none.
 
     Parameters
     ----------
@@ -129,33 +154,19 @@ def axis_picture(plan, op, progress):
     op : toolaxis.plan.operation.Operation
     progress : toolaxis.progress.Progress
     """
-    from scipy.spatial import cKDTree
-
     from toolaxis.errors import ToolAxisError
     from toolaxis.job.axes import rule_of_thumb
 
-    found = op.orientation.map
-    if found is None or not len(found.axis):
+    picture = picture_of(op.face, op.orientation.map)
+    if picture is None:
         return None
-    normals = op.face.normal(op.face.grid(24, 24))
-    pole = mean_direction(normals)
-    right = perpendicular(pole)[0]
-    line = (np.arange(SIDE) + 0.5) / SIDE * 2.0 - 1.0
-    x, y = np.meshgrid(line, -line)
-    flat = np.stack([x.ravel(), y.ravel()], axis=1)
-    nearest = cKDTree(found.axis).query(from_equal_area(flat, pole, right))[1]
-    nearest = np.where((flat**2).sum(axis=1) <= 1.0, nearest, -1).reshape(SIDE, SIDE)
-    marks = {"mean normal": pole[None]}
     lobes = [lobe.axis for lobe in op.orientation.lobes if lobe.axis is not None]
     if lobes:
-        marks["other lobes"] = np.array(lobes)
+        picture.marks["other lobes"] = np.array(lobes)
     try:
-        marks["Roman's rule"] = rule_of_thumb(plan, op, progress)[None]
+        picture.marks["Roman's rule"] = rule_of_thumb(plan, op, progress)[None]
     except ToolAxisError:  # no plane of projection: nothing to mark
         progress.check()
     if op.orientation.axis is not None:
-        marks["chosen"] = op.orientation.axis[None]
-    free = (found.reason == 0) & np.isfinite(found.length) & (found.length > 0)
-    width = np.where(free, op.face.area / np.where(free, found.length, 1.0), np.nan)
-    return AxisPicture(found.axis, width, found.passes, found.reason.astype(int), found.amount, pole, right, nearest,
-                       marks)
+        picture.marks["chosen"] = op.orientation.axis[None]
+    return picture

@@ -80,6 +80,18 @@ class AxisView(QtCore.QObject):
         combo.blockSignals(blocked)
         self._show_operation()
 
+    def show_growing(self, picture):
+        """Show the map of a search that goes on; the last plan's numbers disappear.
+
+        Parameters
+        ----------
+        picture : AxisPicture or None
+        """
+        if self.plan is not None:
+            self.clear()
+        self.map.show_picture(picture)
+        self.legend.show_picture(picture)
+
     def leave(self):
         """Stop trying an axis."""
         if self.work is not None:

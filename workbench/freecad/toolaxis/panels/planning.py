@@ -4,7 +4,7 @@ from contextlib import suppress
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore, QtGui, QtWidgets
+from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
@@ -36,7 +36,7 @@ class PlanPanel:
         self.operation = operation
         self.document = document
         self.form = load_form("plan")
-        self.form.setWindowIcon(QtGui.QIcon(str(RESOURCES / "icons" / "plan.svg")))
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "plan.svg")))
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
@@ -202,7 +202,8 @@ class PlanPanel:
             self.problem = sentence(reason)
             self._show_state()
             return
-        self.work = Work(lambda progress: _planned(task, progress), self.form)
+        self.work = Work(lambda progress: _planned(task, progress), self.form, _growing)
+        self.work.interim.connect(self._growing)
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(lambda found: self._computed(inputs, *found))
         self.work.failed.connect(self._not_computed)
@@ -226,6 +227,13 @@ class PlanPanel:
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
         self._tell(f"{stage[:1].upper()}{stage[1:]}")
 
+    def _growing(self, picture):
+        """The map of the axes looked at so far."""
+        if self.work is not None:
+            if self.view.plan is not None or self.view.map.picture is None:
+                self.form.tabs.setCurrentWidget(self.form.resultTab)
+            self.view.show_growing(picture)
+
     def _computed(self, inputs, plan, pictures):
         self.work = None
         if not plan.operations:
@@ -240,6 +248,8 @@ class PlanPanel:
     def _not_computed(self, message):
         self.work = None
         self.problem = message
+        if self.view.plan is None:
+            self.view.clear()
         self.view.show_tool()
         self._show_state()
         if not message:
@@ -280,6 +290,13 @@ class PlanPanel:
             self.work = None
         self.view.leave()
         self.preview.clear()
+
+
+def _growing(offered):
+    """The picture of an intermediate result; runs off the GUI thread."""
+    from .axispicture import picture_of
+
+    return picture_of(*offered)
 
 
 def _planned(task, progress):

@@ -5,7 +5,7 @@ from contextlib import suppress
 import FreeCAD
 import FreeCADGui
 import numpy as np
-from PySide import QtCore, QtGui, QtWidgets
+from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
@@ -34,7 +34,7 @@ class VerifyPanel:
     def __init__(self, document, operations):
         self.document, self.operations = document, list(operations)
         self.form = load_form("verify")
-        self.form.setWindowIcon(QtGui.QIcon(str(RESOURCES / "icons" / "verify.svg")))
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "verify.svg")))
         self.scale = Scale(self.form)
         self.form.scalePlace.layout().addWidget(self.scale)
         self.paint = Paint(view_of(document.Name))
