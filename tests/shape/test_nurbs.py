@@ -70,7 +70,7 @@ NET = np.zeros((4, 4, 3))
     (lambda: NurbsSurface.from_points(np.zeros((4, 4))), r"control points have shape \(4, 4\)"),
     (lambda: NurbsSurface.from_points(np.zeros((3, 4, 3))), "3 control points in u for degree 3: at least 4"),
     (lambda: NurbsSurface.from_points(np.zeros((4, 2, 3))), "2 control points in v for degree 3"),
-    (lambda: NurbsSurface.from_points(np.full((4, 4, 3), np.nan)), "control points .* finite"),
+    (lambda: NurbsSurface.from_points(np.full((4, 4, 3), np.nan)), "control point .* finite"),
     (lambda: NurbsSurface.from_points(NET, weights=np.ones((4, 3))), r"weights have shape \(4, 3\)"),
     (lambda: NurbsSurface.from_points(NET, weights=np.eye(4)), r"weight \[0, 1\] is 0.0: weights must be above zero"),
     (lambda: NurbsSurface.from_points(NET, (0, 3)), "degree in u is 0"),

@@ -118,11 +118,11 @@ def _faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
 
 def _is_own(obstacles: Obstacles, face: Face) -> TypeGuard[PartLike]:
     """Whether obstacles are the part that a face belongs to: numbers alone do not tell, each part has a face 1."""
-    if not isinstance(obstacles, PartLike) or not 1 <= face.number <= len(obstacles.faces):
+    if not isinstance(obstacles, PartLike):
         return False
-    named = obstacles.faces[face.number - 1]
-    if named.surface is face.surface:
-        return True
+    named = next((one for one in obstacles.faces if one.number == face.number), None)
+    if named is None or named.surface is face.surface:
+        return named is not None
     points = face.evaluate(np.vstack([face.grid(5, 5), *face.outline])).point
     return bool(nearest(named, points).distance.max() <= 1e-6 * face.diagonal + face.tolerance)
 

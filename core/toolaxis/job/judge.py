@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.plan.operation import Operation
@@ -38,7 +39,12 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
     ------
     Cancelled
         When the progress object asks to stop.
+    InvalidInput
+        When it is no plan.
     """
+    if not isinstance(plan, Plan):
+        raise InvalidInput(f"verify takes the Plan that toolaxis.plan made, not a {type(plan).__name__}: the command "
+                           "toolaxis verify judges a folder")
     with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         write_plan(plan, Path(folder))
         return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, progress=progress)

@@ -1,7 +1,8 @@
 """What a job is asked for in words: face lists, tools, holders and limits, resolved and checked."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Integral
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.toolfile import load_holder, load_tool
@@ -91,19 +92,19 @@ def parse_faces(text: str) -> Numbers | str:
     return tuple(dict.fromkeys(numbers))
 
 
-def chosen_faces(part: Part, faces: Sequence[int] | str | None) -> tuple[Face, ...]:
+def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[Face, ...]:
     """The faces to machine.
 
     Parameters
     ----------
     part : Part
-    faces : sequence of int, "all", a text such as "3,5-8", or None
+    faces : int, iterable of int, "all", a text such as "3,5-8", or None
         None stands for the faces that were picked when the part was loaded, else for the sculptured ones.
 
     Raises
     ------
     InvalidInput
-        When a number is out of range, or there is no sculptured face.
+        When a number is out of range or no whole number, or there is no sculptured face.
     """
     if isinstance(faces, str):
         faces = parse_faces(faces)
@@ -115,6 +116,10 @@ def chosen_faces(part: Part, faces: Sequence[int] | str | None) -> tuple[Face, .
             raise InvalidInput(f"none of the part's {len(part.faces)} faces is sculptured (all are planes, cylinders "
                                "or cones): choose faces by number, or all")
         return found
-    if not faces:
+    numbers = list(faces) if isinstance(faces, Iterable) else [faces]
+    if not numbers:
         raise InvalidInput("the list of faces is empty: choose at least one face, or all")
-    return tuple(part.face(int(number)) for number in dict.fromkeys(faces))
+    wrong = [number for number in numbers if not isinstance(number, Integral)]
+    if wrong:
+        raise InvalidInput(f"face {wrong[0]!r} is no number of a face: give whole numbers from 1, or all")
+    return tuple(part.face(int(number)) for number in dict.fromkeys(numbers))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
@@ -107,8 +108,11 @@ class NormalField:
 
     @cached_property
     def kept(self) -> Array:
-        """Those of `uv` at which there is a normal, (n, 2)."""
-        return np.asarray(self.uv[np.linalg.norm(self.face.normal(self.uv), axis=1) > 0.5])
+        """Those of `uv` at which there is a normal, (n, 2); InvalidInput where there is none."""
+        found = np.asarray(self.uv[np.linalg.norm(self.face.normal(self.uv), axis=1) > 0.5])
+        if len(found) == 0:
+            raise InvalidInput(f"face {self.face.label} has no area: its normal is defined nowhere; leave it out")
+        return found
 
     @cached_property
     def samples(self) -> Array:

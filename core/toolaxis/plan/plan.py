@@ -67,6 +67,9 @@ class Inputs:
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        if not isinstance(self.tolerance, Tolerance):
+            raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
+                               "Tolerance(gouge=0.002)")
         _one_of("method", self.method, METHODS)
         _one_of("objective", self.objective, OBJECTIVES)
         _one_of("direction", self.direction, DIRECTIONS)
@@ -81,8 +84,10 @@ class Inputs:
         Raises
         ------
         InvalidInput
-            When the scallop height is not below the cutter's radius.
+            When it is no tool, or the scallop height is not below the cutter's radius.
         """
+        if not isinstance(tool, Tool):
+            raise InvalidInput(f"tool is {tool!r}: give a Tool, its short form (torus:12x1), a file or a name")
         if self.scallop >= tool.radius:
             raise InvalidInput(f"scallop is {self.scallop} mm, not below the cutter radius {tool.radius} mm: "
                                "give a smaller scallop height")

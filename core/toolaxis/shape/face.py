@@ -92,7 +92,22 @@ class Face:
             When shapes or values do not fit.
         """
         surface = NurbsSurface.from_points(points, degree, knots, weights)
-        return cls(surface, tuple(np.asarray(loop, dtype=float) for loop in trims), flip)
+        face = cls(surface, tuple(np.asarray(loop, dtype=float) for loop in trims), flip)
+        face._check_loops()
+        return face
+
+    def _check_loops(self) -> None:
+        """That loops lie on the surface, and holes in the outer loop."""
+        domain = np.array(self.surface.domain)
+        slack = 1e-9 * np.ptp(domain, axis=1)
+        for index, loop in enumerate(self.trims):
+            off = ((loop < domain[:, 0] - slack) | (loop > domain[:, 1] + slack)).any(axis=1)
+            where = f"trim loop {index} of face {self.label}"
+            if off.any():
+                raise InvalidInput(f"{where} leaves the surface at {loop[off][0].tolist()}: u and v go from "
+                                   f"{domain[:, 0].tolist()} to {domain[:, 1].tolist()}")
+            if index and not inside(slabs(self.trims[:1]), loop).all():
+                raise InvalidInput(f"{where} is no hole: it leaves the outer loop, which comes first")
 
     def evaluate(self, uv: ArrayLike) -> Derivatives:
         """Position and derivatives at (n, 2) parameters."""

@@ -1,7 +1,9 @@
 """Rational B-spline surfaces: the one kind of surface that the core computes with."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +25,26 @@ def uniform_knots(count: int, degree: int) -> Array:
     degree : int
     """
     return np.concatenate([np.zeros(degree), np.linspace(0.0, 1.0, count - degree + 1), np.ones(degree)])
+
+
+def _pair(given: Any, name: str) -> Any:
+    if not isinstance(given, Iterable) or len(found := tuple(given)) != 2:
+        raise InvalidInput(f"{name} are {given!r}: a pair is needed, one for u and one for v")
+    return found
+
+
+def _net(points: ArrayLike) -> Array:
+    try:
+        net = np.asarray(points, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput("control points are no array of numbers: (nu, nv, 3) is needed") from None
+    if net.ndim != 3 or net.shape[2] != 3:
+        raise InvalidInput(f"control points have shape {net.shape}: (nu, nv, 3) is needed")
+    bad = np.argwhere(~np.isfinite(net).all(axis=2))
+    if len(bad):
+        raise InvalidInput(f"control point {bad[0].tolist()} is {net[tuple(bad[0])].tolist()}: every number must be "
+                           "finite")
+    return net
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,9 +118,8 @@ class NurbsSurface:
         InvalidInput
             When shapes or values do not fit.
         """
-        net = np.asarray(points, dtype=float)
-        if net.ndim != 3 or net.shape[2] != 3:
-            raise InvalidInput(f"control points have shape {net.shape}: (nu, nv, 3) is needed")
+        degree = _pair(degree, "degrees")
+        net = _net(points)
         for axis, name in enumerate(("u", "v")):
             if net.shape[axis] <= degree[axis]:
                 raise InvalidInput(f"{net.shape[axis]} control points in {name} for degree {degree[axis]}: "
@@ -106,8 +127,8 @@ class NurbsSurface:
         w = np.ones(net.shape[:2]) if weights is None else np.asarray(weights, dtype=float)
         if w.shape != net.shape[:2]:
             raise InvalidInput(f"weights have shape {w.shape}: {net.shape[:2]} is needed")
-        ku, kv = knots if knots is not None else (uniform_knots(net.shape[0], degree[0]),
-                                                  uniform_knots(net.shape[1], degree[1]))
+        ku, kv = _pair(knots, "knots") if knots is not None else (uniform_knots(net.shape[0], degree[0]),
+                                                                  uniform_knots(net.shape[1], degree[1]))
         control = np.concatenate([net * w[..., None], w[..., None]], axis=2)
         return cls(np.asarray(ku, dtype=float), np.asarray(kv, dtype=float), control, (degree[0], degree[1]))
 
