@@ -21,20 +21,23 @@ from toolaxis.path.isoparametric import layout
 ROOT = Path(__file__).resolve().parent.parent
 AXES, NEAR_AXES, LEAST_DEG, SCALLOP = 39, 8, 3.0, 0.02
 TOOL = ta.Tool.torus(12, 1)
-FACES = ("freeform", "saddle", "trimmed", "hyperbolic_paraboloid", "biquintic", "seed 1", "seed 2")
+FACES = ("freeform", "saddle", "trimmed", "hyperbolic_paraboloid", "biquintic", "seed 1", "seed 2", "small seed 1",
+         "small seed 2")
 
 
-def seeded(seed: int) -> ta.Face:
-    """A gently curved patch of 6 x 5 control points, 120 x 90 mm."""
-    rng = np.random.default_rng(seed)
+def seeded(seed: int, length: float = 120.0, height: float = 7.0) -> ta.Face:
+    """A gently curved patch of 6 x 5 control points, three quarters as wide as it is long, mm."""
+    rng, share = np.random.default_rng(seed), length / 120
     x, y = np.meshgrid(np.linspace(0, 120, 6), np.linspace(0, 90, 5), indexing="ij")
     c, p = rng.uniform(-1, 1, 3), rng.uniform(0, 2 * np.pi, 2)
-    z = 7 * (c[0] * np.sin(x / 38 + p[0]) + c[1] * np.cos(y / 30 + p[1]) + c[2] * x * y / 10800)
-    return ta.Face.from_bspline(np.stack([x, y, z], axis=-1))
+    z = height * (c[0] * np.sin(x / 38 + p[0]) + c[1] * np.cos(y / 30 + p[1]) + c[2] * x * y / 10800)
+    return ta.Face.from_bspline(np.stack([share * x, share * y, z], axis=-1))
 
 
 def face_named(name: str) -> ta.Face:
-    """The sculptured face of an example part, or a seeded one."""
+    """The sculptured face of an example part, or a seeded one: 120 x 90 mm, small ones 80 x 60 mm."""
+    if name.startswith("small seed "):
+        return seeded(int(name.split()[2]), 80.0, 5.0)
     if name.startswith("seed "):
         return seeded(int(name.split()[1]))
     return max(ta.load(ROOT / "examples" / f"{name}.step").sculptured, key=lambda f: f.area)

@@ -19,6 +19,7 @@ _ROUNDS = 8
 _EXACT_GAPS = 12
 _HALVINGS = 4
 _CANDIDATES = 2
+_SETTLED = 3
 
 # Nodes and weights of Gauss and Kronrod with 7 and 15 points on [-1, 1], for the upper half.
 _NODES = np.array([0.0, 0.207784955007898467600689403773245, 0.405845151377397166906606412076961,
@@ -70,10 +71,13 @@ def count(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "
 
     Notes
     -----
-    The integral over the step parameter of 1 / min over the pass of both half widths together, to 0.1 %.  A pass is
-    what lies inside the loops and, past a slanting border, what its strip still reaches.
+    The integral over the step parameter of 1 / min over the pass of both half widths together, to 0.1 %: that of the
+    neighbour before it and that of the neighbour behind it which meet there, from the first pass to the last, whose
+    strips end on the borders, and one.  A pass is what lies inside the loops and, past a slanting border, what its
+    strip still reaches.
 
-    **Source**: [zhu2016] Eqs. (3) to (6) in the limit of vanishing patches.
+    **Source**: [zhu2016] Eqs. (3) to (6) in the limit of vanishing patches, with the difference between the strip of
+    one pass and the distance of two, which are not the same where half widths are not.
 
     **Properties**: (1) range over width where the width is constant; (2) agrees with passes really made, less the
     unused share of the last; (3) moving, mirroring or swapping parameters changes nothing.
@@ -96,9 +100,11 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     Count; inf where the axis leaves no strip somewhere.
     """
     beyond = _Beyond(chart, cut)
-    edges = panels(chart)
+    ends = _outermost(chart, cut, beyond)
+    edges, done = panels(chart), np.zeros(2)
+    if ends.step[0] < ends.step[1]:
+        edges, done = np.unique(np.clip(edges, *ends.step)), np.array([1.0, ends.length.mean()])
     low, high = edges[:-1], edges[1:]
-    done = np.zeros(2)
     for level in range(_ROUNDS):
         fine, coarse = _integrals(chart, cut, beyond, low, high)
         if not np.isfinite(fine).all():
@@ -139,12 +145,56 @@ def _integrals(chart: Chart, cut: Cut, beyond: "_Beyond", low: Array, high: Arra
     nodes = np.concatenate([-_NODES[:0:-1], _NODES])
     half = (high - low) / 2
     steps = ((low + high) / 2)[:, None] + half[:, None] * nodes
-    width, length = _narrowest(chart, cut, beyond, steps.ravel())
-    strips = np.where(width > 0, 1.0 / np.where(width > 0, width, 1.0), np.inf)
-    rate = np.where(length > 0, strips, 0.0)
-    table = np.stack([rate, rate * length], axis=1).reshape(len(low), len(nodes), 2) * half[:, None, None]
+    found = _narrowest(chart, cut, beyond, steps.ravel())
+    apart = _spacing(chart, cut, found)
+    strips = np.where(apart > 0, 1.0 / np.where(apart > 0, apart, 1.0), np.inf)
+    rate = np.where(found.length > 0, strips, 0.0)
+    table = np.stack([rate, rate * found.length], axis=1).reshape(len(low), len(nodes), 2) * half[:, None, None]
     fine, coarse = (np.einsum("k,nkc->nc", np.concatenate([w[:0:-1], w]), table) for w in (_KRONROD, _GAUSS))
     return fine, coarse
+
+
+class _Rows(NamedTuple):
+    """Passes, (n,) each: step, least strip width and where it is, and length of the tip's motion; 0, 0, 0 off the face.
+    """
+
+    step: Array
+    width: Array
+    place: Array
+    length: Array
+
+
+def _spacing(chart: Chart, cut: Cut, found: _Rows) -> Array:
+    """Distance of two passes that just fit, half of it before and half of it behind each step, (n,).
+
+    It is the upper half width of the one and the lower half width of the other, at the narrowest place; near the
+    borders of two that still lie within.
+    """
+    _, _, s0, s1 = chart.bounds
+    width = np.where(found.width > 0, found.width, s1 - s0)
+    low = np.clip(found.step - width / 2, s0, np.maximum(s1 - width, s0))
+    high = np.minimum(low + width, s1)
+    halves = chart.half_widths(cut, np.tile(found.place, 2), np.append(low, high))
+    apart = halves[: len(low), 1] + halves[len(low) :, 0]
+    sound = (apart > found.width / 2) & (apart < 2 * found.width)
+    return np.asarray(np.where(sound, apart, found.width))
+
+
+def _outermost(chart: Chart, cut: Cut, beyond: "_Beyond") -> _Rows:
+    """The first and the last pass: their strips end on the borders."""
+    border = np.array(chart.bounds[2:])
+    inwards = np.array([1.0, -1.0])
+    narrow = _narrowest(chart, cut, beyond, border).width
+    found = _narrowest(chart, cut, beyond, border + inwards * np.minimum(narrow, border[1] - border[0]) / 2)
+    on = rows(chart, border)
+    ends = [(on.low[on.line == k].min(initial=np.inf), on.high[on.line == k].max(initial=-np.inf)) for k in (0, 1)]
+    place = np.array([np.clip(at, *end) if end[0] < end[1] else at
+                      for at, end in zip(found.place, ends, strict=True)])
+    step = found.step
+    for _ in range(_SETTLED):
+        halves = chart.half_widths(cut, place, step)
+        step = border + inwards * np.where(halves > 0, halves, 0.0)[[0, 1], [0, 1]]
+    return found._replace(step=step)
 
 
 class _Beyond:
@@ -175,8 +225,8 @@ class _Beyond:
                 np.append(line, row[extra]), np.append(guess, width[extra]))
 
 
-def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> tuple[Array, Array]:
-    """Least exact strip width over each pass, and the length of the tip's motion on it; 0, 0 off the face.
+def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> _Rows:
+    """Least exact strip width over each pass, and the length of the tip's motion on it.
 
     Exact widths at some places scale the second-order ones between them; these tell where the least ones are, and
     there the exact ones are taken again.
@@ -198,11 +248,11 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> tuple[A
     inner = own < len(found.low)
     low, high = (np.where(inner, np.append(end, 0.0)[np.minimum(own, len(end))], place)
                  for end in (found.low, found.high))
-    width = _descended(chart, cut, steps, _Places(row, place, width, low, high), (a1 - a0) / _EXACT_GAPS)
+    width, place = _descended(chart, cut, steps, _Places(row, place, width, low, high), (a1 - a0) / _EXACT_GAPS)
     _, tip, _ = tip_points(chart, cut, along, step)
     gap = np.where(np.diff(points.interval) == 0, np.linalg.norm(np.diff(tip, axis=0), axis=1), 0.0)
     length = np.bincount(line[1:], weights=gap, minlength=len(steps))
-    return width, np.asarray(length, dtype=float)
+    return _Rows(steps, width, place, np.asarray(length, dtype=float))
 
 
 class _Places(NamedTuple):
@@ -215,8 +265,11 @@ class _Places(NamedTuple):
     high: Array
 
 
-def _descended(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: float) -> Array:
-    """Least width of each row, from the best known place downhill in halved steps; 0 where a row has no place."""
+def _descended(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: float) -> tuple[Array, Array]:
+    """Least width of each row and where it is, from the best known place downhill in halved steps.
+
+    0 and the first along parameter where a row has no place.
+    """
     order = np.lexsort((known.width, known.row))
     first = order[np.unique(known.row[order], return_index=True)[1]]
     row, place, width = known.row[first], known.place[first], known.width[first]
@@ -233,9 +286,9 @@ def _descended(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: floa
             lower = np.minimum(left, right) < width
             place = np.where(lower, np.where(left <= right, before, after), place)
             width = np.where(lower, np.minimum(left, right), width)
-    out = np.zeros(len(steps))
-    out[row] = width
-    return out
+    least, where = np.zeros(len(steps)), np.full(len(steps), chart.bounds[0])
+    least[row], where[row] = width, place
+    return least, where
 
 
 def _vertex(left: Array, middle: Array, right: Array) -> Array:
