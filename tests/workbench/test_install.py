@@ -15,12 +15,14 @@ ROOT = Path(__file__).resolve().parents[2]
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "toolaxis.shape", "toolaxis.cad.loading", "OCP", "pytest")
 
 
-def started(code, *arguments):
+def started(code, *arguments, **environment):
     """Words that a new Python with FreeCAD says."""
+    if "python" not in Path(sys.executable).name:
+        pytest.skip(f"{Path(sys.executable).name} holds Python in itself: a process of its own needs a plain one")
     script = f"import os, sys\nimport FreeCAD\n{code}\nsys.__stdout__.flush()\nos._exit(0)"
     outside = {name: value for name, value in os.environ.items() if name != "TOOLAXIS_INNER"}
     run = subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, timeout=240,
-                         check=True, stdin=subprocess.DEVNULL, env=outside)
+                         check=True, stdin=subprocess.DEVNULL, env={**outside, **environment})
     return run.stdout.split()
 
 
@@ -72,6 +74,18 @@ def test_an_installed_library_serves_where_the_clone_has_none(tmp_path):
     addon, library = started(code, str(copy.parent), str(ROOT / "core"))
     assert addon == str(copy / "__init__.py")
     assert library == str(ROOT / "core" / "toolaxis" / "__init__.py")
+
+
+def test_without_numba_the_numbers_are_the_same():
+    code = ("import Part, freecad.toolaxis, toolaxis as ta\nfrom toolaxis.numeric import compiled\n"
+            "face, tool = ta.load(Part.read(sys.argv[1])).face(1), ta.Tool.torus(12, 1)\n"
+            "widths = ta.strip_width(face, tool, face.grid(2, 2), [0.1, 0.1, 1], 0.02)\n"
+            "sys.__stdout__.write(f'{compiled.available} ' + ' '.join(map(repr, widths.ravel().tolist())))")
+    answers = [started(code, str(ROOT / "examples" / "saddle.step"), TOOLAXIS_NUMBA=numba) for numba in ("0", "1")]
+    assert answers[0][0] == "False"
+    plain, compiled = (list(map(float, answer[1:])) for answer in answers)
+    assert len(plain) == 8
+    assert plain == pytest.approx(compiled, rel=1e-9)
 
 
 @pytest.fixture(scope="module")
