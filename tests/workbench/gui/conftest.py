@@ -226,11 +226,12 @@ class Desk:
         self.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
 
     def reported(self):
-        """What stands in the report view that looks like an error."""
+        """What stands in the report view that looks like an error, each with the lines after it."""
         texts = [w.toPlainText() for w in self.window.findChildren(self.widgets.QTextEdit)
                  if "Report" in w.objectName() or "Report" in w.metaObject().className()]
         lines = [line for text in texts for line in text.splitlines()]
-        return [line for line in lines if "Traceback" in line or "Error" in line or "xception" in line]
+        bad = [k for k, line in enumerate(lines) if any(word in line for word in ("Traceback", "Error", "xception"))]
+        return ["\n".join(lines[k:k + 12]) for k in bad]
 
     def tidy(self):
         """Close the panel and all documents, unsaved as they are."""
