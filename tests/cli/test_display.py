@@ -15,6 +15,17 @@ def test_plain_lines(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.Mon
     assert capsys.readouterr().err.splitlines() == ["axes", "axes: 25 %, about 18 s left", "passes"]
 
 
+def test_a_stage_that_begins_again_is_not_told_again(capsys: pytest.CaptureFixture[str],
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter(range(0, 600, 6))
+    monkeypatch.setattr(display.time, "monotonic", lambda: float(next(clock)))
+    with display.shown_progress(lambda: False) as progress:
+        for done in (0, 40, 0, 20, 40, 60, 61, 62, 98, 98, 98, 0, 50):
+            progress.report("passes", done, 100)
+    assert capsys.readouterr().err.splitlines() == [
+        "passes", "passes: 40 %, about 9 s left", "passes: 60 %, about 12 s left", "passes: 98 %, about 1 s left"]
+
+
 def test_asking_to_stop_stops(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(Cancelled), display.shown_progress(lambda: True) as progress:
         progress.report("axes", 0, 1)

@@ -4,29 +4,49 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from toolaxis.progress import Progress
 
-_EVERY = 5.0
+_EVERY, _STEP = 5.0, 5.0
+
+
+@dataclass
+class _Stage:
+    """When a stage began, or began again, how far it was then and is now, and what was said of it, in hundredths."""
+
+    began: float
+    start: float
+    share: float
+    said: float = 0.0
 
 
 class _Lines:
-    """One plain line when a stage begins for the first time, and every few seconds after."""
+    """One plain line when a stage begins for the first time, and every few seconds after where it came on since.
+
+    A stage that begins again (the next candidate's passes) is not told again before it is further than ever.
+    """
 
     def __init__(self) -> None:
-        self._began: dict[str, float] = {}
+        self._stages: dict[str, _Stage] = {}
         self._said = 0.0
 
     def report(self, stage: str, done: float, total: float) -> None:
         """Say how far a stage is, with the time that remains."""
-        now = time.monotonic()
-        if stage not in self._began:
-            self._began[stage] = self._said = now
-            print(stage, file=sys.stderr, flush=True)
-        elif now - self._said >= _EVERY and 0 < done < total:
+        now, share = time.monotonic(), 100 * done / total if total > 0 else 0.0
+        known = self._stages.get(stage)
+        if known is None:
+            self._stages[stage] = _Stage(now, share, share)
             self._said = now
-            left = (now - self._began[stage]) * (total - done) / done
-            print(f"{stage}: {100 * done / total:.0f} %, about {left:.0f} s left", file=sys.stderr, flush=True)
+            print(stage, file=sys.stderr, flush=True)
+            return
+        if share < known.share:
+            known.began, known.start = now, share
+        known.share = share
+        if now - self._said >= _EVERY and share < 100 and share >= known.said + _STEP and share > known.start:
+            self._said, known.said = now, share
+            left = (now - known.began) * (100 - share) / (share - known.start)
+            print(f"{stage}: {share:.0f} %, about {left:.0f} s left", file=sys.stderr, flush=True)
 
 
 @contextmanager
