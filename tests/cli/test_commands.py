@@ -181,6 +181,11 @@ def test_a_face_is_planned_in_regions_and_verified(sheet: Path, tmp_path: Path, 
     assert [op["label"] for op in document["operations"]] == ["1a", "1b"]
     assert all(op["region"] for op in document["operations"])
     assert main(["verify", str(out), "--no-pictures"]) == 0
+    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--faces=1,2", "--orientations=1",
+                 "--no-pictures", "--out", str(out)]) == 0
+    document = strict((out / "plan.json").read_text())
+    assert {op["face"] for op in document["operations"]} == {1, 2}
+    assert len({tuple(op["orientation"]["axis"]) for op in document["operations"]}) == 1
     capsys.readouterr()
     assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--regions=17", "--out", str(out)]) == 2
     assert "from 1 to 16" in capsys.readouterr().err

@@ -117,7 +117,7 @@ def test_obstacles_are_kept_clear_of() -> None:
 
 
 @pytest.mark.parametrize("change, said", [
-    ({"regions": 3}, "regions 3 is not part of this version"), ({"orientations": 2}, "orientations 2 is not part"),
+    ({"regions": 0}, "number of sub-surfaces is 0"), ({"orientations": 17}, "number of orientations is 17"),
     ({"strategy": "five-axis"}, "strategy 'five-axis' is not part"), ({"faces": []}, "list of faces is empty"),
     ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method is 'guess'"),
     ({"machine": 7}, "machine is a int"), ({"datum": (0, 0)}, "datum"), ({"allowance": -1}, "allowance"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.limits import AllOf, Cone, RotaryRanges, parse_limits
+from toolaxis.machine.limits import AllOf, Cone, RotaryRanges, parse_limits, written
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 
 
@@ -86,3 +86,14 @@ def test_impossible_limits_name_the_quantity(text, part):
 def test_a_cone_of_nothing_is_its_direction():
     cone = Cone(np.array([0.0, 1.0, 0.0]), 0.0)
     assert cone.allowed([[0, 1, 0], [0, 1, 1e-6]]).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("text", ["cone:0.6,0,0.8,37.5", "rotary:tilt=-5..110,turn=-30..275,z=0/0.6/0.8,x=1/0/0",
+                                  "cone:0,0,1,60+rotary:tilt=0..50"])
+def test_what_is_written_is_read_back(text: str) -> None:
+    limits = parse_limits(text)
+    again = parse_limits(written(limits))
+    axes = np.random.default_rng(0).normal(size=(500, 3))
+    np.testing.assert_allclose(again.excess(axes), limits.excess(axes), atol=1e-12)
+    assert written(again) == written(limits)
+    assert written(None) == ""

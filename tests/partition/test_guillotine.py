@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from toolaxis.partition.guillotine import Corners, Division, offers, proper
+from toolaxis.partition.guillotine import Corners, Division, each_axis, offers, proper
 
 
 def shapes(nu: int, nv: int) -> tuple[int, int, int, int]:
@@ -71,3 +71,6 @@ def test_offers_are_integrals_over_the_narrowest_places() -> None:
             if rate.max() < 1e9:
                 best = min(best, np.trapezoid(rate * row, np.concatenate([[0], np.cumsum(step)])) + row.mean() / 2)
         assert found.cost[u0, u1, v0, v1] == pytest.approx(best, rel=1e-6)
+        one = each_axis(rates[:, :, u0:u1 + 1, v0:v1 + 1], (gaps[0][u0:u1, v0:v1 + 1], gaps[1][u0:u1 + 1, v0:v1]),
+                        (pitch[0][u0:u1], pitch[1][v0:v1]), 0.7)
+        assert one.min() == pytest.approx(best, rel=1e-9) and len(one) == k

@@ -7,7 +7,8 @@ import toolaxis as ta
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.orient.indexed import evaluate_axis, task
-from toolaxis.partition.regions import Divider, regions
+from toolaxis.partition.divider import Divider
+from toolaxis.partition.regions import regions
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1)
 

@@ -61,6 +61,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="STEP file of bodies to keep clear of; may be repeated")
     sub.add_argument("--regions", type=_regions, metavar="N|auto",
                      help="sub-surfaces for each face, an axis each; auto: as many as pay")
+    sub.add_argument("--orientations", type=int, metavar="N",
+                     help="at most N different axes in all, shared by the sub-surfaces of all faces")
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
@@ -74,7 +76,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
-    for name in ("machine", "orientations", "strategy"):
+    for name in ("machine", "strategy"):
         sub.add_argument(f"--{name}", help=argparse.SUPPRESS)
     sub.set_defaults(module="toolaxis.cli.plan")
 

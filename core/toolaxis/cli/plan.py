@@ -14,7 +14,6 @@ from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.progress import Progress
 
 _LATER = {"machine": "choosing a machine by name; give its axis range with --limits",
-          "orientations": "a number of orientations for all faces",
           "strategy": "any other strategy than one fixed axis per face"}
 
 
@@ -42,6 +41,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
+                        orientations=spec.orientations,
                         progress=progress)
             write_plan(made, stage.folder)
             if not given.no_pictures and made.outcome != "cancelled":
@@ -60,7 +60,7 @@ def _spec(given: Namespace) -> Spec:
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
                     given.feedrate, given.spindle)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
-                tuple(given.obstacles), given.regions)
+                tuple(given.obstacles), given.regions, given.orientations)
     _ = spec.numbers
     return spec
 

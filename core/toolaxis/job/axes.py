@@ -27,7 +27,14 @@ Array = NDArray[np.float64]
 
 
 def _limits(plan: Plan) -> AxisLimits | None:
-    return parse_limits(plan.inputs.limits) if ":" in plan.inputs.limits else None
+    """The limits that the plan was made with.
+
+    Raises
+    ------
+    InvalidInput
+        When they were of a class that has no short form: leaving them out could call a forbidden axis free.
+    """
+    return parse_limits(plan.inputs.limits) if plan.inputs.limits else None
 
 
 def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Task:
@@ -123,23 +130,42 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
     Cancelled
         When the user asked to stop.
     """
-    job = _Remembering(search_task(plan, op, progress))
+    found, path = judged(search_task(plan, op, progress), axis, feed)
+    found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
+    if path is None:
+        return Operation(op.number, op.face, found)
+    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum))
+
+
+def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation, ToolPath | None]:
+    """What a given axis comes to, and the passes that were proven; none where the axis may not be used.
+
+    Parameters
+    ----------
+    task : Task
+    axis : (3,) array_like
+    feed : "u" or "v", optional
+        The better one unless given.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    job = _Remembering(task)
     t = unit(as_rows(axis, 3, "axis")[0])
     witness = job.feasibility.witness(t)
     found = Orientation(None, outcome="infeasible")
     if witness is None:
-        ledger = Ledger(job.feasibility, job.worth, progress)
+        ledger = Ledger(job.feasibility, job.worth, job.progress)
         ledger.look(t[None])
         found, proof = finished(job, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
         witness = proof.witness
-    progress.check()
+    job.progress.check()
     if witness is not None:
         reasons = (f"infeasible: {sentence(witness, job.feasibility)}",)
         found = Orientation(None, found.feed, outcome="infeasible", reasons=reasons)
-    found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
-    if found.axis is None:
-        return Operation(op.number, op.face, found)
-    return Operation(op.number, op.face, found, job.path, frame_of(op.face, found, plan.datum))
+    return found, None if found.axis is None else job.path
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:

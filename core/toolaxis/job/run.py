@@ -1,7 +1,7 @@
 """The main job: from a part and a tool to operations, each with its axis, passes and work coordinate system."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
-from toolaxis.job.axes import frame_of
+from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
-from toolaxis.machine.limits import AxisLimits, parse_limits
+from toolaxis.machine.limits import AxisLimits, parse_limits, written
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
+from toolaxis.partition.cover import shared
+from toolaxis.partition.divider import MOST, Divider
 from toolaxis.partition.regions import checked_count
 from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
@@ -33,7 +35,7 @@ Array = NDArray[np.float64]
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
-         faces: Sequence[int] | str | None = None, regions: int | str | None = None, orientations: None = None,
+         faces: Sequence[int] | str | None = None, regions: int | str | None = None, orientations: int | None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
@@ -54,8 +56,11 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     regions : int or "auto", optional
         Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
         unless given.
-    orientations, strategy
-        Not part of this version: every sub-surface gets one fixed axis of its own.
+    orientations : int, optional
+        Greatest number of different axes: faces are divided so that sub-surfaces share them; each has its own unless
+        given.
+    strategy : str
+        "indexed": every sub-surface has one fixed axis; others are not part of this version.
     objective : str
         "length" or "passes".
     allowance : float
@@ -84,10 +89,12 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     InvalidInput
         When an argument is out of range.
     """
-    _refuse_later(orientations=orientations, strategy=None if strategy == "indexed" else strategy)
+    if strategy != "indexed":
+        raise InvalidInput(f"strategy {strategy!r} is not part of this version: leave it out")
     checked_count(regions)
+    checked_count(orientations, "orientations")
     limits = parse_limits(machine) if isinstance(machine, str) and machine else machine or None
-    words = machine if isinstance(machine, str) else "" if limits is None else f"a {type(limits).__name__}"
+    words = machine if isinstance(machine, str) else written(limits)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
                     float(spindle), tolerance or Tolerance())
     cutter = load_tool(tool) if isinstance(tool, str) else tool
@@ -95,15 +102,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     loaded = load(part)
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
-    job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions)
+    job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions,
+               orientations)
     return job.carried_out(targets, progress)
-
-
-def _refuse_later(**given: Any) -> None:
-    for name, value in given.items():
-        if value is not None:
-            raise InvalidInput(f"{name} {value!r} is not part of this version: every sub-surface gets one fixed axis "
-                               f"of its own; leave {name} out")
 
 
 def _listed(obstacles: Any) -> list[Any]:
@@ -125,15 +126,17 @@ class _Job:
     bodies: tuple[Part, ...]
     datum: Array
     regions: int | str | None = None
+    orientations: int | None = None
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         done: list[Operation] = []
         outcome = "complete"
         try:
-            targets = [piece for face in faces for piece in self._divided(face, progress)]
-            for index, face in enumerate(targets):
-                done.append(self._operation(face, index, len(targets), progress))
+            targets = self._sharing(faces, progress) if self.orientations else \
+                [(piece, None) for face in faces for piece in self._divided(face, progress)]
+            for index, (face, axis) in enumerate(targets):
+                done.append(self._operation(face, axis, (index, len(targets)), progress))
         except Cancelled:
             outcome = "cancelled"
         if outcome == "complete" and not all(op.done for op in done):
@@ -146,19 +149,34 @@ class _Job:
         task = self._task(face, progress)
         return regions_of(task, self.regions, progress=progress.within(f"face {face.label}")).faces
 
-    def _operation(self, face: Face, index: int, count: int, progress: Progress) -> Operation:
-        inner = progress.within(f"face {face.label} ({index + 1} of {count})")
+    def _sharing(self, faces: Sequence[Face], progress: Progress) -> list[tuple[Face, Array | None]]:
+        """Sub-surfaces of all faces with the few axes that they share."""
+        assert self.orientations is not None
+        most = MOST if self.regions is None else checked_count(self.regions) or MOST
+        dividers = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
+                    for face in faces]
+        found = shared(dividers, self.orientations, progress=progress)
+        return [(piece, axis) for one in found.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
+
+    def _operation(self, face: Face, axis: Array | None, place: tuple[int, int], progress: Progress) -> Operation:
+        """The operation of a sub-surface, with a given axis where that may be used."""
+        number = place[0] + 1
+        inner = progress.within(f"face {face.label} ({number} of {place[1]})")
         inner.report("search for the axis", 0, 1)
         try:
-            found = self._searched(face, inner)
-            path = None if found.axis is None else self._traced(face, found, inner)
+            found, path = (Orientation(None), None) if axis is None else judged(self._task(face, inner), axis)
+            if found.axis is None:
+                refused = found.reasons
+                found = self._searched(face, inner)
+                found = replace(found, reasons=(*(f"shared axis refused: {why}" for why in refused), *found.reasons))
+                path = None if found.axis is None else self._traced(face, found, inner)
         except Cancelled:
             raise
         except ToolAxisError as reason:  # this face cannot be done; the others can
-            return Operation(index + 1, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+            return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
-        return Operation(index + 1, face, found, path, None if path is None else frame_of(face, found, self.datum))
+        return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
     def _searched(self, face: Face, progress: Progress) -> Orientation:
         return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,

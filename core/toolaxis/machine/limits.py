@@ -1,7 +1,7 @@
 """Which tool axes a set-up allows, and how far an axis is from the nearest allowed one."""
 
 from dataclasses import dataclass
-from math import isfinite, pi, radians
+from math import degrees, isfinite, pi, radians
 from typing import Protocol
 
 import numpy as np
@@ -216,6 +216,33 @@ def parse_limits(text: str) -> AxisLimits:
     """
     parts = [_parse_one(piece.strip(), text) for piece in text.split("+")]
     return parts[0] if len(parts) == 1 else AllOf(tuple(parts))
+
+
+def written(limits: AxisLimits | None) -> str:
+    """The short form of limits, which `parse_limits` reads back; empty for none.
+
+    Parameters
+    ----------
+    limits : AxisLimits or None
+
+    Returns
+    -------
+    str
+        "a Mill" for limits of a class that has no short form.
+    """
+    if limits is None:
+        return ""
+    if isinstance(limits, AllOf):
+        return "+".join(written(part) for part in limits.parts)
+    if isinstance(limits, Cone):
+        return "cone:" + ",".join(repr(float(x)) for x in (*limits.direction, degrees(limits.tilt)))
+    if isinstance(limits, RotaryRanges):
+        ranges = [f"{name}={degrees(pair[0])!r}..{degrees(pair[1])!r}"
+                  for name, pair in (("tilt", limits.tilt), ("turn", limits.turn))]
+        ways = [f"{name}={'/'.join(repr(float(x)) for x in np.asarray(way))}"
+                for name, way in (("z", limits.z), ("x", limits.x))]
+        return "rotary:" + ",".join(ranges + ways)
+    return f"a {type(limits).__name__}"
 
 
 def _parse_one(piece: str, text: str) -> AxisLimits:

@@ -64,6 +64,24 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
     return Offers(cost, axis, feed)
 
 
+def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0) -> Array:
+    """What a whole lattice costs as one piece with each axis and its better feed, (k,) mm; inf where one is forbidden.
+
+    Parameters
+    ----------
+    rates, gaps, pitch, ends
+        As for `offers`.
+    """
+    both = []
+    for along, step in ((0, 1), (1, 0)):
+        most = rates[:, along].max(axis=1 + along)
+        row = _ended(gaps[along].sum(axis=along), ends)
+        middle = (most[:, 1:] * row[1:] + most[:, :-1] * row[:-1]) / 2
+        cost = (middle * pitch[step]).sum(axis=1) + row.mean() / 2
+        both.append(np.where(most.max(axis=1) < _TOO_MUCH, cost, np.inf))
+    return np.minimum(*both)
+
+
 def proper(nu: int, nv: int) -> NDArray[np.bool_]:
     """Which pairs of lines make a rectangle, by first and last along u and along v.
 
@@ -79,7 +97,10 @@ def proper(nu: int, nv: int) -> NDArray[np.bool_]:
 def _rows(gaps: Array, ends: float) -> Array:
     """Length of passes over all ranges along, (first, last, step), mm; 0 off the face."""
     length = np.concatenate([np.zeros((1, gaps.shape[1])), np.cumsum(gaps, axis=0)])
-    rows = length[None] - length[:, None]
+    return _ended(length[None] - length[:, None], ends)
+
+
+def _ended(rows: Array, ends: float) -> Array:
     return np.asarray(np.where(rows > 1e-9, rows + ends, 0.0))
 
 

@@ -40,6 +40,15 @@ class Prices:
     rates: Array
     left: Bools
 
+    def of(self, places: NDArray[np.intp]) -> "Prices":
+        """The prices of some of the axes.
+
+        Parameters
+        ----------
+        places : (m,) array of int
+        """
+        return Prices(self.axes[places], self.rates[places], self.left[places])
+
     def joined(self, other: "Prices") -> "Prices":
         """The prices of more axes after these.
 

@@ -1,0 +1,181 @@
+"""Fewest orientations: axes that serve several sub-surfaces, and what that costs in cutting length."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import coo_array
+
+from toolaxis.errors import InvalidInput
+from toolaxis.partition.divider import MOST, Divider, Regions, Solution
+from toolaxis.partition.guillotine import Corners
+from toolaxis.partition.prices import Prices
+from toolaxis.partition.regions import INDEX_COST
+from toolaxis.progress import NO_PROGRESS, Progress
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+#: What one more sub-surface costs where its axis is there already, mm: retract, approach and a mark on the border.
+PIECE_COST = 20.0
+_ROUNDS = 6
+_SECONDS = 30.0
+
+
+class Choice(NamedTuple):
+    """Which axis serves which sub-surface.
+
+    axis : (s,) index of the axis of each sub-surface;  cost : of all, index costs included;  bound : no choice costs
+    less; equal to the cost where it is proven to be the best.
+    """
+
+    axis: Index
+    cost: float
+    bound: float
+
+
+def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) -> Choice:
+    """The cheapest choice of axes for sub-surfaces, with few different ones.
+
+    Parameters
+    ----------
+    costs : (s, k) array_like
+        What sub-surface s costs with axis k; inf where the axis may not be used.
+    most : int, optional
+        Greatest number of different axes.
+    index_cost : float
+        What each different axis costs.
+
+    Returns
+    -------
+    Choice
+        Exact unless 30 s were not enough; then the bound tells how far it may be off.
+
+    Raises
+    ------
+    InvalidInput
+        When no choice of so few axes serves every sub-surface.
+
+    Notes
+    -----
+    An integer programme (plant location), solved by HiGHS: one axis for each sub-surface, used axes opened, at most so
+    many open.
+    """
+    table = np.atleast_2d(np.asarray(costs, dtype=float))
+    sub, axis = np.nonzero(np.isfinite(table))
+    s, k = table.shape
+    if len(np.unique(sub)) < s:
+        raise InvalidInput("a sub-surface has no axis that may be used: divide the face further, or take another tool")
+    n = len(sub)
+    pick = np.arange(n)
+    one = coo_array((np.ones(n), (sub, pick)), shape=(s, n + k))
+    pairs = np.tile(pick, 2), np.concatenate([pick, n + axis])
+    opened = coo_array((np.repeat([1.0, -1.0], n), pairs), shape=(n, n + k))
+    rules = [LinearConstraint(one, 1, 1), LinearConstraint(opened, -np.inf, 0)]
+    if most is not None:
+        rules.append(LinearConstraint(np.concatenate([np.zeros(n), np.ones(k)])[None], 0, most))
+    found = milp(np.concatenate([table[sub, axis], np.full(k, float(index_cost))]), constraints=rules,
+                 integrality=np.concatenate([np.zeros(n), np.ones(k)]), bounds=Bounds(0, 1),
+                 options={"time_limit": _SECONDS, "mip_rel_gap": 0.0})
+    if found.x is None:
+        raise InvalidInput(f"no {most} axes serve all {s} sub-surfaces: allow more orientations")
+    chosen = np.empty(s, dtype=np.intp)
+    best = np.argsort(found.x[:n], kind="stable")
+    chosen[sub[best]] = axis[best]
+    cost = float(table[np.arange(s), chosen].sum() + index_cost * len(np.unique(chosen)))
+    return Choice(chosen, cost, min(cost, float(found.mip_dual_bound)))
+
+
+class Shared(NamedTuple):
+    """Sub-surfaces of several faces that share a few axes.
+
+    regions : one Regions a face;  length : reckoned cutting length of all, mm;  orientations : different axes.
+    """
+
+    regions: tuple[Regions, ...]
+    length: float
+    orientations: int
+
+
+def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COST,
+           progress: Progress = NO_PROGRESS) -> Shared:
+    """Divide faces so that at most so many axes serve all sub-surfaces in the least cutting length.
+
+    Parameters
+    ----------
+    dividers : sequence of Divider
+        One a face.
+    most : int
+        Greatest number of different axes.
+    index_cost : float
+        What one more axis costs, mm of cutting length.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When no division was found that so few axes serve.
+    Cancelled
+        When the user asked to stop.
+
+    Notes
+    -----
+    From the best divisions into 1, 2, … sub-surfaces in turn: the best choice of axes for these sub-surfaces (exact),
+    the best division for these axes (exact), and so on until nothing changes; the cheapest of all.
+    """
+    pool = np.unique(np.concatenate([divider.candidates() for divider in dividers]), axis=0)
+    prices = [divider.priced(pool) for divider in dividers]
+    best: _Try | None = None
+    seen: list[list[list[Corners]]] = []
+    for count in range(1, MOST + 1):
+        progress.report("fewest orientations", count - 1, MOST)
+        boxes = [_division(divider, count) for divider in dividers]
+        if boxes in seen:
+            continue
+        seen.append(boxes)
+        found = _settled(list(zip(dividers, prices, boxes, strict=True)), most, index_cost) if all(boxes) else None
+        if found is not None and (best is None or found.cost < best.cost - 1e-6):
+            best = found
+    if best is None:
+        raise InvalidInput(f"no division was found that {most} {'axis' if most == 1 else 'axes'} can machine: allow "
+                           "more orientations, or take a smaller tool")
+    regions = tuple(divider.named(found, boxes)
+                    for divider, found, boxes in zip(dividers, best.solutions, best.boxes, strict=True))
+    used = np.unique(np.concatenate([one.axes for one in regions]), axis=0)
+    return Shared(regions, sum(sum(one.lengths) for one in regions), len(used))
+
+
+class _Try(NamedTuple):
+    """Divisions of all faces with one set of axes, and what they cost."""
+
+    cost: float
+    solutions: list[Solution]
+    boxes: list[list[Corners]]
+
+
+def _division(divider: Divider, count: int) -> list[Corners]:
+    """The best division into about so many pieces."""
+    known = divider.best.known
+    return divider.best.pieces(int(known[np.argmin(np.abs(known - count))])) if len(known) else []
+
+
+def _settled(faces: list[tuple[Divider, Prices, list[Corners]]], most: int, index_cost: float) -> _Try | None:
+    """Axes for pieces and pieces for axes in turn, until the cost falls no more."""
+    best: _Try | None = None
+    for _ in range(_ROUNDS):
+        costs = np.array([divider.costs(prices, box) for divider, prices, boxes in faces for box in boxes])
+        try:
+            axes = np.unique(cover(costs, most, index_cost).axis)
+        except InvalidInput:
+            return best
+        solutions = [divider.solved(prices.of(axes), PIECE_COST) for divider, prices, _ in faces]
+        curves = [found.division.curve for found in solutions]
+        cost = float(sum(curve.min() for curve in curves)) + index_cost * len(axes)
+        if not np.isfinite(cost) or (best is not None and cost >= best.cost - 1e-6):
+            return best
+        boxes = [found.pieces(int(np.argmin(curve))) for found, curve in zip(solutions, curves, strict=True)]
+        best = _Try(cost, solutions, boxes)
+        faces = [(divider, prices, own) for (divider, prices, _), own in zip(faces, boxes, strict=True)]
+    return best

@@ -1,0 +1,267 @@
+"""One face on its way to sub-surfaces: lattice, prices of axes, and the divisions that they make cheapest."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.orient.indexed import Task
+from toolaxis.orient.spiral import own_frame, ring, spiral
+from toolaxis.partition.guillotine import Corners, Division, Offers, each_axis, offers, proper
+from toolaxis.partition.lattice import Lattice
+from toolaxis.partition.prices import Prices, priced
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import letters
+
+Array = NDArray[np.float64]
+
+#: Greatest number of sub-surfaces of one face that is looked at.
+MOST = 16
+#: Angles between the first axes and to those tried around the ones that serve, rad.
+_SPACING, _CLOSER = np.radians(8.0), (np.radians(4.0), np.radians(2.0))
+#: How many axes that serve the whole face are offered to others.
+_FEW = 12
+#: Share of a cell below which there is nothing in it.
+_NOTHING = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Regions(Sequence[Face]):
+    """Sub-surfaces of one face.
+
+    Attributes
+    ----------
+    faces : tuple of Face
+        Pieces of the face, labelled "7a", "7b", …; together they are the face.
+    axes : (n, 3) array
+        The axis of each that the division reckoned with; none where it could not reckon and left the face whole.
+    feeds : tuple of str
+        Its feed direction.
+    lengths : tuple of float
+        Its reckoned cutting length, mm.
+    curve : (m, 2) array
+        Number of sub-surfaces and the least cutting length reckoned for it, mm; inf where there is no division.
+    """
+
+    faces: tuple[Face, ...]
+    axes: Array
+    feeds: tuple[str, ...]
+    lengths: tuple[float, ...]
+    curve: Array
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    @overload
+    def __getitem__(self, index: int) -> Face: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Face, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Face | tuple[Face, ...]:
+        return self.faces[index]
+
+    def __iter__(self) -> Iterator[Face]:
+        return iter(self.faces)
+
+
+class Solution(NamedTuple):
+    """What prices come to: the cheapest axis of every rectangle, and the cheapest divisions."""
+
+    prices: Prices
+    offers: Offers
+    division: Division
+
+    @property
+    def known(self) -> NDArray[np.intp]:
+        """Numbers of sub-surfaces for which there is a division."""
+        return np.flatnonzero(np.isfinite(self.division.curve))
+
+    def pieces(self, count: int) -> list[Corners]:
+        """Rectangles of the cheapest division into a number of sub-surfaces.
+
+        Parameters
+        ----------
+        count : int
+        """
+        return self.division.pieces(count)
+
+
+class Divider:
+    """One face, its lattice, and what axes cost on it.
+
+    Parameters
+    ----------
+    job : Task
+        The face, its surroundings and the price of an axis.
+    cells : (int, int)
+        Cells of the lattice along u and v.
+    most : int
+        Greatest number of sub-surfaces.
+    progress : Progress
+    """
+
+    def __init__(self, job: Task, cells: tuple[int, int] = (16, 16), most: int = MOST,
+                 progress: Progress = NO_PROGRESS) -> None:
+        self.job, self.most, self.progress = job, most, progress
+        self.lattice = Lattice(job.worth.face, cells)
+
+    @cached_property
+    def best(self) -> Solution:
+        """The cheapest divisions with an axis for each piece, from axes over the hemisphere and around the best."""
+        found = self.solved(self.priced(self._first_axes()))
+        for angle in _CLOSER:
+            used = self.used(found)
+            if len(used):
+                near = np.concatenate([ring(axis, float(angle)) for axis in used])
+                found = self.solved(found.prices.joined(self.priced(near)))
+        return found
+
+    @property
+    def curve(self) -> Array:
+        """Least cutting length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
+        return self.best.division.curve
+
+    def used(self, found: Solution) -> Array:
+        """Axes that serve in some division, (k, 3).
+
+        Parameters
+        ----------
+        found : Solution
+        """
+        places = {int(found.offers.axis[box]) for count in found.known for box in found.pieces(int(count))}
+        return found.prices.axes[sorted(places)]
+
+    def candidates(self) -> Array:
+        """Axes for sub-surfaces to share: those that serve in some division, and the cheapest for the whole, (k, 3)."""
+        nu, nv = self.lattice.cells
+        prices = self.best.prices
+        whole = self.costs(prices, (0, nu, 0, nv))
+        order = np.argsort(whole, kind="stable")[:_FEW]
+        return np.concatenate([self.used(self.best), prices.axes[order[np.isfinite(whole[order])]]])
+
+    def priced(self, axes: Array) -> Prices:
+        """Prices of axes on the lattice.
+
+        Parameters
+        ----------
+        axes : (k, 3) array
+        """
+        return priced(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress)
+
+    def solved(self, prices: Prices, piece_cost: float = 0.0) -> Solution:
+        """The cheapest divisions with some axes.
+
+        Parameters
+        ----------
+        prices : Prices
+        piece_cost : float
+            What each sub-surface costs besides, mm.
+        """
+        found = offers(prices.rates, self._gaps, self._pitch, self._ends)
+        cost = np.where(self._narrow, np.inf, found.cost + piece_cost)
+        empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
+        return Solution(prices, found, Division(cost, empty, self.most))
+
+    def costs(self, prices: Prices, box: Corners) -> Array:
+        """What a rectangle costs with each axis and its better feed, (k,) mm; inf where an axis may not be used.
+
+        Parameters
+        ----------
+        prices : Prices
+        box : (int, int, int, int)
+        """
+        u0, u1, v0, v1 = box
+        rates = prices.rates[:, :, u0:u1 + 1, v0:v1 + 1]
+        gaps = self._gaps[0][u0:u1, v0:v1 + 1], self._gaps[1][u0:u1 + 1, v0:v1]
+        pitch = self._pitch[0][u0:u1], self._pitch[1][v0:v1]
+        return each_axis(rates, gaps, pitch, self._ends)
+
+    def regions(self, count: int) -> Regions:
+        """The cheapest division into a number of sub-surfaces, with an axis each.
+
+        Parameters
+        ----------
+        count : int
+        """
+        return self.named(self.best, self.best.pieces(count))
+
+    def named(self, found: Solution, boxes: list[Corners]) -> Regions:
+        """Sub-surfaces as pieces of the face.
+
+        Parameters
+        ----------
+        found : Solution
+        boxes : list of (int, int, int, int)
+        """
+        face = self.job.worth.face
+        pieces = [(face.trimmed(loops), box) for box in boxes for loops in self.lattice.rectangle(box)]
+        owners = [box for _, box in pieces]
+        labels = [face.label + letters(k) if len(pieces) > 1 else face.label for k in range(len(pieces))]
+        faces = tuple(piece.trimmed(piece.trims, label) for (piece, _), label in zip(pieces, labels, strict=True))
+        return Regions(faces,
+                       np.array([found.prices.axes[found.offers.axis[box]] for box in owners]).reshape(-1, 3),
+                       tuple("uv"[found.offers.feed[box]] for box in owners),
+                       tuple(float(found.offers.cost[box]) for box in owners),
+                       np.stack([found.known, found.division.curve[found.known]], axis=1))
+
+    def _first_axes(self) -> Array:
+        normals = self.lattice.normals[self.lattice.material]
+        if not len(normals):
+            raise InvalidInput(f"face {self.job.worth.face.label} has no place with a normal: it cannot be divided")
+        middle = normals.mean(axis=0)
+        norm = float(np.linalg.norm(middle))
+        middle = middle / norm if norm > 1e-6 else normals[0]
+        return spiral(own_frame(normals, middle), float(_SPACING), float(np.pi) if norm < 0.3 else float(np.pi) / 2)
+
+    @property
+    def _pitch(self) -> tuple[Array, Array]:
+        return np.diff(self.lattice.lines[0]), np.diff(self.lattice.lines[1])
+
+    @property
+    def _ends(self) -> float:
+        """By how much a pass is longer than its line on the face, mm: the strip of a ball of the cutter's radius."""
+        worth = self.job.worth
+        return float(2 * np.sqrt(2 * worth.tool.radius * worth.scallop - worth.scallop**2))
+
+    @cached_property
+    def _gaps(self) -> tuple[Array, Array]:
+        """Length of the face's lines between nodes, mm."""
+        points, filled = self.lattice.points, self.lattice.filled
+        found = []
+        for axis in (0, 1):
+            length = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+            sides = np.zeros(length.shape)
+            cells = np.moveaxis(filled, 1 - axis, 0)
+            view = np.moveaxis(sides, 1 - axis, 0)
+            view[:-1] += cells
+            view[1:] += cells
+            view[1:-1] /= 2
+            found.append(length * sides)
+        return found[0], found[1]
+
+    @cached_property
+    def _filled(self) -> Array:
+        """Cells' worth of material in every rectangle, by first and last line along u and along v."""
+        nu, nv = self.lattice.cells
+        total = np.zeros((nu + 1, nv + 1))
+        total[1:, 1:] = self.lattice.filled.cumsum(axis=0).cumsum(axis=1)
+        across = total[None, :, :] - total[:, None, :]
+        return np.asarray(across[:, :, None, :] - across[:, :, :, None])
+
+    @cached_property
+    def _narrow(self) -> NDArray[np.bool_]:
+        """Rectangles that are narrower than the cutter, though the face is not: marks without use."""
+        found = np.zeros(self._filled.shape, dtype=bool)
+        for axis, gaps in enumerate(self._gaps):
+            lines = np.maximum((gaps > 0).sum(axis=1 - axis), 1)
+            line = np.concatenate([[0.0], np.cumsum(gaps.sum(axis=1 - axis) / lines)])
+            apart = line[None] - line[:, None]
+            thin = (apart < 2 * self.job.worth.tool.radius) & (apart < line[-1])
+            found |= thin[:, :, None, None] if axis == 0 else thin[None, None]
+        return found

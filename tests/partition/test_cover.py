@@ -1,0 +1,61 @@
+"""Few axes for many sub-surfaces: the integer programme against enumeration, and the joint division."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.orient.indexed import task
+from toolaxis.partition.cover import cover, shared
+from toolaxis.partition.divider import Divider
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_cover_is_the_cheapest(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    costs = rng.uniform(100, 900, (5, 9))
+    costs[rng.random(costs.shape) < 0.3] = np.inf
+    costs[:, 0] = 2000
+    for most, index in ((1, 0.0), (2, 50.0), (3, 10.0), (9, 300.0)):
+        best = min(costs[:, list(axes)].min(axis=1).sum() + index * len(axes)
+                   for n in range(1, most + 1) for axes in combinations(range(9), n))
+        found = cover(costs, most, index)
+        assert found.cost == pytest.approx(best, rel=1e-9)
+        assert found.bound == pytest.approx(best, rel=1e-6)
+        assert len(np.unique(found.axis)) <= most
+
+
+def test_twelve_sub_surfaces_and_400_axes_are_solved_exactly() -> None:
+    rng = np.random.default_rng(1)
+    costs = rng.uniform(100, 900, (12, 400))
+    found = cover(costs, 4, 100.0)
+    assert found.bound == pytest.approx(found.cost, rel=1e-6)
+    greedy: list[int] = []
+    for _ in range(4):
+        greedy.append(int(np.argmin([costs[:, [*greedy, k]].min(axis=1).sum() for k in range(400)])))
+    assert found.cost <= costs[:, greedy].min(axis=1).sum() + 400.0 + 1e-6
+
+
+def test_what_no_axis_serves_is_said() -> None:
+    with pytest.raises(ta.InvalidInput, match="no axis that may be used"):
+        cover([[1.0, 2.0], [np.inf, np.inf]])
+    with pytest.raises(ta.InvalidInput, match="allow more orientations"):
+        cover([[1.0, np.inf], [np.inf, 1.0]], 1)
+
+
+def test_two_faces_share_axes() -> None:
+    x, y = np.meshgrid(np.linspace(0, 60, 7), np.linspace(0, 60, 7), indexing="ij")
+    faces = [ta.Face.from_bspline(np.stack([x + 70 * k, y, 10 * np.sin(np.pi * x / 30) * np.cos(np.pi * y / 30)], -1))
+             for k in (0, 1)]
+    dividers = [Divider(task(face, ta.Tool.torus(12, 1), 0.05), cells=(12, 12), most=4) for face in faces]
+    lengths = []
+    for most in (1, 4):
+        found = shared(dividers, most)
+        assert found.orientations <= most
+        axes = np.unique(np.concatenate([one.axes for one in found.regions]), axis=0)
+        assert len(axes) == found.orientations
+        for face, one in zip(faces, found.regions, strict=True):
+            assert sum(piece.area for piece in one) == pytest.approx(face.area, rel=1e-6)
+        lengths.append(found.length)
+    assert lengths[1] < 0.97 * lengths[0]
