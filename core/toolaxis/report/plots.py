@@ -55,13 +55,13 @@ def figure(width: float, height: float) -> Figure:
 
 
 def bare(ax: Axes) -> None:
-    """Lengths to scale, no frame.
+    """Lengths to scale, no frame; the axes keep their place, so that what is laid out around them does.
 
     Parameters
     ----------
     ax : Axes
     """
-    ax.set_aspect("equal")
+    ax.set_aspect("equal", adjustable="datalim")
     ax.set_axis_off()
 
 

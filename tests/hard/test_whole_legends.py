@@ -1,0 +1,32 @@
+"""Found: the legend below a wide part was cut off by the picture's edge: "shank (not given)" could not be read."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.machine.setup import work_coordinates
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.report.plots import operation_picture
+from toolaxis.shape.part import Part
+
+
+@pytest.mark.parametrize("size", [(90, 30), (30, 90), (40, 40)])
+@pytest.mark.parametrize("tool", [ta.Tool.torus(diameter=12, corner_radius=1),
+                                  ta.Tool.ball(diameter=8, stickout=40, holder=[(10, 0), (10, 40)])])
+def test_no_legend_leaves_the_picture(size, tool):
+    axis, along = np.array([0.0, 0.0, 1.0]), np.linspace(0, 1, 20)
+    face = ta.Face.from_bspline([[[x, y, 0] for y in (0, size[1])] for x in (0, size[0])], degree=(1, 1))
+    points = face.evaluate(np.column_stack([along, np.full(20, 0.5)])).point
+    rows = np.tile(axis, (20, 1))
+    path = ToolPath(points, points, rows, rows, np.full(20, Motion.CUT, dtype=np.int8), np.array([0, 20]))
+    frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
+    op = Operation(1, face, Orientation(axis, "u", 1, 1.0, 40.0, 2.5, outcome="feasible"), path, frame)
+    plan = Plan(Part.from_faces([face]), tool, Inputs(0.02), (op,), (), np.zeros(3), "complete")
+    made = operation_picture(plan, op)
+    made.canvas.draw()
+    for ax in made.axes:
+        box = ax.get_legend().get_window_extent()
+        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= made.bbox.width and box.y1 <= made.bbox.height
