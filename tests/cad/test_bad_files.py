@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from toolaxis.cad import load, transfer
-from toolaxis.cad.steptext import read_text
+from toolaxis.cad.steptext import declared_unit, read_text
 from toolaxis.errors import InvalidInput, ToolAxisError
 
 pytest.importorskip("OCP")
@@ -185,3 +185,17 @@ def test_damaged_geometry_is_warned_about(write, text, same_process):
         assert any("lie off their faces" in warning for warning in warnings)
     except InvalidInput as reason:
         assert "lost" in str(reason)
+
+
+def test_the_unit_is_told_by_the_text_too():
+    """Length units of all contexts, each once; those of angles, and units without a context, do not count."""
+    def context(*lengths):
+        bodies = [f"#{10 + k}=(LENGTH_UNIT()NAMED_UNIT(*){unit});" for k, unit in enumerate(lengths)]
+        members = ",".join(f"#{10 + k}" for k in range(len(lengths)))
+        return "".join(bodies) + f"#9=(GLOBAL_UNIT_ASSIGNED_CONTEXT(({members},#8))REPRESENTATION_CONTEXT('',''));"
+
+    angle = "#8=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));#7=(LENGTH_UNIT()SI_UNIT(.MICRO.,.METRE.));"
+    for text, unit in [(context("SI_UNIT(.MILLI.,.METRE.)"), "millimetre"), (context("SI_UNIT($, .METRE.)"), "metre"),
+                       (context("CONVERSION_BASED_UNIT('INCH',#3)"), "inch"), ("", "not declared"),
+                       (context("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.CENTI.,.METRE.)"), "millimetre, centimetre")]:
+        assert declared_unit((angle + text).encode()) == unit

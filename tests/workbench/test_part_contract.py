@@ -1,5 +1,6 @@
 """The contract of the adapters for FreeCAD: the kernel's own answers, and the same parts as through Open CASCADE."""
 
+import hashlib
 import pickle
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 
 from toolaxis.cad.assembling import face_from_record, part_from_record
 from toolaxis.cad.freecad_shapes import shape_record
-from toolaxis.errors import UnsupportedGeometry
+from toolaxis.cad.loading import load
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "out" / "freecad" / "part_contract"
@@ -174,3 +176,25 @@ def test_an_edge_without_a_curve_in_the_parameters_gets_one(prepared):
 def test_a_face_that_is_only_a_mesh_is_named_as_such(prepared):
     with pytest.raises(UnsupportedGeometry, match=r"none of the part's 1 faces can be used; .* mesh but no surface"):
         shape_record(read(prepared / "mesh.brep"))
+
+
+@pytest.mark.parametrize("name", ["freeform", "axom_sliced_cylinder", "mousecover"])
+def test_a_step_file_is_read_by_freecad_where_there_is_no_other_kernel(prepared, name):
+    """The same part as the file's shape, with the file's checksum and unit."""
+    path = prepared / f"{name}.step"
+    if not path.exists():
+        pytest.skip(f"{name} is one of the parts by others: set TOOLAXIS_SHARED")
+    part, same = load(path), part_from_record(shape_record(read(path)))
+    assert (len(part.faces), part.bodies, len(part.edges)) == (len(same.faces), same.bodies, len(same.edges))
+    assert all(np.array_equal(one.surface.control, other.surface.control)
+               for one, other in zip(part.faces, same.faces, strict=True))
+    assert part.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert part.unit == {"freeform": "millimetre", "axom_sliced_cylinder": "centimetre", "mousecover": "metre"}[name]
+
+
+def test_a_step_file_that_lost_faces_is_refused(prepared, tmp_path):
+    text = (prepared / "freeform.step").read_text()
+    planes = [line for line in text.splitlines() if "= PLANE(" in line]
+    (tmp_path / "hurt.step").write_text(text.replace(planes[0], ""))
+    with pytest.raises(InvalidInput, match="lost 1 of its 6 faces in transfer"):
+        load(tmp_path / "hurt.step")

@@ -21,6 +21,10 @@ ENDLESS = 1e50
 NATURAL = 1e-7
 
 
+#: Chord of loops, mm, that even large faces keep: a face that ends beyond its true border meets the cutter there.
+GREATEST_CHORD = 2e-4
+
+
 class EndlessFace(UnsupportedGeometry):
     """A face of endless extent without trim loops: in a file, one that lost them."""
 
@@ -106,7 +110,7 @@ def _kernel_loops(face: KernelFace, surface: KernelSurface, share: float) -> tup
     if not (box[0] < box[1] and box[2] < box[3]):
         raise UnsupportedGeometry("its trim loops enclose no area: repair the face in the CAD system")
     to_ours, periods = map_of(surface, box).to_ours, surface.periods
-    chord = share * float(np.linalg.norm(np.ptp(surface.points(grid(box, 7)), axis=0)))
+    chord = min(share * float(np.linalg.norm(np.ptp(surface.points(grid(box, 7)), axis=0))), GREATEST_CHORD)
     warnings: list[str] = []
     polygons = [chained([discretised(edge, to_ours, surface.tangents, chord) for edge in wire], periods, warnings)
                 for wire in wires]

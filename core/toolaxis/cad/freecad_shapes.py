@@ -2,16 +2,20 @@
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import FreeCAD
 import numpy as np
+import Part
 from numpy.typing import NDArray
 
 from toolaxis.cad.faces import record_of_shape
 from toolaxis.cad.freecad_geometry import FreecadSurface, rows
 from toolaxis.cad.kernel import KernelBody
 from toolaxis.cad.records import ShapeRecord
+from toolaxis.cad.steptext import StepText, declared_unit
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.tolerances import Tolerance
 
@@ -70,6 +74,39 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
     record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance)
     record.selected = tuple(sorted({faces.find(face) for face in selected} - {0}))
     return record
+
+
+def step_record(path: Path, text: StepText) -> tuple[ShapeRecord, int]:
+    """What FreeCAD makes of a STEP file, in mm, and how many different faces came out, copies counted once.
+
+    Parameters
+    ----------
+    path : Path
+    text : StepText
+        Of the file.
+
+    Raises
+    ------
+    InvalidInput
+        When FreeCAD refuses the file or makes nothing of it.
+    UnsupportedGeometry
+        When not one face can be converted.
+    """
+    with TemporaryDirectory(prefix="toolaxis-") as folder:
+        source = path
+        if text.marked:
+            source = Path(folder) / "without-mark.step"
+            source.write_bytes(text.content)
+        try:
+            shape = Part.read(str(source))
+        except (Part.OCCError, OSError, RuntimeError) as reason:
+            raise InvalidInput("the CAD kernel cannot parse its text: export the part again") from reason
+    record = shape_record(shape)
+    record.unit = declared_unit(text.content)
+    faces = shape.Faces
+    for face in faces:
+        face.Placement = FreeCAD.Placement()
+    return record, Numbering(faces).count - record.endless
 
 
 class FreecadFace:

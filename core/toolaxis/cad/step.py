@@ -1,4 +1,4 @@
-"""STEP files, read by a kernel in a process of its own so that a crash or a hang stays there."""
+"""STEP files, read by a kernel in a process of its own so that a crash or a hang stays there; by FreeCAD inside it."""
 
 import hashlib
 import os
@@ -15,7 +15,7 @@ import toolaxis
 from toolaxis.cad.assembling import part_from_record
 from toolaxis.cad.records import ShapeRecord
 from toolaxis.cad.steptext import StepText, read_text
-from toolaxis.errors import InvalidInput, MissingBackend
+from toolaxis.errors import InvalidInput, MissingBackend, UnsupportedGeometry
 from toolaxis.shape.part import Part
 
 COMMAND = ("-m", "toolaxis.cad.transfer")
@@ -46,10 +46,7 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     """
     file = Path(path)
     text = read_text(file)
-    if find_spec("OCP") is None:
-        raise MissingBackend("reading STEP files needs a CAD kernel: pip install 'toolaxis[cadquery]'")
-    limit = 60.0 + 20.0 * len(text.content) / 1e6 if time_limit is None else time_limit
-    record, transferred = _in_child(file, text, limit)
+    record, transferred = _transferred(file, text, time_limit)
     lost = _lost(file, text, transferred)
     if lost and not accept_lost_faces:
         raise InvalidInput(f"{lost}; repair it in the CAD system and export it again, or accept_lost_faces")
@@ -57,6 +54,20 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
     part = part_from_record(record, str(file), digest)
     return _with_unit_warning(part)
+
+
+def _transferred(file: Path, text: StepText, time_limit: float | None) -> tuple[ShapeRecord, int]:
+    """What the kernel makes of a file, and how many different faces came out."""
+    if find_spec("OCP") is not None:
+        return _in_child(file, text, 60.0 + 20.0 * len(text.content) / 1e6 if time_limit is None else time_limit)
+    if "FreeCAD" not in sys.modules:
+        raise MissingBackend("reading STEP files needs a CAD kernel: pip install 'toolaxis[cadquery]'")
+    from toolaxis.cad.freecad_shapes import step_record
+
+    try:
+        return step_record(file, text)
+    except (InvalidInput, UnsupportedGeometry) as reason:
+        raise type(reason)(f"{file}: {reason}") from reason
 
 
 def _in_child(file: Path, text: StepText, limit: float) -> tuple[ShapeRecord, int]:

@@ -16,6 +16,10 @@ _DEFINITION = re.compile(rb"#(\d+)\s*=")
 _REFERENCE = re.compile(rb"#(\d+)")
 _FACE = re.compile(rb"#(\d+)\s*=\s*(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
 _SHELL = re.compile(rb"=\s*(?:CLOSED_SHELL|OPEN_SHELL|CONNECTED_FACE_SET)\s*\(([^;]*)\)\s*;")
+_CONTEXT = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^)]*)\)")
+_LENGTH = re.compile(rb"#(\d+)\s*=\s*\(([^;]*?\bLENGTH_UNIT\b[^;]*)\)\s*;")
+_BASED = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'")
+_METRIC = re.compile(rb"SI_UNIT\s*\(\s*(?:\$|\.(\w+)\.)\s*,\s*\.(\w+)\.")
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,27 @@ def read_text(path: Path) -> StepText:
                            "wires or drawings")
     referred = {int(n) for n in _REFERENCE.findall(bare, data.end())}
     return StepText(content, marked, faces, tuple(sorted(referred - definitions)))
+
+
+def declared_unit(content: bytes) -> str:
+    """The length units that the contexts of a STEP text declare, such as "millimetre" or "inch"; "not declared".
+
+    Parameters
+    ----------
+    content : bytes
+    """
+    lengths = {int(number): body for number, body in _LENGTH.findall(content)}
+    names = []
+    for members in _CONTEXT.findall(content):
+        names += [_unit_name(lengths[n]) for n in map(int, _REFERENCE.findall(members)) if n in lengths]
+    return ", ".join(dict.fromkeys(filter(None, names))) or "not declared"
+
+
+def _unit_name(body: bytes) -> str:
+    based, metric = _BASED.search(body), _METRIC.search(body)
+    if based:
+        return based.group(1).decode(errors="replace").lower()
+    return b"".join(word or b"" for word in metric.groups()).decode().lower() if metric else ""
 
 
 def _content(path: Path) -> bytes:
