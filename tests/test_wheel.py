@@ -22,7 +22,8 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copy(ROOT / name, source / name)
     shutil.copytree(ROOT / "core" / "toolaxis", source / "core" / "toolaxis",
                     ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(ROOT / "resources" / "tools", source / "resources" / "tools")
+    for name in ("tools", "machines"):
+        shutil.copytree(ROOT / "resources" / name, source / "resources" / name)
     subprocess.run([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir",
                     str(folder), str(source)], check=True, capture_output=True)
     (found,) = folder.glob("toolaxis-*.whl")
@@ -45,6 +46,8 @@ def test_the_tool_library_works_from_where_a_wheel_puts_it(wheel: Path, tmp_path
             f"assert toolaxis.__file__.startswith({str(tmp_path)!r}), toolaxis.__file__\n"
             "from toolaxis.job.toolfile import library, load_tool\n"
             "assert len(library()) >= 6 and load_tool('torus-12x1').stickout == 60\n"
+            "from toolaxis.machine import catalogue\n"
+            "assert len(catalogue.library()) >= 7 and catalogue.load_machine('mikron-ucp-710').kind == 'table-table'\n"
             "from toolaxis.plan.schema import schema\n"
             "assert schema()['title'] == 'toolaxis plan'\n")
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path,

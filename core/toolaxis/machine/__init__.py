@@ -1,1 +1,1 @@
-"""What moves: limits of the axes and work coordinate systems."""
+"""What moves: axes, machines, their kinematics, limits, and work coordinate systems."""

@@ -1,0 +1,167 @@
+"""Machines from TOML, and those that come with toolaxis.
+
+In the files lengths are mm, angles degrees, times seconds; in memory angles are radians.
+"""
+
+import os
+import sys
+import tomllib
+from math import inf, radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.fcm import machine_from_fcm
+
+_MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head"}
+_LINEAR = {"name", "direction", "limits", "velocity", "acceleration", "jerk"}
+_ROTARY = _LINEAR | {"point", "increment", "by_hand"}
+_DRIVE = ("velocity", "acceleration", "jerk")
+
+
+def library() -> dict[str, Path]:
+    """The machines that can be given by name: files in resources/machines of a clone or of an installed wheel.
+
+    Returns
+    -------
+    dict of str to Path
+        The folder in the environment variable TOOLAXIS_MACHINES, if set, comes first.
+    """
+    folders = [Path(os.environ["TOOLAXIS_MACHINES"])] if os.environ.get("TOOLAXIS_MACHINES") else []
+    folders += [Path(__file__).resolve().parents[3] / "resources" / "machines",
+                Path(sys.prefix) / "share" / "toolaxis" / "machines"]
+    found: dict[str, Path] = {}
+    for folder in folders:
+        for path in sorted([*folder.glob("*.toml"), *folder.glob("*.fcm")]):
+            found.setdefault(path.stem, path)
+    return found
+
+
+def load_machine(text: str) -> Machine:
+    """A machine from its name in the library, a TOML file, or one of FreeCAD's .fcm files.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    InvalidInput
+        When there is no such machine, or the file does not describe one.
+    """
+    path = Path(text)
+    if not path.is_file():
+        known = library()
+        if text not in known:
+            raise InvalidInput(f"machine {text!r} is neither a file nor one of the library: "
+                               f"{', '.join(known) or 'none'}")
+        path = known[text]
+    try:
+        content = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as reason:
+        raise InvalidInput(f"{path} cannot be read: {reason}") from reason
+    reader = machine_from_fcm if path.suffix.lower() == ".fcm" else machine_from_toml
+    try:
+        return reader(content)
+    except InvalidInput as reason:
+        raise InvalidInput(f"machine file {path.name}: {reason}") from reason
+
+
+def machine_from_toml(text: str) -> Machine:
+    """A machine from the text of a TOML file.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    InvalidInput
+        When a word is unknown, a number is missing or of the wrong kind, or the axes make no machine.
+    """
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as reason:
+        raise InvalidInput(f"not valid TOML: {reason}") from reason
+    _known(content, _MACHINE, "machine")
+    name = content.get("name")
+    if not isinstance(name, str) or not name:
+        raise InvalidInput("the machine has no name: write name = \"...\"")
+    return Machine(
+        name, tuple(_linear(item) for item in _list(content, "linear")),
+        tuple(_rotary(item) for item in _list(content, "table")),
+        tuple(_rotary(item) for item in _list(content, "head")),
+        _numbers(content.get("spindle", [0, 0, 1]), 3, "spindle"),
+        _numbers(content.get("gauge", [0, 0, 0]), 3, "gauge"),
+        str(content.get("source", "")), tuple(str(item) for item in _list(content, "assumed")))
+
+
+def _list(content: dict[str, Any], word: str) -> list[Any]:
+    items = content.get(word, [])
+    if not isinstance(items, list):
+        raise InvalidInput(f"{word} is {items!r}: a list is needed")
+    return items
+
+
+def _known(item: Any, words: set[str], what: str) -> None:
+    if not isinstance(item, dict):
+        raise InvalidInput(f"{what} is {item!r}: a table of values is needed")
+    unknown = sorted(set(item) - words)
+    if unknown:
+        raise InvalidInput(f"{what} has an unknown {unknown[0]!r}: use {', '.join(sorted(words))}")
+
+
+def _numbers(values: Any, count: int, what: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    good = isinstance(values, list) and len(values) == count
+    if not good or not all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
+        raise InvalidInput(f"{what} is {values!r}: {count} numbers are needed")
+    return np.array(values, dtype=float)
+
+
+def _number(item: dict[str, Any], word: str, axis: str) -> float:
+    value = item.get(word)
+    if value is None:
+        raise InvalidInput(f"axis {axis} has no {word}: state its limit")
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InvalidInput(f"{word} of axis {axis} is {value!r}: a number is needed")
+    return float(value)
+
+
+def _name(item: dict[str, Any], kind: str) -> str:
+    name = item.get("name")
+    if not isinstance(name, str):
+        raise InvalidInput(f"a {kind} axis has the name {name!r}: write name = \"X\"")
+    return name
+
+
+def _limits(item: dict[str, Any], name: str) -> tuple[float, float]:
+    low, high = _numbers(item["limits"], 2, f"limits of axis {name}") if "limits" in item else (-inf, inf)
+    return float(low), float(high)
+
+
+def _linear(item: Any) -> LinearAxis:
+    _known(item, _LINEAR, "a linear axis")
+    name = _name(item, "linear")
+    drive = Drive(*(_number(item, word, name) for word in _DRIVE))
+    direction = _numbers(item.get("direction"), 3, f"direction of axis {name}")
+    return LinearAxis(name, direction, drive, *_limits(item, name))
+
+
+def _rotary(item: Any) -> RotaryAxis:
+    _known(item, _ROTARY, "a rotary axis")
+    name = _name(item, "rotary")
+    by_hand = item.get("by_hand", False)
+    if not isinstance(by_hand, bool):
+        raise InvalidInput(f"by_hand of axis {name} is {by_hand!r}: true or false is needed")
+    stated = [word for word in _DRIVE if word in item]
+    if by_hand and stated:
+        raise InvalidInput(f"axis {name} is set by hand and has a {stated[0]}: one of the two must go")
+    drive = None if by_hand else Drive(*(radians(_number(item, word, name)) for word in _DRIVE))
+    low, high = (radians(value) for value in _limits(item, name))
+    increment = radians(_number(item, "increment", name)) if "increment" in item else 0.0
+    return RotaryAxis(name, _numbers(item.get("direction"), 3, f"direction of axis {name}"),
+                      _numbers(item.get("point", [0, 0, 0]), 3, f"point of axis {name}"), drive, low, high, increment)

@@ -1,0 +1,272 @@
+"""From machine coordinates to the tool's place on the part, and all ways back.
+
+With the rotary axes numbered from the part to the tool, turning by R_i about their points, the linear axes' motion m
+and the tool of length L, a tip p and a tool axis T on the part are
+
+    part p = R_1 R_2 (m + H (gauge - L spindle)),   T = R_1 R_2 spindle,
+
+where those of the table stand before m and those of the head make up H.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.configurations import Machine
+from toolaxis.numeric.turning import one_turn, turned, two_turns
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Angle by which a machine without rotary axes may miss a tool axis, rad.
+STRAIGHT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """All ways in which a machine takes tool axes, or tool axes at points.
+
+    Attributes
+    ----------
+    joints : (n, s, m) array
+        Joint coordinates: rotary angles, rad, in the order of `Machine.rotary`; after an `inverse` the three linear
+        coordinates, mm, stand before them.  s is 2 for two rotary axes, 1 otherwise.
+    reached : (n,) array of bool
+        Whether the axes can turn there at all, limits aside.
+    within : (n, s) array of bool
+        Whether every axis is also inside its limits.
+    free : (n,) array of bool
+        Whether the rotary axis next to the part is free, since the tool axis lies along it; it then stands where it is.
+    determinant : (n,) array
+        0 to 1; 0 in the singular directions, where the two solutions meet and the axes would have to race near by.
+    """
+
+    joints: Array
+    reached: Bools
+    within: Bools
+    free: Bools
+    determinant: Array
+
+
+def rotary_angles(machine: Machine, axes: ArrayLike, near: ArrayLike = (), table_from_part: ArrayLike | None = None,
+                  ) -> Solutions:
+    """All rotary angles that give tool axes, each by whole turns inside its limits and there nearest to where it is.
+
+    Parameters
+    ----------
+    machine : Machine
+    axes : (n, 3) array_like
+        Tool axes in the part's frame, tip to spindle.
+    near : (m,) array_like
+        Where the rotary axes stand, rad; zero unless given.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit or a number is not finite.
+    """
+    where = placement(table_from_part)
+    rows = unit(as_rows(axes, 3, "tool axis")) @ where[:3, :3].T
+    rotary = machine.rotary
+    stand = np.zeros(len(rotary)) if len(np.atleast_1d(np.asarray(near))) == 0 else np.asarray(near, dtype=float)
+    if stand.shape != (len(rotary),) or not np.isfinite(stand).all():
+        raise InvalidInput(f"angles to stay near to are {np.asarray(near).tolist()}: {len(rotary)} finite ones are "
+                           "needed")
+    angles, reached, free, determinant = _turns(machine, rows)
+    within = np.repeat(reached[:, None], angles.shape[1], axis=1)
+    for i, axis in enumerate(rotary):
+        wanted = angles[..., i]
+        if i == 0:
+            wanted = np.where(free[:, None], np.clip(stand[0], axis.low, axis.high), wanted)
+        angles[..., i], inside = axis.within(wanted, stand[i])
+        within &= inside
+    return Solutions(angles, reached, within, free, determinant)
+
+
+def _turns(machine: Machine, rows: Array) -> tuple[Array, Bools, Bools, Array]:
+    """Angles of each branch, reached, free and determinant for tool axes on the table."""
+    count, rotary, spindle = len(rows), machine.rotary, np.asarray(machine.spindle)
+    if len(rotary) == 2:
+        found = two_turns(rotary[0].direction, rotary[1].direction, spindle, rows)
+        return found.angles, found.reached, found.free, found.determinant
+    if len(rotary) == 1:
+        angles, reached, free = one_turn(rotary[0].direction, spindle, rows)
+        return angles[:, None, None], reached, free, np.ones(count)
+    reached = angle_between(rows, spindle) <= STRAIGHT
+    return np.empty((count, 1, 0)), reached, np.zeros(count, dtype=bool), np.ones(count)
+
+
+def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, tool_length: float = 0.0,
+                       table_from_part: ArrayLike | None = None) -> Array:
+    """Linear coordinates that bring the tool tip to points of the part at given rotary angles, (n, 3) mm.
+
+    Parameters
+    ----------
+    machine : Machine
+    points : (n, 3) array_like
+        Tool tips in the part's frame, mm.
+    rotary : (n, m) or (m,) array_like
+        Rotary angles, rad.
+    tool_length : float
+        From the gauge point to the tip along the spindle, mm.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+    """
+    where = placement(table_from_part)
+    rows = as_rows(points, 3, "points") @ where[:3, :3].T + where[:3, 3]
+    angles = _angles(machine, rotary, len(rows))
+    for i, axis in enumerate(machine.table):
+        rows = _about(rows, axis, -angles[:, i])
+    return np.asarray(np.linalg.solve(machine.directions, (rows - _tip(machine, angles, tool_length)).T).T)
+
+
+def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: float = 0.0,
+            table_from_part: ArrayLike | None = None, near: ArrayLike = ()) -> Solutions:
+    """All joint coordinates that bring the tool to points with tool axes.
+
+    Parameters
+    ----------
+    machine : Machine
+    points, axes : (n, 3) array_like
+        Tool tips, mm, and tool axes in the part's frame.
+    tool_length : float
+        From the gauge point to the tip, mm.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+    near : (m,) array_like
+        Where the rotary axes stand, rad.
+
+    Notes
+    -----
+    Property: `forward` of every solution that is reached returns points and axes to 1e-12 of their size.
+    """
+    rows = as_rows(points, 3, "points")
+    found = rotary_angles(machine, axes, near, table_from_part)
+    if len(found.reached) != len(rows):
+        raise InvalidInput(f"{len(found.reached)} tool axes for {len(rows)} points: one for each is needed")
+    joints = np.empty((*found.joints.shape[:2], 3 + len(machine.rotary)))
+    within = found.within.copy()
+    for branch in range(joints.shape[1]):
+        joints[:, branch, 3:] = found.joints[:, branch]
+        joints[:, branch, :3] = linear_coordinates(machine, rows, found.joints[:, branch], tool_length, table_from_part)
+        for i, axis in enumerate(machine.linear):
+            within[:, branch] &= axis.excess(joints[:, branch, i]) <= 0
+    return Solutions(joints, found.reached, within, found.free, found.determinant)
+
+
+def forward(machine: Machine, joints: ArrayLike, tool_length: float = 0.0,
+            table_from_part: ArrayLike | None = None) -> tuple[Array, Array]:
+    """Tool tips, mm, and tool axes in the part's frame, (n, 3) each, for joint coordinates.
+
+    Parameters
+    ----------
+    machine : Machine
+    joints : (n, 3 + m) array_like
+        Linear coordinates, mm, then rotary angles, rad.
+    tool_length : float
+        From the gauge point to the tip, mm.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+    """
+    rows = as_rows(joints, 3 + len(machine.rotary), "joint coordinates")
+    where, angles = placement(table_from_part), rows[:, 3:]
+    tips = rows[:, :3] @ machine.directions.T + _tip(machine, angles, tool_length)
+    for i in reversed(range(len(machine.table))):
+        tips = _about(tips, machine.table[i], angles[:, i])
+    return (tips - where[:3, 3]) @ where[:3, :3], tool_axes(machine, angles) @ where[:3, :3]
+
+
+def tool_axes(machine: Machine, rotary: ArrayLike) -> Array:
+    """Tool axes on the table for rotary angles, (n, 3).
+
+    Parameters
+    ----------
+    machine : Machine
+    rotary : (n, m) array_like
+        rad.
+    """
+    angles = np.atleast_2d(np.asarray(rotary, dtype=float))
+    axes = np.broadcast_to(np.asarray(machine.spindle), (len(angles), 3))
+    for i in reversed(range(len(machine.rotary))):
+        axes = turned(axes, machine.rotary[i].direction, angles[:, i])
+    return axes
+
+
+def part_from_machine(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLike | None = None) -> Array:
+    """What the three linear axes' velocities are on the part at rotary angles that stand still, (n, 3, 3).
+
+    The columns are the directions on the part in which the axes move the tool.
+
+    Parameters
+    ----------
+    machine : Machine
+    rotary : (n, m) array_like
+        rad.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eq. (16) is the case of a table that tilts A and turns C.
+    """
+    angles = np.atleast_2d(np.asarray(rotary, dtype=float))
+    columns = []
+    for direction in machine.directions.T:
+        rows = np.broadcast_to(direction, (len(angles), 3))
+        for i in reversed(range(len(machine.table))):
+            rows = turned(rows, machine.table[i].direction, angles[:, i])
+        columns.append(rows @ placement(table_from_part)[:3, :3])
+    return np.stack(columns, axis=2)
+
+
+def placement(table_from_part: ArrayLike | None) -> Array:
+    """The matrix (4, 4) of a work offset; the identity for none.
+
+    Parameters
+    ----------
+    table_from_part : (4, 4) or (3,) array_like, optional
+        A rigid motion, or the part's origin on the table, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When it is neither.
+    """
+    if table_from_part is None:
+        return np.eye(4)
+    matrix = np.asarray(table_from_part, dtype=float)
+    if matrix.shape == (3,):
+        moved = np.eye(4)
+        moved[:3, 3] = matrix
+        matrix = moved
+    good = matrix.shape == (4, 4) and bool(np.isfinite(matrix).all())
+    if not good or np.abs(matrix[:3, :3].T @ matrix[:3, :3] - np.eye(3)).max() > 1e-9 \
+            or np.linalg.det(matrix[:3, :3]) < 0 or matrix[3].tolist() != [0, 0, 0, 1]:
+        raise InvalidInput(f"work offset is {matrix.tolist()}: the part's origin on the table (3 numbers), or a rigid "
+                           "4 x 4 matrix, is needed")
+    return matrix
+
+
+def _angles(machine: Machine, rotary: ArrayLike, count: int) -> Array:
+    angles = np.atleast_2d(np.asarray(rotary, dtype=float))
+    if angles.shape[-1] != len(machine.rotary) or len(angles) not in (1, count):
+        raise InvalidInput(f"rotary angles have shape {np.shape(rotary)}: ({count}, {len(machine.rotary)}) is needed")
+    return np.broadcast_to(angles, (count, len(machine.rotary)))
+
+
+def _tip(machine: Machine, angles: Array, tool_length: float) -> Array:
+    """The tool tip before the linear axes move it."""
+    tips = np.broadcast_to(np.asarray(machine.gauge) - tool_length * np.asarray(machine.spindle), (len(angles), 3))
+    for i in reversed(range(len(machine.head))):
+        tips = _about(tips, machine.head[i], angles[:, len(machine.table) + i])
+    return tips
+
+
+def _about(points: Array, axis: RotaryAxis, angles: Array) -> Array:
+    return turned(points - axis.point, axis.direction, angles) + axis.point

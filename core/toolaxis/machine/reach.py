@@ -1,0 +1,133 @@
+"""Which tool axes a machine reaches, and how far an axis is from the nearest one that it reaches.
+
+The axes that two rotary axes reach within their ranges make a patch of the sphere whose border consists of arcs of
+small circles: one rotary axis at an end of its range while the other turns, and the circles where the two solutions
+meet.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.kinematics import inverse, placement, rotary_angles
+from toolaxis.numeric.turning import ON_AXIS, across, turn_between, turned
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class MachineReach:
+    """The tool axes that a machine's rotary axes reach within their ranges; an `AxisLimits` like cone and ranges.
+
+    Attributes
+    ----------
+    machine : Machine
+        Axes set by hand count like others: they too can be indexed.
+    table_from_part : (4, 4) array, optional
+        Where the part stands on the table, all axes at zero; only how it is turned matters here.
+    """
+
+    machine: Machine
+    table_from_part: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        placement(self.table_from_part)
+
+    def allowed(self, axes: ArrayLike) -> Bools:
+        """Whether at least one solution lies within all ranges, (n,) bool.
+
+        Parameters
+        ----------
+        axes : (n, 3) array_like
+        """
+        found = rotary_angles(self.machine, axes, table_from_part=self.table_from_part)
+        return np.asarray(found.within.any(axis=1))
+
+    def excess(self, axes: ArrayLike) -> Array:
+        """Angle from each axis to the nearest reached one, (n,) rad; 0 where it is reached itself.
+
+        Parameters
+        ----------
+        axes : (n, 3) array_like
+        """
+        rows = unit(as_rows(axes, 3, "axis")) @ placement(self.table_from_part)[:3, :3].T
+        arcs = _border(self.machine)
+        away = np.min([_to_arc(rows, *arc) for arc in arcs], axis=0)
+        return np.where(self.allowed(axes), 0.0, away)
+
+
+def travel_excess(machine: Machine, points: ArrayLike, axis: ArrayLike, tool_length: float = 0.0,
+                  table_from_part: ArrayLike | None = None) -> Array:
+    """How far each linear axis leaves its travel with a fixed tool axis, (s, 3) mm, one row for each solution.
+
+    Parameters
+    ----------
+    machine : Machine
+    points : (n, 3) array_like
+        Tool tips in the part's frame, mm.
+    axis : (3,) array_like
+        Tool axis in the part's frame.
+    tool_length : float
+        From the gauge point to the tip, mm.
+    table_from_part : (4, 4) array_like, optional
+        Where the part stands on the table, all axes at zero.
+
+    Returns
+    -------
+    (s, 3) array
+        0 where an axis stays inside; infinite in a solution outside the rotary ranges.
+
+    Raises
+    ------
+    InvalidInput
+        When more than one axis is given.
+    """
+    rows = as_rows(points, 3, "points")
+    one = as_rows(axis, 3, "tool axis")
+    if len(one) != 1:
+        raise InvalidInput(f"{len(one)} tool axes: travel is judged for one fixed axis")
+    found = inverse(machine, rows, np.repeat(one, len(rows), axis=0), tool_length, table_from_part)
+    turning = rotary_angles(machine, one, table_from_part=table_from_part).within[0]
+    out = [linear.excess(found.joints[:, :, i]).max(axis=0) for i, linear in enumerate(machine.linear)]
+    return np.where(turning[:, None], np.stack(out, axis=1), np.inf)
+
+
+def _border(machine: Machine) -> list[tuple[Array, Array, float]]:
+    """Arcs (axis, start, turn) that bound the reached axes: the start turned about the axis by 0 to turn."""
+    rotary, spindle = machine.rotary, np.asarray(machine.spindle)
+    if not rotary:
+        return [(spindle, spindle, 0.0)]
+    ranges = [(axis.low, axis.high) if axis.high - axis.low < 2 * pi else (-pi, pi) for axis in rotary]
+    if len(rotary) == 1:
+        return [(rotary[0].direction, _one(spindle, rotary[0].direction, ranges[0][0]), ranges[0][1] - ranges[0][0])]
+    a, b = rotary[0].direction, rotary[1].direction
+    arcs = []
+    for turn in ranges[0]:
+        begin = _one(_one(spindle, b, ranges[1][0]), a, turn)
+        arcs.append((_one(b, a, turn), begin, ranges[1][1] - ranges[1][0]))
+    meet = float(turn_between(spindle[None], a[None], b)[0])
+    meets = [meet + k * pi for k in range(-4, 5) if ranges[1][0] <= meet + k * pi <= ranges[1][1]]
+    for turn in (*ranges[1], *meets):
+        arcs.append((a, _one(_one(spindle, b, turn), a, ranges[0][0]), ranges[0][1] - ranges[0][0]))
+    return arcs
+
+
+def _one(vector: Array, axis: Array, angle: float) -> Array:
+    return np.asarray(turned(vector, axis, angle))
+
+
+def _to_arc(rows: Array, axis: Array, start: Array, turn: float) -> Array:
+    """Angle from directions to an arc of a small circle."""
+    ends = [start, _one(start, axis, turn)]
+    near = np.min([angle_between(rows, end) for end in ends], axis=0)
+    if np.linalg.norm(across(start, axis)) <= ON_AXIS:
+        return np.asarray(near)
+    along = np.mod(turn_between(np.broadcast_to(start, rows.shape), rows, axis), 2 * pi)
+    level = np.abs(angle_between(rows, axis) - angle_between(start, axis))
+    return np.where(along <= turn, level, near)
