@@ -81,3 +81,19 @@ def test_distinct_inner_knots_and_their_counts():
     assert values.tolist() == [1.0, 2.0]
     assert counts.tolist() == [2, 1]
     assert distinct_inner(np.array([0.0, 0, 1, 1]), 1)[0].size == 0
+
+
+def test_knots_that_differ_by_rounding_stay_one_knot():
+    """A closed fillet in a STEP file: its seam, one period on, was a second knot 3e-15 away and folded the surface."""
+    period = 21.3 + 0.1775
+    knots = np.linspace(0.0, period, 9)
+    full = np.concatenate([knots[-4:-1] - period, knots, knots[1:4] + period])
+    control = np.random.default_rng(2).normal(size=(8, 3))
+    low = float(knots[3] + 3e-15)
+    for shift in (0.0, period):
+        own, net = unrolled(full, control, 3, low + shift, low + shift + period)
+        gaps = np.diff(np.unique(own))
+        assert gaps.min() > 1.0
+        assert len(net) == len(own) - 4
+        assert (own[:4] == low + shift).all()
+        assert np.abs(net[0] - net[-1]).max() < 1e-9

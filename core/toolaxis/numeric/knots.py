@@ -7,6 +7,9 @@ from toolaxis.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
+#: Knots closer than this share of their range are one knot.
+SAME = 1e-12
+
 
 def multiplicity(knots: Array, t: float) -> int:
     """How often a knot occurs.
@@ -84,7 +87,9 @@ def restricted(knots: Array, control: Array, degree: int, low: float, high: floa
     if not knots[degree] <= low < high <= knots[-degree - 1]:
         raise InvalidInput(f"interval [{low}, {high}] must be a part of the spline's range "
                            f"[{knots[degree]}, {knots[-degree - 1]}]")
+    knots = np.array(knots)
     for t in (low, high):
+        knots[np.abs(knots - t) <= SAME * (high - low)] = t
         for _ in range(degree - multiplicity(knots, t)):
             knots, control = insert_knot(knots, control, degree, t)
     first = int(np.searchsorted(knots, low, side="right")) - 1 - degree
@@ -113,5 +118,7 @@ def unrolled(knots: Array, control: Array, degree: int, low: float, high: float)
     last = int(np.ceil((high - knots[degree]) / period)) + 1
     turns = np.arange(first, last + 1)
     flat = (knots[:n] + period * turns[:, None]).ravel()
+    apart = np.diff(flat, prepend=flat[0] - period) > SAME * period
+    flat = flat[apart][np.cumsum(apart) - 1]
     net = np.concatenate([control] * len(turns))[:len(flat) - degree - 1]
     return restricted(flat, net, degree, low, high)
