@@ -80,8 +80,24 @@ def block(points, degree, bottom):
     return solid
 
 
-def write(name, shape, points, degree, source):
-    """Write name.step (mm, AP214) and name.json with the control points of the sculptured face."""
+def write(name, shape, points, degree, source, **facts):
+    """Write name.step, and name.json with the sculptured face's control points and whatever else is known."""
+    write_step(name, shape)
+    rows = ",\n".join("  " + json.dumps(np.round(row, 9).tolist()) for row in points)
+    known = "".join(f',\n "{key}": {json.dumps(value)}' for key, value in facts.items())
+    (HERE / f"{name}.json").write_text(f'{{"source": {json.dumps(source)},\n "degree": {json.dumps(list(degree))},\n'
+                                       f' "points": [\n{rows}\n ]{known}}}\n')
+
+
+def write_facts(name, shape, source, **facts):
+    """Write name.step, and name.json with what is known of a part that has more than one sculptured face."""
+    write_step(name, shape)
+    known = "".join(f',\n "{key}": {json.dumps(value)}' for key, value in facts.items())
+    (HERE / f"{name}.json").write_text(f'{{"source": {json.dumps(source)}{known}}}\n')
+
+
+def write_step(name, shape):
+    """Write name.step: mm, AP214, the same bytes every time."""
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     Interface_Static.SetCVal_s("write.step.product.name", name)
@@ -92,6 +108,3 @@ def write(name, shape, points, degree, source):
     header.SetTimeStamp(TCollection_HAsciiString("2016-01-01T00:00:00"))
     if writer.Write(str(HERE / f"{name}.step")) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise OSError(f"{name}.step could not be written to {HERE}")
-    rows = ",\n".join("  " + json.dumps(np.round(row, 9).tolist()) for row in points)
-    (HERE / f"{name}.json").write_text(f'{{"source": {json.dumps(source)},\n "degree": {json.dumps(list(degree))},\n'
-                                       f' "points": [\n{rows}\n ]}}\n')

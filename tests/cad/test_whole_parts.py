@@ -1,4 +1,4 @@
-"""The example parts that are more than one patch: scripts make what is committed, and the parts are what they claim to be."""
+"""The larger example parts: scripts make what is committed, and the parts are what they claim to be."""
 
 import json
 import runpy
