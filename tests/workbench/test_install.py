@@ -76,6 +76,15 @@ def test_an_installed_library_serves_where_the_clone_has_none(tmp_path):
     assert library == str(ROOT / "core" / "toolaxis" / "__init__.py")
 
 
+def test_scripts_find_the_functions_on_documents():
+    import freecad.toolaxis as addon
+
+    assert {"plan", "verify", "recompute", "is_stale"} <= set(dir(addon))
+    assert all(callable(getattr(addon, name)) for name in addon.PUBLIC)
+    with pytest.raises(AttributeError, match="has no attribute 'plann'"):
+        addon.plann  # noqa: B018
+
+
 def test_without_numba_the_numbers_are_the_same():
     code = ("import Part, freecad.toolaxis, toolaxis as ta\nfrom toolaxis.numeric import compiled\n"
             "face, tool = ta.load(Part.read(sys.argv[1])).face(1), ta.Tool.torus(12, 1)\n"
