@@ -22,7 +22,7 @@ class Tolerance:
         Least angle between the axis of a cutter with a flat bottom and any normal of the face, rad: nearer than
         this the contact wanders over the flat bottom and its place is undefined.
     trim : float
-        Chord tolerance of trim loops, as a share of the face's diagonal.
+        Chord tolerance of trim loops, as a share of the face's diagonal; at most 0.0002 mm, however large the face.
     """
 
     gouge: float = 0.002
