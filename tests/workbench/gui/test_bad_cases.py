@@ -30,7 +30,7 @@ def add(document, kind):
 
 
 @pytest.mark.parametrize(("kind", "words"), [
-    ("mesh", "is a mesh"), ("sketch", "is a sketch"), ("wire", "has no faces"), ("empty", "is empty"),
+    ("mesh", "is a mesh"), ("sketch", "is a sketch"), ("wire", "has no faces"), ("empty", "has no shape"),
     ("group", "has no shape"), ("box", "one by one")])
 def test_what_has_no_sculptured_face(desk, kind, words):
     import FreeCAD
@@ -58,7 +58,7 @@ def test_nothing_selected(desk):
 
 def test_edges_selected(desk, wavy):
     form = desk.start(wavy[0], "Edge1", "Vertex2")
-    assert "Edge1" in form.message.text() and "select faces" in form.message.text()
+    assert "Edge1" in form.message.text() and "is an edge" in form.message.text()
     assert not form.compute.isEnabled()
 
 

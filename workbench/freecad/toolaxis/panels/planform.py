@@ -96,13 +96,19 @@ class PlanForm:
         if len(numbers) > 2:
             self.quantities["taper"].value = numbers[2]
 
-    def take_tool(self, tool):
-        """Show a tool of the document: its cutter, and what is known of shank, holder and stick-out.
+    def take_tool(self, tool, speeds):
+        """Show a tool of the document: its cutter, and what is known of shank, holder, stick-out and speeds.
 
         Parameters
         ----------
         tool : toolaxis.tools.assembly.Tool
+        speeds : (float or None, float or None)
+            Feed rate, mm/min, and spindle speed, rev/min.
         """
+        if speeds[0]:
+            self.quantities["feedrate"].value = speeds[0]
+        if speeds[1]:
+            self.spindle.setValue(int(speeds[1]))
         self.set_tool(tool.name)
         if tool.stickout is not None:
             self.quantities["stickout"].value = tool.stickout

@@ -7,12 +7,13 @@ import FreeCADGui
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
+from ..cam import speeds
 from ..tasks import Work, sentence
 from .axisview import AxisView
 from .fields import load_form, tell
 from .planform import PlanForm
 from .preview import Preview
-from .selected import bodies_in, faces_of, tools_in
+from .selected import bodies_in, selected_faces, tools_in
 from .watching import Watch
 
 translate = FreeCAD.Qt.translate
@@ -68,7 +69,7 @@ class PlanPanel:
             return False
         inputs, plan = self.computed, self.view.plan
         try:
-            bridge.apply(self.document, inputs, plan)
+            bridge.apply(self.document, inputs, plan, self.operation)
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
@@ -91,7 +92,7 @@ class PlanPanel:
                 and any(op.done for op in plan.operations))
 
     def _fill(self, inputs):
-        faces, problems = faces_of(FreeCADGui.Selection.getSelectionEx(self.document.Name))
+        faces, problems = selected_faces(self.document)
         if inputs is None:
             inputs = bridge.defaults(self.document, faces)
         self.tools = tools_in(self.document)
@@ -115,7 +116,7 @@ class PlanPanel:
         self.view.told.connect(lambda text: self._tell(text, bad=True))
 
     def _add_faces(self):
-        faces, problems = faces_of(FreeCADGui.Selection.getSelectionEx(self.document.Name))
+        faces, problems = selected_faces(self.document)
         nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
         self.problem = "; ".join(problems) or ("" if faces else nothing)
         self.fields.faces.add(faces)
@@ -135,7 +136,7 @@ class PlanPanel:
             return
         try:
             found = self.tools[index - 1][1]
-            self.fields.take_tool(bridge.tool_from(found))
+            self.fields.take_tool(bridge.tool_from(found), speeds(found))
         except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
             self.form.tool.setCurrentIndex(_TYPED)
             self.problem = sentence(reason)
