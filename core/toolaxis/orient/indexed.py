@@ -16,7 +16,7 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import sectors
-from toolaxis.orient.setting import OTHER, SKIN, Group, Obstacles, grouped
+from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import Candidate, repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import passes
@@ -32,8 +32,6 @@ Array = NDArray[np.float64]
 
 METHODS = {"sphere": search, "sectors": sectors}
 
-#: What the search keeps to itself of each clearance, mm, so that motions between its contacts pass the proof.
-MARGIN = 0.01
 #: Height above everything at which links cross, mm.
 CROSSING = 5.0
 _ATTEMPTS = 3

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.setting import MARGIN
 from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.plan.orientation import REASONS
 
@@ -53,7 +54,8 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
     name = ("cutter", "shank", "holder")[found.reason - CUTTER]
     needed = (tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)[found.reason - CUTTER]
     how = f"meets face {found.label} by {-found.distance:.2g} mm" if found.distance <= 0 else (
-        f"comes within {found.distance:.2g} mm of face {found.label}, less than the required {needed:g} mm,")
+        f"comes within {found.distance:.3g} mm of face {found.label}, less than the required {needed:g} mm and "
+        f"{MARGIN:g} mm to be sure,")
     return f"the {name} {how} {at}"
 
 

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 Obstacles: TypeAlias = Part | Face | Sequence[Face] | None
 
 ROLES = SKIN, TOUCHING, OTHER = "skin", "touching", "other"
+#: What the search keeps to itself of each clearance, mm, so that motions between its contacts pass the proof.
+MARGIN = 0.01
 
 
 @dataclass(frozen=True, eq=False)
