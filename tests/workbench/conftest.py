@@ -127,13 +127,34 @@ def prepared(request):
     return folder
 
 
-@pytest.fixture(scope="session")
-def contract():
-    """The checks that every adapter has to pass."""
-    spec = importlib.util.spec_from_file_location("contract", ROOT / "tests" / "cad" / "contract.py")
+def _module(path):
+    spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="session")
+def contract():
+    """The checks that every adapter has to pass."""
+    return _module(ROOT / "tests" / "cad" / "contract.py")
+
+
+@pytest.fixture(scope="session")
+def parts():
+    """Small parts for the tests of objects."""
+    return _module(ROOT / "tests" / "workbench" / "objects_parts.py")
+
+
+@pytest.fixture
+def document():
+    """A document, closed afterwards."""
+    import FreeCAD
+
+    made = FreeCAD.newDocument("Objects")
+    yield made
+    if made.Name in FreeCAD.listDocuments():
+        FreeCAD.closeDocument(made.Name)
 
 
 def command_for(variable, arguments, window):

@@ -1,0 +1,64 @@
+"""Small parts for the tests of objects, and plans for them with a given axis, without a search."""
+
+from math import cos, sin
+
+import FreeCAD
+import Part as FreecadPart
+from FreeCAD import Vector
+from freecad.toolaxis import bridge
+from freecad.toolaxis.reading import Source
+
+from toolaxis.job.axes import try_axis
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import NO_PROGRESS
+
+TOOL, SCALLOP = "torus:6x1", 0.3
+HOLDER = ((10.0, 0.0), (10.0, 30.0))
+LEANING = Vector(0.2, 0.1, 1.0).normalize()
+
+
+def wavy(height=10.0):
+    """A block of 20 x 16 mm with a wavy top, as a shape."""
+    points = [[Vector(x, y, height + 0.8 * sin(x / 9) * cos(y / 8)) for y in range(0, 17, 4)]
+              for x in range(0, 21, 5)]
+    surface = FreecadPart.BSplineSurface()
+    surface.interpolate(points)
+    below = surface.toShape().extrude(Vector(0, 0, -30))
+    return below.common(FreecadPart.makeBox(60, 60, 40, Vector(-20, -20, 0)))
+
+
+def block(document, name="Block", height=10.0):
+    """The wavy block as an object."""
+    thing = document.addObject("Part::Feature", name)
+    thing.Shape = wavy(height)
+    document.recompute()
+    return thing
+
+
+def sculptured_name(thing):
+    """The name of the wavy face of an object."""
+    kinds = [type(face.Surface).__name__ for face in thing.Shape.Faces]
+    return f"Face{kinds.index('BSplineSurface') + 1}"
+
+
+def inputs_for(*faces, **given):
+    """Inputs for faces, quickly computed."""
+    return bridge.Inputs(tuple(faces), TOOL, holder=HOLDER, stickout=25.0, **{"scallop": SCALLOP, **given})
+
+
+def quick_plan(inputs, axis=LEANING):
+    """A plan with one axis for every face; axis in the document's space."""
+    source = Source.of(inputs)
+    part, bodies = source.read(NO_PROGRESS)
+    bare = Plan(part, inputs.assembled(), inputs.job(), (), bodies, FreeCAD.Vector(*source.datum), "complete")
+    made = [try_axis(bare, Operation(k, part.face(number), Orientation(None)), tuple(axis))
+            for k, number in enumerate(source.numbers, 1)]
+    return Plan(part, bare.tool, bare.inputs, tuple(made), bodies, bare.datum, "complete")
+
+
+def planned(document, *faces, axis=LEANING, **given):
+    """The operations for faces, in the tree."""
+    inputs = inputs_for(*faces, **given)
+    return bridge.apply(document, inputs, quick_plan(inputs, axis))

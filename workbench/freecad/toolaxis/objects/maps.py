@@ -1,0 +1,117 @@
+"""The judge's verdict in the document: figures, worst places, and maps as coloured meshes that need no add-on."""
+
+import FreeCAD
+
+from .properties import Property, assign, ensure
+
+_GROUP = "Legend"
+_PROPERTIES = (
+    Property("String", "Shows", _GROUP, "What the colours stand for", True),
+    Property("Length", "ScaleMinimum", _GROUP, "Value at the dark end of the colours", True),
+    Property("Length", "ScaleMaximum", _GROUP, "Value at the light end of the colours: the limit", True),
+    Property("StringList", "Legend", _GROUP, "The colours in words", True),
+    Property("FloatList", "Deviation", _GROUP, "Value at each point of the mesh, mm; infinite where never reached",
+             True, True),
+    Property("ColorList", "VertexColors", _GROUP, "Colour at each point of the mesh", True, True))
+#: By how much the mesh is raised above the face, so that the face does not shine through: share of the face's size.
+_RAISED = 2e-3
+_MAPS = (("Scallops", "remaining", "Height left above the face"), ("Gouges", "gouge", "Depth of gouge"))
+
+
+def keep(operation, verdict, frame):
+    """Write a verdict into an operation, and its maps into meshes beside the passes.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    frame : FreeCAD.Placement
+        Of the passes.
+
+    Returns
+    -------
+    list of App.DocumentObject
+        Mesh of the scallops, mesh of the gouges.
+    """
+    import Mesh  # noqa: F401  makes the type known
+
+    back = frame.inverse()
+    _figures(operation, verdict, back)
+    limits = {"remaining": verdict.scallop_limit, "gouge": verdict.gouge_allowed}
+    meshes = [_mesh(operation, name) for name, _, _ in _MAPS]
+    for thing, (name, what, text) in zip(meshes, _MAPS, strict=True):
+        _paint(thing, verdict.maps, (what, limits[what]), back)
+        thing.Label = f"{name} {operation.Label}"
+        thing.Shows = text
+        passes = next(one for one in operation.Group if one.isDerivedFrom("Path::Feature"))
+        thing.setExpression("Placement", f"{passes.Name}.Placement")
+        thing.Visibility = what == "remaining"
+    operation.Document.recompute([*meshes, operation])
+    return meshes
+
+
+def _figures(operation, verdict, back):
+    finite = verdict.scallop_max if verdict.scallop_max < float("inf") else 0.0
+    assign(operation, Verdict="passed" if verdict.passed else "failed", VerdictReasons=list(verdict.reasons),
+           ScallopMax=float(finite), ShareWithin=float(verdict.share_within), GougeMax=float(verdict.gouge_max),
+           GougeAllowed=float(verdict.gouge_allowed))
+    for name, values, places in (("WorstScallops", "WorstScallopHeights", verdict.worst_scallop),
+                                 ("WorstGouges", "WorstGougeDepths", verdict.worst_gouge)):
+        setattr(operation, name, [back.multVec(FreeCAD.Vector(*place.point)) for place in places])
+        setattr(operation, values, [float(place.value) for place in places])
+
+
+def _mesh(operation, name):
+    found = [one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and one.Name.startswith(name)]
+    if found:
+        return found[0]
+    thing = operation.Document.addObject("Mesh::Feature", name)
+    ensure(thing, _PROPERTIES)
+    operation.addObject(thing)
+    return thing
+
+
+def _paint(thing, maps, what, back):
+    """Triangles over the rays, coloured by one of their values."""
+    import Mesh
+
+    from ..colours import judged
+    from ..places import matrix_of
+
+    name, limit = what
+    points, triangles, values = _joined(maps, name)
+    matrix = matrix_of(back)
+    points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    thing.Mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
+    values = values[_rows_of(thing.Mesh, points)]
+    thing.Deviation = values.tolist()
+    thing.VertexColors = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, limit).tolist()]
+    assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
+        "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached"])
+    if thing.ViewObject is not None and hasattr(thing.ViewObject, "Coloring"):
+        thing.ViewObject.Coloring = True
+
+
+def _rows_of(mesh, points):
+    """For each point of a mesh, which keeps its points in single precision and in an order of its own, its row."""
+    import numpy as np
+    from scipy.spatial import cKDTree
+
+    corners = np.array([tuple(point.Vector) for point in mesh.Points]).reshape(-1, 3)
+    return cKDTree(points).query(corners)[1]
+
+
+def _joined(maps, name):
+    """Points a little above the faces, triangles and values of all maps together."""
+    import numpy as np
+
+    from ..triangles import triangles_of
+
+    points, triangles, values, before = [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [np.empty(0)], 0
+    for one in maps:
+        normal = np.nan_to_num(one.face.normal(one.uv))
+        points.append(one.point + _RAISED * one.face.diagonal * normal)
+        triangles.append(triangles_of(one) + before)
+        values.append(getattr(one, name))
+        before += len(one.point)
+    return np.concatenate(points), np.concatenate(triangles), np.concatenate(values)

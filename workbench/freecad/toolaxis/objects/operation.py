@@ -1,0 +1,144 @@
+"""An operation: what was asked for one face, and what came of it, as properties of a group with its objects."""
+
+import FreeCAD
+
+from .properties import Property, Proxy, assign
+
+_ASKED, _FOUND, _JUDGED, _KEPT = "Inputs", "Result", "Verdict", "Tool Axis"
+
+INPUTS = (
+    Property("LinkSubListGlobal", "Faces", _ASKED, "The face that is machined"),
+    Property("String", "Tool", _ASKED, "Cutter: torus:12x1, ball:8, flat:20 or tapered:6x3x4"),
+    Property("VectorList", "Shank", _ASKED, "Outline of the shank from the tip: radius, 0, height", False, True),
+    Property("VectorList", "Holder", _ASKED, "Outline of the holder from its lower face: radius, 0, height", False,
+             True),
+    Property("Length", "StickOut", _ASKED, "Length from the tip to the holder's lower face"),
+    Property("Length", "Scallop", _ASKED, "Greatest scallop height"),
+    Property("Length", "Allowance", _ASKED, "Stock left on the face"),
+    Property("String", "Limits", _ASKED, "Limits of the axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
+    Property("LinkListGlobal", "Obstacles", _ASKED, "Bodies to avoid"),
+    Property("Enumeration", "Objective", _ASKED, "What is to be least", False, False, ("length", "passes")),
+    Property("Enumeration", "Direction", _ASKED, "Direction of the passes", False, False,
+             ("zigzag", "climb", "conventional")),
+    Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting motion"),
+    Property("Float", "SpindleSpeed", _ASKED, "rev/min"))
+RESULTS = (
+    Property("String", "Outcome", _FOUND, "optimal, feasible, infeasible, not_found or cancelled", True),
+    Property("StringList", "Reasons", _FOUND, "What limits the choice, or why there is no axis", True),
+    Property("Bool", "Stale", _FOUND, "The part or the inputs have changed since: recompute the operation", True),
+    Property("StringList", "StaleReasons", _FOUND, "What has changed", True),
+    Property("Vector", "Axis", _FOUND, "Tool axis from tip to spindle, as planned in the document's space", True),
+    Property("String", "FeedParameter", _FOUND, "Parameter that varies along the passes, u or v", True),
+    Property("Integer", "Passes", _FOUND, "Number of passes", True),
+    Property("Length", "AverageStripWidth", _FOUND, "Area over cutting length", True),
+    Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion", True),
+    Property("Length", "Gouge", _FOUND, "Upper bound of the penetration below the machined skin", True),
+    Property("Float", "LeftToCleanUp", _FOUND, "Share of the area left to a clean-up tool", True),
+    Property("StringList", "NotChecked", _FOUND, "What the collision check left out because it was not given", True))
+KEPT = (
+    Property("String", "AxisMap", _KEPT, "Orientation with the map of all axes, JSON", True, True),
+    Property("String", "Details", _KEPT, "Sub-surface and method, JSON", True, True),
+    Property("String", "PlannedWith", _KEPT, "Inputs at the time of planning, JSON", True, True),
+    Property("FloatList", "Signature", _KEPT, "Shapes at the time of planning", True, True),
+    Property("IntegerList", "Motions", _KEPT, "Kind of each motion", True, True),
+    Property("IntegerList", "Starts", _KEPT, "Where each pass starts", True, True))
+VERDICT = (
+    Property("String", "Verdict", _JUDGED, "not verified, passed or failed", True),
+    Property("StringList", "VerdictReasons", _JUDGED, "Why it failed, and what was not checked", True),
+    Property("Length", "ScallopMax", _JUDGED, "Greatest height left where the cutter came", True),
+    Property("Float", "ShareWithin", _JUDGED, "Share of the area left within the scallop height", True),
+    Property("Length", "GougeMax", _JUDGED, "Deepest gouge", True),
+    Property("Length", "GougeAllowed", _JUDGED, "Deepest gouge that is accepted", True),
+    Property("VectorList", "WorstScallops", _JUDGED, "Highest places left, in the plane's frame", True),
+    Property("FloatList", "WorstScallopHeights", _JUDGED, "Their heights, mm", True),
+    Property("VectorList", "WorstGouges", _JUDGED, "Deepest gouges, in the plane's frame", True),
+    Property("FloatList", "WorstGougeDepths", _JUDGED, "Their depths, mm", True))
+
+CLEARANCES = ("cutter", "shank", "holder")
+#: Distances beyond this are shown as this, mm: nothing stands there.
+_FAR = 1e6
+
+
+class Operation(Proxy):
+    """Marks results stale when the part, an obstacle or an input changes.
+
+    Parameters
+    ----------
+    thing : App::DocumentObjectGroupPython
+    """
+
+    Type = "ToolAxisOperation"
+    properties = (*INPUTS, *RESULTS, *KEPT, *VERDICT)
+
+    def execute(self, thing):
+        """Compare with what was planned; computes no axis."""
+        mark(thing)
+
+
+def mark(thing):
+    """Set the stale mark of an operation by how things stand now; whether it is set.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
+    from ..staleness import why_stale
+
+    try:
+        reasons = why_stale(thing)
+    except Exception as reason:  # not known to hold is not to hold
+        FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
+        reasons = [f"it cannot be compared with what was planned ({reason})"]
+    assign(thing, StaleReasons=reasons, Stale=bool(reasons))
+    return bool(reasons)
+
+
+def set_inputs(thing, inputs):
+    """Write inputs into the properties of an operation.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    inputs : freecad.toolaxis.bridge.Inputs
+        With one face.
+    """
+    thing.Faces = [(part, (name,)) for part, name in inputs.faces]
+    thing.Obstacles = list(inputs.obstacles)
+    for name, rows in (("Shank", inputs.shank), ("Holder", inputs.holder)):
+        setattr(thing, name, [FreeCAD.Vector(radius, 0, z) for radius, z in rows])
+    assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, Scallop=inputs.scallop, Allowance=inputs.allowance,
+           Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
+           FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle)
+
+
+def set_results(thing, found, not_checked):
+    """Write an orientation into the properties of an operation.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    found : toolaxis.plan.orientation.Orientation
+    not_checked : sequence of str
+    """
+    axis = FreeCAD.Vector() if found.axis is None else FreeCAD.Vector(*(float(x) for x in found.axis))
+    assign(thing, Outcome=found.outcome, Reasons=list(found.reasons), Axis=axis,
+           FeedParameter=found.feed if found.axis is not None else "", Passes=int(found.passes),
+           AverageStripWidth=float(found.average_strip_width), CuttingLength=float(found.length),
+           Gouge=max(float(found.gouge), 0.0), LeftToCleanUp=float(found.unreached), NotChecked=list(not_checked),
+           Verdict="not verified", VerdictReasons=[])
+    for name in CLEARANCES:
+        _set_clearance(thing, name, found.clearance.get(name))
+
+
+def _set_clearance(thing, member, distance):
+    """A distance that is not known has no property, so that nobody takes it for zero or for safe."""
+    name = f"{member.capitalize()}Clearance"
+    there = name in thing.PropertiesList
+    if distance is None:
+        if there:
+            thing.removeProperty(name)
+        return
+    if not there:
+        thing.addProperty("App::PropertyDistance", name, _FOUND,
+                          f"Lower bound of the distance of the {member} to everything but the machined skin", 0, True)
+    setattr(thing, name, min(float(distance), _FAR))

@@ -1,0 +1,68 @@
+"""Properties of objects: added where they are missing, so that older documents gain them when they are opened."""
+
+from collections import namedtuple
+
+Property = namedtuple("Property", "kind name group text fixed hidden choices", defaults=(False, False, ()))
+
+
+def ensure(thing, properties):
+    """Add the properties that an object does not have yet.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    properties : sequence of Property
+
+    Returns
+    -------
+    list of str
+        Names of those that were added.
+    """
+    known, added = set(thing.PropertiesList), []
+    for one in properties:
+        if one.name in known:
+            continue
+        thing.addProperty(f"App::Property{one.kind}", one.name, one.group, one.text, 0, one.fixed, one.hidden)
+        if one.choices:
+            setattr(thing, one.name, list(one.choices))
+        added.append(one.name)
+    return added
+
+
+def assign(thing, **values):
+    """Set the properties that differ, so that nothing is touched without need.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    **values
+    """
+    for name, value in values.items():
+        if getattr(thing, name) != value:
+            setattr(thing, name, value)
+
+
+class Proxy:
+    """What every object of ours has in common: properties that are migrated, and nothing saved but the class.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
+
+    Type = ""
+    properties = ()
+
+    def __init__(self, thing):
+        thing.Proxy = self
+        ensure(thing, self.properties)
+
+    def onDocumentRestored(self, thing):
+        """Give an object of an older version what it does not have yet."""
+        ensure(thing, self.properties)
+
+    def dumps(self):
+        """Nothing: all data stand in properties."""
+
+    def loads(self, state):
+        """Nothing: all data stand in properties."""

@@ -1,0 +1,140 @@
+"""Whether what was planned still holds: the shapes as they were, and the inputs as they were."""
+
+import json
+
+#: Deviation at which a shape counts as changed, mm; reading a document back rounds to fifteen digits.
+_SAME = 1e-6
+_SUMS = 8
+_GRID = 4
+
+
+def signature(things, obstacles=(), turned=False):
+    """Numbers that change with the shapes, and not with where the first of them stands.
+
+    Parameters
+    ----------
+    things, obstacles : sequence of App.DocumentObject
+    turned : bool
+        Whether the direction in which the part stands counts too: limits of the axis stand in the document's space.
+
+    Returns
+    -------
+    list of float
+
+    Raises
+    ------
+    InvalidInput
+        When one of them has no shape any more.
+    """
+    import numpy as np
+
+    from toolaxis.cad.freecad import shape_of
+
+    shapes = [shape_of(thing) for thing in (*things, *obstacles)]
+    own = shapes[0].Placement.inverse().toMatrix()
+    found = []
+    for shape in shapes:
+        rows = np.array(_points(shape), dtype=float)
+        turn = np.array(own.A, dtype=float).reshape(4, 4)
+        values = (rows @ turn[:3, :3].T + turn[:3, 3]).ravel()
+        index = np.arange(1, len(values) + 1)
+        found += [float(len(shape.Faces)), float(len(values))]
+        found += [float(np.cos(index * (0.7 + 1.1 * k)) @ values) for k in range(_SUMS)]
+    return found + ([float(x) for x in own.A] if turned else [])
+
+
+def _points(shape):
+    """Points on every face and edge of a shape, and what its free surfaces are made of."""
+    found = []
+    for face in shape.Faces:
+        low_u, high_u, low_v, high_v = face.ParameterRange
+        for i in range(_GRID):
+            for j in range(_GRID):
+                found.append(face.valueAt(low_u + (high_u - low_u) * i / 3, low_v + (high_v - low_v) * j / 3))
+        surface = _surface(face)
+        if type(surface).__name__ == "BSplineSurface":
+            found += [pole for row in surface.getPoles() for pole in row]
+    for edge in shape.Edges:
+        if not edge.Degenerated:
+            first, last = edge.ParameterRange
+            found += [edge.valueAt(first + (last - first) * k / 3) for k in range(4)]
+    return [tuple(point) for point in found]
+
+
+def _surface(face):
+    try:
+        return face.Surface
+    except Exception:  # a kind of surface that FreeCAD's Python does not know
+        return None
+
+
+def same(one, other):
+    """Whether two signatures are those of the same shapes.
+
+    Parameters
+    ----------
+    one, other : sequence of float
+    """
+    return len(one) == len(other) and all(abs(a - b) <= _SAME * max(1.0, abs(a) / 1e4)
+                                          for a, b in zip(one, other, strict=True))
+
+
+def digest(inputs):
+    """The inputs as text, with the names of the objects.
+
+    Parameters
+    ----------
+    inputs : freecad.toolaxis.bridge.Inputs
+    """
+    numbers = ("stickout", "scallop", "allowance", "feedrate", "spindle")
+    words = {name: f"{getattr(inputs, name):.9g}" for name in numbers}
+    words |= {name: getattr(inputs, name) for name in ("tool", "limits", "objective", "direction")}
+    words |= {name: [[f"{x:.9g}" for x in row] for row in getattr(inputs, name)] for name in ("shank", "holder")}
+    words["faces"] = [[thing.Name, name] for thing, name in inputs.faces]
+    words["obstacles"] = [thing.Name for thing in inputs.obstacles]
+    return json.dumps(words, sort_keys=True)
+
+
+def why_stale(operation):
+    """Why the results of an operation do not hold any more, sentences; none where they do.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    from toolaxis.errors import ToolAxisError
+
+    from .bridge import inputs_of
+
+    if not operation.PlannedWith:
+        return ["nothing was planned yet"]
+    inputs = inputs_of(operation)
+    if not inputs.faces:
+        return ["the part was deleted"]
+    planned = json.loads(operation.PlannedWith)
+    now = json.loads(digest(inputs))
+    reasons = []
+    if now["faces"] != planned["faces"]:
+        reasons.append("another face was chosen")
+    gone = [name for name in planned["obstacles"] if name not in now["obstacles"]]
+    if gone:
+        reasons.append(f"{', '.join(gone)}: no longer avoided")
+    changed = [name for name in planned if name not in ("faces", "obstacles") and planned[name] != now[name]]
+    reasons += [f"{name} was changed" for name in changed]
+    try:
+        found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
+    except ToolAxisError as reason:
+        return [*reasons, str(reason)]
+    return reasons + _what_changed(list(operation.Signature), found, len(inputs.obstacles))
+
+
+def _what_changed(planned, found, obstacles):
+    """Sentences on shapes that have changed."""
+    size = 2 + _SUMS
+    if same(planned, found):
+        return []
+    if not same(planned[:size], found[:size]):
+        return ["the part has changed"]
+    if len(planned) != len(found) or not same(planned[:size * (1 + obstacles)], found[:size * (1 + obstacles)]):
+        return ["a body to avoid was moved or changed"]
+    return ["the part was turned, and the limits of the axis were not"]

@@ -1,0 +1,86 @@
+"""What stands in a document of an operation, as the library's own plan, so that it can be judged."""
+
+import json
+from dataclasses import dataclass, replace
+
+from .places import matrix_of
+
+
+@dataclass(frozen=True)
+class Standing:
+    """An operation read out of its document.
+
+    Attributes
+    ----------
+    path : toolaxis.cldata.toolpath.ToolPath
+        From the commands of the Path object, in the document's space.
+    matrix : (4, 4) array
+        Frame of the plane, in the document's space.
+    orientation : toolaxis.plan.orientation.Orientation
+    details : dict
+        Label and trim loops of the sub-surface.
+    number : int
+        Of the face.
+    """
+
+    path: object
+    matrix: object
+    orientation: object
+    details: dict
+
+    @classmethod
+    def of(cls, operation):
+        """Read an operation.
+
+        Parameters
+        ----------
+        operation : App.DocumentObject
+
+        Raises
+        ------
+        InvalidInput
+            When it has no passes.
+        """
+        from toolaxis.errors import InvalidInput
+        from toolaxis.plan.document import orientation_from
+
+        from .objects.passes import read_back
+        from .results import child
+
+        passes = child(operation, "Path::Feature")
+        if passes is None or len(passes.Path.Commands) < 2:
+            raise InvalidInput(f"'{operation.Label}' has no passes to judge: recompute it first")
+        path = read_back(passes, operation.Motions, operation.Starts)
+        matrix = matrix_of(passes.Placement)
+        found = replace(orientation_from(json.loads(operation.AxisMap)), axis=matrix[:3, 2])
+        return cls(path, matrix, found, json.loads(operation.Details))
+
+    def plan(self, part, bodies, tool, inputs):
+        """The plan with this one operation.
+
+        Parameters
+        ----------
+        part : toolaxis.shape.part.Part
+        bodies : sequence of Part
+        tool : toolaxis.tools.assembly.Tool
+        inputs : toolaxis.plan.plan.Inputs
+        """
+        from toolaxis.machine.setup import WorkCoordinates
+        from toolaxis.plan.operation import Operation
+        from toolaxis.plan.plan import Plan
+
+        m = self.matrix
+        frame = WorkCoordinates(m[:3, 3], m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3])
+        made = Operation(1, self._face(part), self.orientation, self.path, frame)
+        return Plan(part, tool, inputs, (made,), tuple(bodies), m[:3, 3], "complete")
+
+    def _face(self, part):
+        import numpy as np
+
+        from toolaxis.shape.kinks import split_at_kinks
+
+        whole = part.face(self.details["face"])
+        label = self.details["label"]
+        face = next((piece for piece in split_at_kinks(whole) if piece.label == label), whole)
+        region = self.details["region"]
+        return face if region is None else face.trimmed(tuple(np.array(loop) for loop in region), label)

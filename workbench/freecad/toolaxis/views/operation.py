@@ -1,0 +1,60 @@
+"""An operation in the tree: its icon tells whether its results still hold."""
+
+import FreeCAD
+import FreeCADGui
+
+from .. import RESOURCES
+
+translate = FreeCAD.Qt.translate
+
+#: How long the status bar says that something is stale, ms.
+_TIME = 10000
+
+
+class OperationView:
+    """View provider of an operation.
+
+    Parameters
+    ----------
+    view : Gui.ViewProvider
+    """
+
+    def __init__(self, view):
+        view.Proxy = self
+
+    def attach(self, view):
+        """Called by FreeCAD when the view is there."""
+        self.thing = view.Object
+
+    def getIcon(self):
+        """Another icon while the results are stale."""
+        stale = getattr(getattr(self, "thing", None), "Stale", False)
+        return str(RESOURCES / "icons" / ("operation-stale.svg" if stale else "operation.svg"))
+
+    def updateData(self, thing, name):
+        """Show a changed mark, and say so in the status bar."""
+        self.thing = thing
+        if name != "Stale":
+            return
+        thing.ViewObject.signalChangeIcon()
+        if thing.Stale and not getattr(thing.Document, "Restoring", False):
+            text = translate("ToolAxis", "{} is stale: {}. Recompute it.").format(
+                thing.Label, "; ".join(thing.StaleReasons))
+            FreeCADGui.getMainWindow().statusBar().showMessage(text, _TIME)
+
+    def doubleClicked(self, view):
+        """Open the planning panel with the operation's inputs."""
+        if FreeCADGui.Control.activeDialog():
+            return False
+        from .. import bridge
+        from ..panels.planning import PlanPanel
+
+        thing = view.Object
+        FreeCADGui.Control.showDialog(PlanPanel(thing.Document, bridge.inputs_of(thing), thing))
+        return True
+
+    def dumps(self):
+        """Nothing to save."""
+
+    def loads(self, state):
+        """Nothing was saved."""
