@@ -162,6 +162,14 @@ def test_limits_that_leave_no_axis(desk, form):
     desk.shot("10-no-axis")
 
 
+def test_the_panel_is_taken_away_while_computing(desk, form):
+    desk.press(form.compute)
+    desk.pump(0.2)
+    desk.gui.Control.closeDialog()
+    desk.pump(1.0)
+    assert desk.form("ToolAxisPlan") is None
+
+
 def test_document_closed_while_computing(desk, wavy, form):
     import FreeCAD
 

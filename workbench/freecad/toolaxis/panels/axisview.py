@@ -27,10 +27,9 @@ class AxisView(QtCore.QObject):
     """The plan has another axis."""
     told = QtCore.Signal(str)
     """A sentence for the message line; empty to clear it."""
-    busy = QtCore.Signal(bool)
 
     def __init__(self, form, preview):
-        super().__init__(form)
+        super().__init__()
         self.form, self.preview = form, preview
         self.map, self.legend = HemisphereMap(form), Legend(form)
         self.map.setObjectName("axisMap")
@@ -97,7 +96,6 @@ class AxisView(QtCore.QObject):
         if self.work is not None:
             self.work.leave()
             self.work = None
-            self.busy.emit(False)
 
     def _show_operation(self, *_):
         self.leave()
@@ -165,9 +163,8 @@ class AxisView(QtCore.QObject):
         self.leave()
         self.map.show_tried(axis)
         self.legend.show_picture(self.map.picture, tried=True)
-        self.busy.emit(True)
         self.form.cost.setText(translate("ToolAxis", "Trying this axis..."))
-        self.work = Work(lambda progress: try_axis(plan, op, axis, progress=progress), self)
+        self.work = Work(lambda progress: try_axis(plan, op, axis, progress=progress))
         self.work.progressed.connect(self._trying)
         self.work.done.connect(self._tried)
         self.work.failed.connect(self._failed)
@@ -182,7 +179,6 @@ class AxisView(QtCore.QObject):
     def _tried(self, operation):
         self.work = None
         self.tried = operation
-        self.busy.emit(False)
         self._show_numbers()
         self.show_tool()
 
@@ -190,7 +186,6 @@ class AxisView(QtCore.QObject):
         self.work = None
         self.tried = None
         self.map.show_tried(None)
-        self.busy.emit(False)
         self._show_numbers()
         self.told.emit(message)
 

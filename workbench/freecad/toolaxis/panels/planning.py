@@ -46,6 +46,7 @@ class PlanPanel:
         self._fill(inputs)
         self._connect()
         self.watch = Watch(document, self)
+        self.form.destroyed.connect(self._close)
         self._changed()
 
     # what FreeCAD calls
@@ -203,7 +204,7 @@ class PlanPanel:
             self.problem = sentence(reason)
             self._show_state()
             return
-        self.work = Work(lambda progress: _planned(task, progress), self.form, _growing)
+        self.work = Work(lambda progress: _planned(task, progress), None, _growing)
         self.work.interim.connect(self._growing)
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(lambda found: self._computed(inputs, *found))
@@ -281,7 +282,8 @@ class PlanPanel:
         if any(thing.Name == name for thing, _ in self.fields.faces.faces) and self.work is None:
             self._changed()
 
-    def _close(self):
+    def _close(self, *_):
+        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
         if self.over:
             return
         self.over = True

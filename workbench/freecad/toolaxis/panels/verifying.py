@@ -46,6 +46,7 @@ class VerifyPanel:
         self.form.worst.currentRowChanged.connect(self._zoom)
         self.form.worst.itemClicked.connect(lambda item: self._zoom(self.form.worst.row(item)))
         self.watch = Watch(document, self)
+        self.form.destroyed.connect(self._close)
         self._show()
         self.verify()
 
@@ -67,7 +68,7 @@ class VerifyPanel:
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             return
-        self.work = Work(lambda progress: [_judged(judge, progress) for judge in judges], self.form)
+        self.work = Work(lambda progress: [_judged(judge, progress) for judge in judges])
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(self._done)
         self.work.failed.connect(lambda text: self._ended(text))
@@ -180,7 +181,8 @@ class VerifyPanel:
     def object_changed(self, name):
         """Changes of other objects do not matter: the verdict is on what was planned."""
 
-    def _close(self):
+    def _close(self, *_):
+        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
         if self.over:
             return
         self.over = True
