@@ -5,6 +5,7 @@ The outcome goes to OUT as a pickle: ("done", ShapeRecord, distinct faces transf
 
 import pickle
 import sys
+import traceback
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,18 @@ def convert(path: str) -> tuple[Any, ...]:
         return "failed", UnsupportedGeometry, str(reason)
     except ToolAxisError as reason:
         return "failed", ToolAxisError, str(reason)
+    except Exception as reason:
+        return "failed", *_blamed(reason)
+
+
+def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
+    """The kernel's own exceptions are the file's fault; every other one is a fault of ours."""
+    what = f"{type(reason).__name__}: {str(reason).strip() or 'no message'}"
+    if type(reason).__module__.split(".")[0] == "OCP":
+        return InvalidInput, f"the CAD kernel fails on it ({what}): repair the geometry and export it again"
+    frame = traceback.extract_tb(reason.__traceback__)[-1]
+    return ToolAxisError, (f"an error of toolaxis itself, not of the file ({what}; {Path(frame.filename).name}, line "
+                           f"{frame.lineno}): please report it with the file")
 
 
 def main(arguments: list[str]) -> int:
