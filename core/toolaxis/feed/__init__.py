@@ -1,0 +1,1 @@
+"""How fast: jerk-limited profiles, axis limits along a path, and the time that a path takes."""

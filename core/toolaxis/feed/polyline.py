@@ -1,0 +1,246 @@
+"""Time along straight segments, with corners that are stops or blends.
+
+The model of the controller: along each segment the axes move in proportion, by a seven-segment profile, so that each
+stays inside its limits.  A corner is rounded in a time T, from T/2 before it to T/2 after it on the programmed
+segments, at one speed on both sides: the velocity of every axis goes from one segment's to the other's by constant jerk
+up and down.  The tip then cuts the corner by |change of velocity| T / 12.  The speed is the greatest that keeps this
+within the tolerance, every axis within acceleration and jerk, and a blend off the middle of its segments; look-ahead
+lowers it where the axes could not slow down in time.  Without tolerance every corner is a stop; with it a corner is one
+too where, by the halves of its segments, a blend takes longer, and all are where that is the faster path.  Neighbours
+in one line with one feed are one segment.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.constraints import AxisBounds
+from toolaxis.feed.motion import JointMotion
+from toolaxis.feed.profile import ramp_length, reachable, segment_durations, travel_time
+from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.vectors import as_rows
+
+Array = NDArray[np.float64]
+
+#: Change of direction below which a corner is the rounding of its coordinates, and how far it may be cut then, mm.
+STRAIGHT = 1e-6
+
+#: Change of direction below which two segments are one.
+ALIGNED = 1e-9
+
+_SIGNS = np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class PolylineSchedule:
+    """Speeds and times along straight segments.
+
+    Attributes
+    ----------
+    start : (m,) array
+        Where the axes stand at first.
+    directions : (k, m) array
+        Axis motion per mm of each segment.
+    limits : three (k,) arrays
+        Velocity, acceleration and jerk along each segment.
+    runs : (k,) array
+        Length of each segment between its blends, mm.
+    corners : (k + 1,) array
+        Speed at each corner, mm/s; 0 at both ends.
+    blends : (k + 1,) array
+        Time of each corner's blend, s.
+    shares : (n,) array
+        What share of its segment's length each programmed one is.
+    parts : (n,) array of int
+        Which segment it belongs to.
+    """
+
+    start: Array
+    directions: Array
+    limits: tuple[Array, Array, Array]
+    runs: Array
+    corners: Array
+    blends: Array
+    shares: Array
+    parts: NDArray[np.int64]
+
+    @property
+    def segment_times(self) -> Array:
+        """Time of each programmed segment, (n,) s: half of the blends at either end included, and the time of segments
+        in one line shared by length."""
+        ends = (self.corners[:-1], self.corners[1:])
+        times = travel_time(self.runs, *self.limits, ends) + (self.blends[:-1] + self.blends[1:]) / 2
+        return np.asarray(times[self.parts] * self.shares)
+
+    @property
+    def duration(self) -> float:
+        """s."""
+        return float(self.segment_times.sum())
+
+    def motion(self) -> JointMotion:
+        """What every axis does."""
+        ends = (self.corners[:-1], self.corners[1:])
+        count, axes = self.directions.shape
+        durations, jerks = np.zeros((count, 9)), np.zeros((count, 9, axes))
+        durations[:, :7] = segment_durations(self.runs, *self.limits, ends)
+        jerks[:, :7] = _SIGNS[:, None] * (self.limits[2][:, None] * self.directions)[:, None, :]
+        durations[:-1, 7:] = self.blends[1:-1, None] / 2
+        change = self.corners[1:-1, None] * np.diff(self.directions, axis=0)
+        squared = np.where(self.blends > 0, self.blends, 1.0)[1:-1, None] ** 2
+        jerks[:-1, 7], jerks[:-1, 8] = 4 * change / squared, -4 * change / squared
+        return JointMotion(durations.reshape(-1), jerks.reshape(-1, axes), self.start)
+
+
+def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, bounds: AxisBounds,
+                      tolerance: float = 0.0) -> PolylineSchedule:
+    """Speeds and times along straight segments from rest to rest.
+
+    Parameters
+    ----------
+    joints : (n, m) array_like
+        Axis positions at the corners, mm or rad.
+    tips : (n, 3) array_like
+        Tool tips there, mm; no two neighbours may coincide.
+    feeds : (n - 1,) array_like
+        Programmed velocity of the tip on each segment, mm/s; infinite for rapid motion.
+    bounds : AxisBounds
+    tolerance : float
+        How far the tip may cut a corner, mm; 0 for an exact stop.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, a feed is not above zero, or a segment has no length.
+
+    Notes
+    -----
+    Properties: (1) no axis exceeds its velocity, acceleration or jerk; (2) the tip stays within the tolerance; (3) a
+    tolerance never makes the path slower than stops do.
+    """
+    points, corners = as_rows(tips, 3, "tips"), as_rows(joints, len(bounds.velocity), "joint coordinates")
+    if len(points) != len(corners) or len(points) < 2:
+        raise InvalidInput(f"{len(corners)} joint positions for {len(points)} tips: two or more of each are needed")
+    if not (np.isfinite(tolerance) and tolerance >= 0):
+        raise InvalidInput(f"corner tolerance is {tolerance} mm: it must be a finite number, not below zero")
+    lengths, directions, turns = _segments(points, corners)
+    limits = bounds.along(directions, feeds)
+    wanted = np.broadcast_to(np.asarray(feeds, dtype=float), lengths.shape)
+    aligned = (turns <= ALIGNED) & (np.abs(np.diff(directions, axis=0)).max(axis=1) <= ALIGNED)
+    kept = np.concatenate([[True], ~(aligned & (wanted[:-1] == wanted[1:])), [True]])
+    parts = np.cumsum(kept[:-1]) - 1
+    if not kept.all():
+        limits = bounds.along(_segments(points[kept], corners[kept])[1], wanted[kept[:-1]])
+    whole, directions, turns = _segments(points[kept], corners[kept])
+    jumps = np.diff(directions, axis=0)
+    caps = np.zeros(len(whole) + 1)
+    caps[1:-1] = np.minimum(_corner_speeds(jumps, turns, whole, bounds, tolerance),
+                            np.minimum(limits[0][:-1], limits[0][1:]))
+    stops = _better_stop(whole, limits, caps, _blend_times(caps, jumps, bounds))
+    shares = lengths / np.bincount(parts, lengths)[parts]
+    choices = []
+    for stopping in (stops, np.ones_like(stops), np.zeros_like(stops)):
+        most = np.where(np.concatenate([[True], stopping & (turns > STRAIGHT), [True]]), 0.0, caps)
+        speed = look_ahead(_runs(whole, most, jumps, bounds), limits[1], limits[2], most)
+        choices.append(PolylineSchedule(corners[0], directions, limits, _runs(whole, speed, jumps, bounds), speed,
+                                        _blend_times(speed, jumps, bounds), shares, parts))
+    return min(choices, key=lambda choice: choice.duration)
+
+
+def _segments(points: Array, corners: Array) -> tuple[Array, Array, Array]:
+    """Lengths, axis motion per mm, and changes of the tip's direction at the inner corners."""
+    steps = np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    if not (lengths > 0).all():
+        raise InvalidInput(f"segment {int(np.flatnonzero(~(lengths > 0))[0])} has no length: leave it out")
+    turns = np.linalg.norm(np.diff(steps / lengths[:, None], axis=0), axis=1)
+    return lengths, np.diff(corners, axis=0) / lengths[:, None], turns
+
+
+def _better_stop(lengths: Array, limits: tuple[Array, Array, Array], speeds: Array, times: Array) -> NDArray[np.bool_]:
+    """Which inner corners take longer as blends than as stops, by the halves of their segments."""
+    speed, time = speeds[1:-1], times[1:-1]
+    stop, blend = np.zeros(len(speed)), time.copy()
+    feasible = np.ones(len(speed), dtype=bool)
+    for side in (slice(None, -1), slice(1, None)):
+        half, (top, a, j) = lengths[side] / 2, (limit[side] for limit in limits)
+        fast = np.minimum(top, reachable(0.0, half, a, j))
+        left = half - speed * time / 2
+        feasible &= ramp_length(speed, fast, a, j) <= left
+        stop += travel_time(half, top, a, j, (np.zeros(len(half)), fast))
+        blend += travel_time(np.maximum(left, 0.0), top, a, j, (speed, fast))
+    return np.asarray(feasible & (blend > stop))
+
+
+def _shares(jumps: Array, bounds: AxisBounds) -> tuple[Array, Array]:
+    """Factors of a blend's least time: jerk asks for the first times the root of speed, acceleration for the second."""
+    sizes = np.abs(jumps)
+    return 2 * np.sqrt((sizes / bounds.jerk).max(axis=1)), 2 * (sizes / bounds.acceleration).max(axis=1)
+
+
+def _corner_speeds(jumps: Array, turns: Array, lengths: Array, bounds: AxisBounds, tolerance: float) -> Array:
+    """Greatest speed of each inner corner that keeps its blend within tolerance and half the neighbours."""
+    by_jerk, by_acceleration = _shares(jumps, bounds)
+    room = np.minimum(lengths[:-1], lengths[1:])
+    cut = np.where(turns <= STRAIGHT, max(tolerance, STRAIGHT), tolerance)
+    speeds = np.full(len(jumps), np.inf)
+    with np.errstate(divide="ignore"):
+        for size, most in ((turns / 12, cut), (np.ones(len(jumps)), room)):
+            for factor, power in ((by_jerk, 2 / 3), (by_acceleration, 1 / 2)):
+                weight = size * factor
+                most_here = (most / np.where(weight > 0, weight, 1.0)) ** power
+                speeds = np.minimum(speeds, np.where(weight > 0, most_here, np.inf))
+    return np.asarray(speeds)
+
+
+def _blend_times(speeds: Array, jumps: Array, bounds: AxisBounds) -> Array:
+    times = np.zeros(len(speeds))
+    by_jerk, by_acceleration = _shares(jumps, bounds)
+    times[1:-1] = np.maximum(by_jerk * np.sqrt(speeds[1:-1]), by_acceleration * speeds[1:-1])
+    return times
+
+
+def _runs(lengths: Array, speeds: Array, jumps: Array, bounds: AxisBounds) -> Array:
+    """What blends leave of each segment."""
+    cut = speeds * _blend_times(speeds, jumps, bounds) / 2
+    return np.asarray(np.maximum(lengths - cut[:-1] - cut[1:], 0.0))
+
+
+@compiled
+def look_ahead(runs: Array, acceleration: Array, jerk: Array, caps: Array) -> Array:
+    """Greatest speeds at corners below caps such that each can be reached from both neighbours, (k + 1,) mm/s.
+
+    Parameters
+    ----------
+    runs, acceleration, jerk : (k,) array
+        Length of each segment, mm, and its limits.
+    caps : (k + 1,) array
+    """
+    speeds = caps.copy()
+    for i in range(len(runs) - 1, -1, -1):
+        speeds[i] = min(speeds[i], _reach(speeds[i + 1], runs[i], acceleration[i], jerk[i]))
+    for i in range(len(runs)):
+        speeds[i + 1] = min(speeds[i + 1], _reach(speeds[i], runs[i], acceleration[i], jerk[i]))
+    return speeds
+
+
+@compiled
+def _reach(start: float, way: float, a: float, j: float) -> float:
+    """One of `profile.reachable`, the cubic solved by Newton from above, where it is convex."""
+    if way <= 0.0:
+        return start
+    shift = a * a / j
+    if (2 * start + shift) * a / j >= way:
+        p, q = 2 * start / j, way / j
+        x = q ** (1.0 / 3.0)
+        if p > 0.0:
+            x = min(x, q / p)
+        for _ in range(40):
+            step = (x * x * x + p * x - q) / (3 * x * x + p)
+            x -= step
+            if abs(step) <= 1e-15 * x:
+                break
+        return float(start + j * x * x * (1 - 1e-12))
+    return float((-shift / 2 + sqrt((start - shift / 2) ** 2 + 2 * a * way)) * (1 - 1e-12))

@@ -1,0 +1,250 @@
+"""Seven-segment jerk-limited motion along a straight line, in closed form.
+
+Between two velocities of the same sense, with no acceleration at the ends: jerk up, hold, jerk down; cruise; and the
+same again.  Each of the seven may have no length.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+
+Array = NDArray[np.float64]
+
+_SIGNS = np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0])
+_BISECTIONS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """One motion of seven segments of constant jerk.
+
+    Attributes
+    ----------
+    durations : (7,) array
+        s; up, hold, down, cruise, down, hold, up.
+    jerks : (7,) array
+        mm/s^3.
+    start : float
+        Velocity at the start, mm/s.
+    """
+
+    durations: Array
+    jerks: Array
+    start: float
+
+    @property
+    def duration(self) -> float:
+        """s."""
+        return float(self.durations.sum())
+
+    def at(self, times: ArrayLike) -> Array:
+        """Position, velocity, acceleration and jerk at times from 0 to the duration, (n, 4).
+
+        Parameters
+        ----------
+        times : (n,) array_like
+            s.
+        """
+        t = np.atleast_1d(np.asarray(times, dtype=float))
+        begins = np.concatenate([[0.0], np.cumsum(self.durations)])
+        states = np.zeros((8, 3))
+        states[0, 1] = self.start
+        for i in range(7):
+            states[i + 1] = _after(states[i], self.jerks[i], self.durations[i])
+        which = np.clip(np.searchsorted(begins, t, side="right") - 1, 0, 6)
+        moved = _after(states[which], self.jerks[which], t - begins[which])
+        return np.column_stack([moved, self.jerks[which]])
+
+
+def _after(state: Array, jerk: Array, time: Array) -> Array:
+    s, v, a = state[..., 0], state[..., 1], state[..., 2]
+    return np.stack([s + time * (v + time * (a / 2 + time * jerk / 6)), v + time * (a + time * jerk / 2),
+                     a + time * jerk], axis=-1)
+
+
+def check_limits(velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> None:
+    """Refuse limits that no motion can keep.
+
+    Parameters
+    ----------
+    velocity, acceleration, jerk : array_like
+
+    Raises
+    ------
+    InvalidInput
+        When one is not a finite number above zero.
+    """
+    for name, values in (("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)):
+        rows = np.atleast_1d(np.asarray(values, dtype=float))
+        bad = np.flatnonzero(~(np.isfinite(rows) & (rows > 0)))
+        if bad.size:
+            raise InvalidInput(f"{name} limit {bad[0]} is {rows[bad[0]]}: it must be a finite number above zero")
+
+
+def ramp_time(change: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> tuple[Array, Array]:
+    """Times to change velocity with no acceleration at either end: of each jerk, and of the hold between, s.
+
+    Parameters
+    ----------
+    change : array_like
+        Change of velocity, of either sign.
+    acceleration, jerk : array_like
+    """
+    size, a, j = (np.asarray(value, dtype=float) for value in (change, acceleration, jerk))
+    size = np.abs(size)
+    short = size <= a * a / j
+    rise = np.where(short, np.sqrt(size / j), a / j)
+    return rise, np.where(short, 0.0, np.maximum(size / a - a / j, 0.0))
+
+
+def ramp_length(start: ArrayLike, end: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> Array:
+    """Way that a change of velocity takes, mm.
+
+    Parameters
+    ----------
+    start, end, acceleration, jerk : array_like
+    """
+    v0, v1 = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    rise, hold = ramp_time(v1 - v0, acceleration, jerk)
+    return np.asarray((v0 + v1) / 2 * (2 * rise + hold))
+
+
+def reachable(start: ArrayLike, length: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> Array:
+    """Greatest velocity that can be reached from another one within a length, no acceleration at either end.
+
+    Read backwards it is the greatest velocity from which one can still slow down to another one.
+
+    Parameters
+    ----------
+    start : array_like
+        mm/s.
+    length : array_like
+        mm.
+    acceleration, jerk : array_like
+    """
+    v0, way, a, j = (np.asarray(value, dtype=float) for value in (start, length, acceleration, jerk))
+    rise = _cubic_root(2 * v0 / j, way / j)
+    short = v0 + j * rise * rise
+    shift = a * a / j
+    held = -shift / 2 + np.sqrt(np.maximum((v0 - shift / 2) ** 2 + 2 * a * way, 0.0))
+    return np.asarray(np.where(short - v0 <= shift, short, held))
+
+
+def _cubic_root(p: Array, q: Array) -> Array:
+    """The root x >= 0 of x^3 + p x = q with p, q >= 0, without cancellation."""
+    half, third = q / 2, p / 3
+    big = np.cbrt(half + np.sqrt(half * half + third**3))
+    root = big - np.where(big > 0, third / np.where(big > 0, big, 1.0), 0.0)
+    linear = q / np.where(p > 0, p, 1.0)
+    root = np.where((p > 0) & (linear**2 < 1e-6 * p), linear, root)
+    for _ in range(3):
+        slope = 3 * root * root + p
+        root = np.where(slope > 0, root - (root**3 + p * root - q) / np.where(slope > 0, slope, 1.0), root)
+    return np.asarray(np.maximum(root, 0.0))
+
+
+def peak_velocity(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,
+                  ends: tuple[ArrayLike, ArrayLike] = (0.0, 0.0)) -> Array:
+    """Greatest velocity on the way between two velocities, mm/s; closed form where the two are equal.
+
+    Parameters
+    ----------
+    length, velocity, acceleration, jerk : array_like
+        Length, mm, long enough to change from one velocity to the other, and limits.
+    ends : two array_like
+        Velocities at the start and at the end.
+    """
+    way, top, a, j = (np.asarray(value, dtype=float) for value in (length, velocity, acceleration, jerk))
+    v0, v1 = (np.asarray(value, dtype=float) for value in ends)
+    most = np.minimum(top, np.minimum(reachable(v0, way, a, j), reachable(v1, way, a, j)))
+    low, high = np.broadcast_arrays(np.maximum(v0, v1), np.maximum(most, np.maximum(v0, v1)))
+    same = np.asarray(v0 == v1)
+    if not same.all():
+        low, high = low.copy(), high.copy()
+        fits = _needed(v0, v1, high, a, j) <= way
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            good = _needed(v0, v1, middle, a, j) <= way
+            low, high = np.where(good, middle, low), np.where(good, high, middle)
+        low = np.where(fits, np.maximum(most, np.maximum(v0, v1)), low)
+    closed = np.minimum(top, reachable(v0, way / 2, a, j))
+    return np.asarray(np.where(same, closed, low))
+
+
+def _needed(v0: Array, v1: Array, peak: Array, a: Array, j: Array) -> Array:
+    return np.asarray(ramp_length(v0, peak, a, j) + ramp_length(peak, v1, a, j))
+
+
+def travel_time(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,
+                ends: tuple[ArrayLike, ArrayLike] = (0.0, 0.0)) -> Array:
+    """Least time for lengths between two velocities, s.
+
+    Parameters
+    ----------
+    length, velocity, acceleration, jerk : array_like
+    ends : two array_like
+        Velocities at the start and at the end.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eq. (8), whose law of seven segments this integrates.
+    Properties: (1) from rest to rest under jerk alone it is 4 (L/(2 J))^(1/3); (2) it is the time of `profile`.
+    """
+    return np.asarray(segment_durations(length, velocity, acceleration, jerk, ends).sum(axis=-1))
+
+
+def profile(length: float, velocity: float, acceleration: float, jerk: float,
+            ends: tuple[float, float] = (0.0, 0.0)) -> Profile:
+    """The fastest motion over a length between two velocities, no acceleration at the ends.
+
+    Parameters
+    ----------
+    length : float
+        mm.
+    velocity, acceleration, jerk : float
+        Limits.
+    ends : (float, float)
+        Velocities at the start and at the end, mm/s, within the limit.
+
+    Raises
+    ------
+    InvalidInput
+        When a limit is not above zero, an end is too fast, or the length too short to change from one to the other.
+    """
+    check_limits(velocity, acceleration, jerk)
+    if not (np.isfinite(length) and length >= 0):
+        raise InvalidInput(f"length is {length} mm: it must be a finite number, not below zero")
+    if min(ends) < 0 or max(ends) > velocity * (1 + 1e-12):
+        raise InvalidInput(f"velocities at the ends are {ends[0]} and {ends[1]}: they must lie between 0 and "
+                           f"{velocity}")
+    needed = float(ramp_length(ends[0], ends[1], acceleration, jerk))
+    if needed > length * (1 + 1e-9) + 1e-12:
+        raise InvalidInput(f"length is {length} mm: changing from {ends[0]} to {ends[1]} mm/s takes {needed} mm")
+    durations = segment_durations(length, velocity, acceleration, jerk, ends)
+    return Profile(durations, _jerks(durations, ends, jerk), float(ends[0]))
+
+
+def segment_durations(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,
+                      ends: tuple[ArrayLike, ArrayLike]) -> Array:
+    """Durations of the seven segments of the fastest motions, (..., 7) s.
+
+    Parameters
+    ----------
+    length, velocity, acceleration, jerk : array_like
+    ends : two array_like
+        Velocities at the start and at the end.
+    """
+    peak = peak_velocity(length, velocity, acceleration, jerk, ends)
+    v0, v1, way = (np.asarray(value, dtype=float) for value in (*ends, length))
+    up, hold_up = ramp_time(peak - v0, acceleration, jerk)
+    down, hold_down = ramp_time(peak - v1, acceleration, jerk)
+    left = way - (v0 + peak) / 2 * (2 * up + hold_up) - (v1 + peak) / 2 * (2 * down + hold_down)
+    cruise = np.where(peak > 0, np.maximum(left, 0.0) / np.where(peak > 0, peak, 1.0), 0.0)
+    return np.stack(np.broadcast_arrays(up, hold_up, up, cruise, down, hold_down, down), axis=-1)
+
+
+def _jerks(durations: Array, ends: tuple[ArrayLike, ArrayLike], jerk: ArrayLike) -> Array:
+    return np.asarray(_SIGNS * np.asarray(jerk, dtype=float)[..., None] * np.ones_like(durations))
