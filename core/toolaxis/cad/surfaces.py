@@ -1,6 +1,6 @@
 """Kernel surfaces as exact rational B-splines over the range that a face uses."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from toolaxis.numeric.knots import restricted, unrolled
 
 Array = NDArray[np.float64]
 
-APPROXIMATION = 1e-6
+APPROXIMATION, FLAT = 1e-6, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class PlainSurface:
 
 
 def convert(surface: KernelSurface, box: Box) -> PlainSurface:
-    """A kernel surface as a rational B-spline that covers a parameter box.
+    """A kernel surface as a rational B-spline that covers a parameter box; a flat one of whatever kind is a plane.
 
     Parameters
     ----------
@@ -67,6 +67,18 @@ def convert(surface: KernelSurface, box: Box) -> PlainSurface:
     UnsupportedGeometry
         When the kernel cannot approximate a surface that has no exact form here.
     """
+    found = _converted(surface, box)
+    return replace(found, kind="plane") if found.kind != "plane" and _is_flat(found.control) else found
+
+
+def _is_flat(control: Array) -> bool:
+    """Whether all control points lie in one plane, to 1e-9 of their size."""
+    points = (control[..., :3] / control[..., 3:]).reshape(-1, 3)
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return bool(spread[-1] <= FLAT * spread[0])
+
+
+def _converted(surface: KernelSurface, box: Box) -> PlainSurface:
     form = surface.form
     if isinstance(form, PlaneForm):
         return _plane(form, box)
