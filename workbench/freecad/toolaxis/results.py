@@ -159,6 +159,8 @@ def _standing_frame(operation, op, part, title):
     if frame is None:
         frame = add_frame(document)
         operation.addObject(frame)
+        if FreeCAD.GuiUp:
+            frame.ViewObject.Visibility = True
     frame.Label = translate("ToolAxis", "Work coordinates {}").format(title)
     place_frame(frame, placement_from(op.frame.part_from_work), chain_of(part))
     return frame
@@ -175,6 +177,9 @@ def _standing_passes(operation, op, frame, title):
     fill_passes(passes, commands(op.path, op.frame, frame[1]))
     passes.Placement = frame[0].Placement
     passes.setExpression("Placement", f"{frame[0].Name}.Placement")
+    if FreeCAD.GuiUp:  # else FreeCAD draws a line to the first point from the origin, maybe through the part
+        first = passes.Path.Commands[0].Placement.Base
+        passes.ViewObject.StartPosition = first
 
 
 def _standing_tool(operation, tool, title):

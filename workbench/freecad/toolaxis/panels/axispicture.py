@@ -145,6 +145,22 @@ def picture_of(face, found):
                        {"mean normal": pole[None]})
 
 
+def marked(picture, found):
+    """The picture with the chosen axis and those of the other lobes marked.
+
+    Parameters
+    ----------
+    picture : AxisPicture
+    found : toolaxis.plan.orientation.Orientation
+    """
+    lobes = [lobe.axis for lobe in found.lobes if lobe.axis is not None]
+    if lobes:
+        picture.marks["other lobes"] = np.array(lobes)
+    if found.axis is not None:
+        picture.marks["chosen"] = found.axis[None]
+    return picture
+
+
 def axis_picture(plan, op, progress):
     """The picture of an operation's map, with all its marks, or None where the search left none.
 
@@ -160,13 +176,8 @@ def axis_picture(plan, op, progress):
     picture = picture_of(op.face, op.orientation.map)
     if picture is None:
         return None
-    lobes = [lobe.axis for lobe in op.orientation.lobes if lobe.axis is not None]
-    if lobes:
-        picture.marks["other lobes"] = np.array(lobes)
     try:
         picture.marks["Roman's rule"] = rule_of_thumb(plan, op, progress)[None]
     except ToolAxisError:  # no plane of projection: nothing to mark
         progress.check()
-    if op.orientation.axis is not None:
-        picture.marks["chosen"] = op.orientation.axis[None]
-    return picture
+    return marked(picture, op.orientation)

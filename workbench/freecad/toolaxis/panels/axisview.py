@@ -120,7 +120,10 @@ class AxisView(QtCore.QObject):
 
     def _show_numbers(self):
         op, form = self.operation, self.form
-        _fill(form.results, op, self.tried)
+        columns = [] if op is None else [(translate("ToolAxis", "Plan"), measures(op.orientation))]
+        if self.tried is not None:
+            columns.append((translate("ToolAxis", "Tried"), measures(self.tried.orientation)))
+        fill(form.results, columns)
         form.results.setVisible(op is not None)
         form.cost.setText(self._cost())
         form.reasons.setText("" if op is None else _sentences((self.tried or op).orientation))
@@ -272,11 +275,16 @@ def measures(found):
     return rows + [(name, text() if there else "-") for name, text in texts]
 
 
-def _fill(table, op, tried):
-    """Fill the result table for an operation, with a column for the tried axis beside it."""
-    columns = [] if op is None else [(translate("ToolAxis", "Plan"), measures(op.orientation))]
-    if tried is not None:
-        columns.append((translate("ToolAxis", "Tried"), measures(tried.orientation)))
+def fill(table, columns):
+    """Fill a result table.
+
+    Parameters
+    ----------
+    table : QTableWidget
+    columns : list of (str, list of (str, str))
+        Heading and the rows of `measures`; one column alone without a heading has none.
+    """
+    table.horizontalHeader().setVisible(any(name for name, _ in columns))
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
     table.setColumnCount(len(columns))

@@ -4,6 +4,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from ..colours import coloured
 from . import palette
 from .axispicture import SIDE, missed, reason_name
 from .legend import draw_mark
@@ -218,7 +219,7 @@ def _disc_image(picture, size, dark):
     rows = picture.nearest[np.ix_(index, index)]
     inside = np.maximum(rows, 0)
     reason = picture.reason[inside]
-    rgb = palette.coloured(picture.width[inside], *picture.span)
+    rgb = coloured(picture.width[inside], *picture.span)
     ground, line = palette.greys(dark)
     y, x = np.mgrid[:size, :size]
     hatched = palette.hatch(reason, x, y)

@@ -4,6 +4,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from ..colours import scale_colours
 from . import palette
 from .axispicture import reason_name
 
@@ -154,7 +155,7 @@ class Legend(QtWidgets.QWidget):
             return
         low, high = (FreeCAD.Units.Quantity(float(v), FreeCAD.Units.Length).UserString for v in self.picture.span)
         bar = QtCore.QRectF(0, 2, self.width(), 12)
-        painter.drawImage(bar, palette.image_of(palette.scale_colours()[None]))
+        painter.drawImage(bar, palette.image_of(scale_colours()[None]))
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(bar)
         text = QtCore.QRectF(0, 16, self.width(), 18)

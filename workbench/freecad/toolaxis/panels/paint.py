@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from PySide import QtCore
 
-from . import palette
+from ..colours import judged
+from ..triangles import triangles_of
 
-#: Colours of what is above the limit, and of what the cutter never reached.
-ABOVE, MISSED = (213, 94, 0), (204, 121, 167)
 WHAT = ("remaining", "gouge")
 #: FreeCAD shows faces as coarse triangles that stand above the true face here and there; the colours are drawn nearer
 #: to the viewer by this many steps of the depth buffer, a few thousandths of what the view is deep.
@@ -45,43 +44,13 @@ def skins_of(found):
     ----------
     found : toolaxis.verify.maps.SurfaceMap
     """
-    from scipy.spatial import Delaunay, QhullError
-
-    d = found.face.evaluate(found.face.grid(8, 8))
-    scale = [float(np.linalg.norm(rate, axis=1).mean()) for rate in (d.su, d.sv)]
-    flat = found.uv * np.where(np.isfinite(scale) & (np.array(scale) > 0), scale, 1.0)
-    try:
-        triangle = Delaunay(flat).simplices
-    except (QhullError, ValueError):  # fewer than three rays, or all on a line
-        triangle = np.empty((0, 3), dtype=int)
-    corner = found.point[triangle]
-    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1, initial=0.0)
-    triangle = triangle[longest <= 3.0 * found.spacing]
-    middle = found.uv[triangle].mean(axis=1) if len(triangle) else np.empty((0, 2))
-    if len(middle):
-        triangle = triangle[found.face.contains(middle)]
-    triangle = triangle[np.argsort(flat[triangle[:, 0], 0], kind="stable")]  # pieces then share few corners
+    triangle = triangles_of(found)
     return [_piece(found, triangle[k:k + _PIECE]) for k in range(0, len(triangle), _PIECE)]
 
 
 def _piece(found, triangle):
     rows, inverse = np.unique(triangle, return_inverse=True)
     return Skin(found.point[rows], inverse.reshape(triangle.shape), found.remaining[rows], found.gouge[rows])
-
-
-def colours(values, limit):
-    """Colours of heights or depths, (n, 3) bytes.
-
-    Parameters
-    ----------
-    values : (n,) array
-    limit : float
-        End of the scale, mm; what is above it is one colour, what is infinite another.
-    """
-    rgb = palette.coloured(np.where(np.isfinite(values), values, 0.0), 0.0, limit)
-    rgb[values > limit * 1.02] = ABOVE
-    rgb[~np.isfinite(values)] = MISSED
-    return rgb
 
 
 class Paint:
@@ -134,7 +103,7 @@ class Paint:
             self._timer.stop()
             return
         skin, what, limit = self._left.pop()
-        self.root.addChild(_painted(skin, colours(getattr(skin, what), limit)))
+        self.root.addChild(_painted(skin, judged(getattr(skin, what), limit)))
 
     def point_at(self, point, size):
         """Zoom to a point and mark it.

@@ -3,9 +3,9 @@
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
+from ..colours import ABOVE, MISSED, scale_colours
 from . import palette
 from .fields import fine_text
-from .paint import ABOVE, MISSED
 
 translate = FreeCAD.Qt.translate
 
@@ -38,7 +38,7 @@ class Scale(QtWidgets.QWidget):
         text = self.palette().color(QtGui.QPalette.WindowText)
         painter.setPen(text)
         bar = QtCore.QRectF(0, 2, self.width() - 1, 12)
-        painter.drawImage(bar, palette.image_of(palette.scale_colours()[None]))
+        painter.drawImage(bar, palette.image_of(scale_colours()[None]))
         painter.drawRect(bar)
         line = QtCore.QRectF(0, 16, self.width(), 18)
         painter.drawText(line, QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, "0")

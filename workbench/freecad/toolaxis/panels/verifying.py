@@ -9,7 +9,8 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
-from .fields import fine_text, fit_rows, length_text, load_form, tell
+from .axisview import fill
+from .fields import fine_text, length_text, load_form, tell
 from .paint import WHAT, Paint, skins_of
 from .preview import view_of
 from .scale import Scale
@@ -38,7 +39,7 @@ class VerifyPanel:
         self.scale = Scale(self.form)
         self.form.scalePlace.layout().addWidget(self.scale)
         self.paint = Paint(view_of(document.Name))
-        self.work, self.found, self.over = None, None, False
+        self.work, self.found, self.over, self.meshes = None, None, False, []
         self.form.verify.clicked.connect(self.verify)
         self.form.stop.clicked.connect(self.stop)
         self.form.operation.currentIndexChanged.connect(self._show)
@@ -100,10 +101,19 @@ class VerifyPanel:
             self._tell(translate("ToolAxis", "Not inside tolerance: {}").format(", ".join(failed)), bad=True)
         else:
             self._tell(translate("ToolAxis", "Inside tolerance"))
-        with suppress(Exception):  # an operation may have been deleted meanwhile
-            for operation, verdicts in zip(self.operations, found, strict=True):
-                bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts])
+        self._keep(found)
         self._show()
+
+    def _keep(self, found):
+        """Put verdicts and maps into the document; the meshes come to sight when the panel closes."""
+        try:
+            for operation, verdicts in zip(self.operations, found, strict=True):
+                scallops, *_ = bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts])
+                scallops.Visibility = False
+                self.meshes.append(scallops)
+        except Exception as reason:
+            FreeCAD.Console.PrintLog(f"{reason!r}\n")
+            self._tell(translate("ToolAxis", "The verdict could not be kept: {}").format(sentence(reason)), bad=True)
 
     def _ended(self, text):
         self.work = None
@@ -138,7 +148,7 @@ class VerifyPanel:
         limit = verdict.scallop_limit if what == "remaining" else verdict.gouge_allowed
         self.scale.show_scale(form.what.currentText(), limit, what == "remaining")
         self.paint.show(skins, what, limit)
-        _fill(form.results, _measures(verdict))
+        fill(form.results, [("", _measures(verdict))])
         form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in verdict.reasons))
         self.places = verdict.worst_scallop if what == "remaining" else verdict.worst_gouge
         self._list_worst()
@@ -163,7 +173,7 @@ class VerifyPanel:
 
     def document_closed(self):
         """The document is about to close: stop, and close the panel."""
-        self.paint.root = None
+        self.paint.root, self.meshes = None, []
         self._close()
         QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
 
@@ -191,6 +201,9 @@ class VerifyPanel:
             self.work.leave()
             self.work = None
         self.paint.clear()
+        for mesh in self.meshes:
+            with suppress(ReferenceError, RuntimeError):  # deleted meanwhile
+                mesh.Visibility = True
 
 
 def _judged(judge, progress):
@@ -216,17 +229,3 @@ def _measures(verdict):
             (translate("ToolAxis", "Cutter clearance"), _room("cutter")),
             (translate("ToolAxis", "Shank clearance"), _room("shank")),
             (translate("ToolAxis", "Holder clearance"), _room("holder"))]
-
-
-def _fill(table, rows):
-    table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
-    table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
-    table.horizontalHeader().setVisible(False)
-    table.verticalHeader().setVisible(True)
-    table.setColumnCount(1)
-    table.setRowCount(len(rows))
-    table.setVerticalHeaderLabels([name for name, _ in rows])
-    for i, (_, text) in enumerate(rows):
-        table.setItem(i, 0, QtWidgets.QTableWidgetItem(text))
-    table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
-    fit_rows(table)

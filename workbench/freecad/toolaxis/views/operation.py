@@ -43,14 +43,12 @@ class OperationView:
             FreeCADGui.getMainWindow().statusBar().showMessage(text, _TIME)
 
     def doubleClicked(self, view):
-        """Open the planning panel with the operation's inputs."""
+        """Open the operation's panel: results, map, the tool on its passes, and the way to plan it again."""
         if FreeCADGui.Control.activeDialog():
             return False
-        from .. import bridge
-        from ..panels.planning import PlanPanel
+        from ..panels.operation import OperationPanel
 
-        thing = view.Object
-        FreeCADGui.Control.showDialog(PlanPanel(thing.Document, bridge.inputs_of(thing), thing))
+        FreeCADGui.Control.showDialog(OperationPanel(view.Object.Document, view.Object))
         return True
 
     def dumps(self):

@@ -1,0 +1,175 @@
+"""The task panel of one operation in the document: what it comes to, its map, and the tool moved along its passes."""
+
+import json
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtWidgets
+
+from .. import RESOURCES, bridge
+from ..tasks import Work, sentence
+from .axisview import fill, measures
+from .fields import load_form, tell
+from .hemisphere import HemisphereMap
+from .legend import Legend
+from .watching import Watch
+
+translate = FreeCAD.Qt.translate
+
+
+class OperationPanel:
+    """FreeCAD calls reject and getStandardButtons.
+
+    Parameters
+    ----------
+    document : App.Document
+    operation : App.DocumentObject
+    """
+
+    def __init__(self, document, operation):
+        from toolaxis.plan.document import orientation_from
+
+        self.document, self.operation, self.over = document, operation, False
+        self.form = load_form("operation")
+        self.form.setWindowTitle(operation.Label)
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
+        self.map, self.legend = HemisphereMap(self.form), Legend(self.form)
+        self.map.setObjectName("axisMap")
+        self.form.mapPlace.layout().addWidget(self.map)
+        self.form.legendPlace.layout().addWidget(self.legend)
+        self.tool = next((one for one in operation.Group
+                          if getattr(getattr(one, "Proxy", None), "Type", "") == "ToolAxisTool"), None)
+        self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
+        self.work = None
+        self._fill()
+        self._connect(document)
+        self._draw_map()
+
+    def getStandardButtons(self):
+        """Close."""
+        return QtWidgets.QDialogButtonBox.Close
+
+    def isAllowedAlterDocument(self):
+        """Other commands may change the document meanwhile."""
+        return True
+
+    def reject(self):
+        """Close; the tool stays where it was put."""
+        self._close()
+        return True
+
+    def _fill(self):
+        form, operation = self.form, self.operation
+        if operation.Stale:
+            reasons = "; ".join(operation.StaleReasons)
+            tell(form.message, translate("ToolAxis", "Stale: {}; plan it again").format(reasons), bad=True)
+        else:
+            tell(form.message, translate("ToolAxis", "Results hold; verdict: {}").format(operation.Verdict))
+        fill(form.results, [("", measures(self.found))] if self.found is not None else [])
+        form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in operation.Reasons))
+        form.slide.setEnabled(self.tool is not None)
+        if self.tool is not None:
+            form.slide.setValue(round(self.tool.Position * form.slide.maximum()))
+        form.verify.setEnabled(self.tool is not None)
+
+    def _connect(self, document):
+        form = self.form
+        form.slide.valueChanged.connect(self._move)
+        form.again.clicked.connect(self._plan_again)
+        form.verify.clicked.connect(self._verify)
+        self.map.hovered.connect(form.pointer.setText)
+        self.watch = Watch(document, self)
+        form.destroyed.connect(self._close)
+
+    def _move(self, value):
+        if self.tool is not None:
+            self.tool.Position = value / self.form.slide.maximum()
+
+    def _draw_map(self):
+        """The map, off the GUI thread: its centre is the mean normal of the face, which has to be read."""
+        found, number = self.found, json.loads(self.operation.Details or "{}").get("face", 0)
+        if found is None or found.map is None:
+            return
+        try:
+            from ..reading import Source
+
+            source = Source.of(bridge.inputs_of(self.operation))
+        except Exception as reason:  # the part is gone: no map
+            FreeCAD.Console.PrintLog(f"{reason!r}\n")
+            return
+        self.work = Work(lambda progress: _picture(source, number, found, progress))
+        self.work.done.connect(self._drawn)
+        self.work.failed.connect(lambda text: tell(self.form.message, text, bad=True))
+        self.work.start()
+
+    def _drawn(self, picture):
+        self.work = None
+        self.map.show_picture(picture)
+        self.map.setCursor(QtCore.Qt.ArrowCursor)
+        self.legend.show_picture(picture)
+
+    def _plan_again(self):
+        from .planning import PlanPanel
+
+        self._follow(lambda: PlanPanel(self.document, bridge.inputs_of(self.operation), self.operation))
+
+    def _verify(self):
+        from .verifying import VerifyPanel
+
+        self._follow(lambda: VerifyPanel(self.document, [self.operation]))
+
+    def _follow(self, make):
+        """Close this panel and open another one."""
+        self._close()
+        FreeCADGui.Control.closeDialog()
+
+        def show():
+            try:
+                FreeCADGui.Control.showDialog(make())
+            except Exception as reason:
+                from ..commands.chosen import warn
+
+                warn(sentence(reason))
+
+        QtCore.QTimer.singleShot(0, show)
+
+    def document_closed(self):
+        """The document is about to close: close the panel."""
+        self._close()
+        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
+
+    def object_deleted(self, name):
+        """The operation or its tool is about to be deleted: close the panel."""
+        if name == self.operation.Name:
+            self.document_closed()
+        elif self.tool is not None and name == self.tool.Name:
+            self.tool = None
+            self.form.slide.setEnabled(False)
+
+    def object_changed(self, name):
+        """The part has changed: the marks may have."""
+        if not self.over:
+            QtCore.QTimer.singleShot(0, self._refresh)
+
+    def _refresh(self):
+        if not self.over:
+            self._fill()
+
+    def _close(self, *_):
+        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
+        if self.over:
+            return
+        self.over = True
+        self.watch.end()
+        if self.work is not None:
+            self.work.leave()
+            self.work = None
+
+
+def _picture(source, number, found, progress):
+    """The picture of a kept map; runs off the GUI thread."""
+    from .axispicture import marked, picture_of
+
+    part, _ = source.read(progress)
+    picture = picture_of(part.face(number), found.map)
+    return None if picture is None else marked(picture, found)
