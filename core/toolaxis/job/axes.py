@@ -13,9 +13,9 @@ from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.orient.indexed import Task, finished, task
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
-from toolaxis.orient.sphere import counted
 from toolaxis.orient.worth import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation

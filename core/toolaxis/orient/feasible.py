@@ -34,7 +34,6 @@ from toolaxis.orient.verdicts import (
     Witness,
 )
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
@@ -166,21 +165,6 @@ class Feasibility:
         some = self.sparse
         return deepest(self.tool, axis, tips(some.point, some.normal, axis, self.tool, self.allowance), points)
 
-    def closer(self, axis: Array) -> tuple[int, float, Array]:
-        """Reason and amount (mm) of one axis at the screening contacts with bounds, and points that it gouges.
-
-        Parameters
-        ----------
-        axis : (3,) array
-        """
-        trouble = self.trouble(axis, self.sparse)
-        reason, amount, _ = self._verdict(trouble, self.sparse)
-        hit = np.flatnonzero((trouble.reason == GOUGE) & (trouble.amount > 0))
-        hit = hit[np.argsort(-trouble.amount[hit], kind="stable")][:6]
-        points = [nearest(self.groups[0].faces[int(trouble.face[i])], trouble.point[i][None]).point for i in hit
-                  if trouble.face[i] >= 0 and trouble.group[i] == 0]
-        return reason, amount, np.concatenate([np.empty((0, 3)), *points])
-
     @cached_property
     def cloud(self) -> Array:
         """Points of the skin that surely gouging axes run into, (m, 3)."""
@@ -218,10 +202,16 @@ class Feasibility:
         thorough : bool
             Whether gouges of the skin are looked for too.
         """
-        return self._verdict(self.trouble(axis, contacts, thorough), contacts)
+        return self.verdict(self.trouble(axis, contacts, thorough), contacts)
 
-    def _verdict(self, trouble: Trouble, contacts: Contacts) -> tuple[int, float, float]:
-        """Reason, amount and unreached share that follow from what is worst at each contact."""
+    def verdict(self, trouble: Trouble, contacts: Contacts) -> tuple[int, float, float]:
+        """Reason, amount and unreached share that follow from what is worst at each contact.
+
+        Parameters
+        ----------
+        trouble : Trouble
+        contacts : Contacts
+        """
         left = trouble.wall & (trouble.reason != FREE)
         bad = (trouble.reason != FREE) & ~left
         unreached = float(contacts.share[left].sum())
@@ -303,12 +293,21 @@ class Feasibility:
         t = unit(as_rows(axis, 3, "axis")[0])
         if self.limits is not None and not self.limits.allowed(t)[0]:
             return Witness(LIMITS, float(self.limits.excess(t)[0]))
-        spread = self.normals.range_of_angles(t, self.least_angle, self.greatest_angle)
+        return self.turned_away(t) or self.worst(t, self.dense)
+
+    def turned_away(self, axis: Array) -> Witness | None:
+        """What the angles between an axis and all normals forbid, proven between samples too, or None.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        spread = self.normals.range_of_angles(axis, self.least_angle, self.greatest_angle)
         for code, amount, uv in ((BACK, spread.high - self.greatest_angle, spread.greatest),
                                  (WANDERS, self.least_angle - spread.low, spread.least)):
             if amount > 1e-9:
                 return Witness(code, float(amount), "", self.face.evaluate(uv[None]).point[0], uv)
-        return self.worst(t, self.dense)
+        return None
 
     def worst(self, axis: Array, contacts: Contacts) -> Witness | None:
         """The worst contact of those that forbid an axis, or None.

@@ -13,11 +13,12 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
-from toolaxis.orient.sphere import Candidate, repaired, search
+from toolaxis.orient.sphere import repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import passes
 from toolaxis.path.linking import Linking
@@ -34,7 +35,7 @@ METHODS = {"sphere": search, "sectors": sectors}
 
 #: Height above everything at which links cross, mm.
 CROSSING = 5.0
-_ATTEMPTS = 3
+_ATTEMPTS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +241,7 @@ def _sound(job: Task, one: Candidate) -> bool:
 def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str]) -> Orientation | None:
     """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: Candidate | None = one
-    for _ in range(_ATTEMPTS):
+    for attempt in range(_ATTEMPTS):
         if candidate is None:
             return None
         witness = ledger.feasibility.witness(candidate.axis)
@@ -250,7 +251,7 @@ def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str]) -> 
                 return result
             witness = proof.witness
         refused.append(f"refused {direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
-        candidate = repaired(ledger, candidate, witness)
+        candidate = repaired(ledger, candidate, witness, attempt)
     return None
 
 

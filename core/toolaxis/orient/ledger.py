@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.orient.closer import Closer
 from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.verdicts import FREE, GOUGE
+from toolaxis.orient.verdicts import BACK, FREE, GOUGE, LIMITS, Verdicts, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -35,6 +37,10 @@ class Ledger:
         Exact counts made.
     closer : int
         Axes looked at once more, closer.
+    excluded : int
+        Axes that limits or normals excluded beforehand: entered for the map, never priced.
+    closed : list of (axis, angle, Witness)
+        Discs of axes, with their radius in rad, that are left alone since the proof of passes refused their middle.
     proven : bool
         Whether limits and normals are proven to leave no axis.
     """
@@ -50,12 +56,36 @@ class Ledger:
     length: Array = field(default_factory=lambda: np.empty((0, 2)))
     counts: int = 0
     closer: int = 0
+    excluded: int = 0
     proven: bool = False
+    closed: list[tuple[Array, float, Witness]] = field(default_factory=list)
 
     @property
     def evaluations(self) -> int:
-        """Axes looked at, closer looks and exact counts."""
-        return len(self.axes) + self.closer + self.counts
+        """Axes looked at, closer looks and exact counts, but not the axes that were excluded beforehand."""
+        return len(self.axes) - self.excluded + self.closer + self.counts
+
+    def lay(self, axes: Array) -> None:
+        """Look at those axes that limits and normals allow, and enter the others as excluded beforehand.
+
+        The sectors of the paper end where normals end them, and so does what is laid out here.
+
+        Parameters
+        ----------
+        axes : (k, 3) array
+            Unit vectors.
+
+        Raises
+        ------
+        Cancelled
+            When the user asked to stop.
+        """
+        reason, amount = self.feasibility.quick(axes)
+        out = np.isin(reason, (LIMITS, BACK))
+        self.excluded += int(out.sum())
+        priceless = np.full((int(out.sum()), 2), np.inf)
+        self._enter(axes[out], Verdicts(reason[out], amount[out], np.zeros(len(priceless))), priceless, priceless)
+        self.look(axes[~out])
 
     def look(self, axes: Array) -> slice:
         """Screen axes and enter them.
@@ -81,14 +111,38 @@ class Ledger:
             verdict, price = self.feasibility.screen(rows), self.worth.screen(rows)
             charge = np.array([self.worth.charge(float(length), float(u)) if u > 0 else 1.0
                                for length, u in zip(price.length.min(axis=1), verdict.unreached, strict=True)])[:, None]
-            self.axes = np.concatenate([self.axes, rows])
-            self.reason = np.concatenate([self.reason, verdict.reason])
-            self.amount = np.concatenate([self.amount, verdict.amount])
-            self.unreached = np.concatenate([self.unreached, verdict.unreached])
-            self.passes = np.concatenate([self.passes, price.passes * charge])
-            self.length = np.concatenate([self.length, price.length * charge])
+            self._enter(rows, verdict, price.passes * charge, price.length * charge)
+        for axis, angle, found in self.closed:
+            self._shut(first, axis, angle, found)
         self.progress.offer(lambda: (self.worth.face, self.map()))
         return slice(first, len(self.axes))
+
+    def close(self, axis: Array, angle: float, found: Witness) -> None:
+        """Forbid all axes near one, those still to come too.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        angle : float
+            rad
+        found : Witness
+            Why.
+        """
+        self.closed.append((axis, angle, found))
+        self._shut(0, axis, angle, found)
+
+    def _shut(self, first: int, axis: Array, angle: float, found: Witness) -> None:
+        near = (angle_between(self.axes[first:], axis) <= angle) & (self.reason[first:] == FREE)
+        for row in np.flatnonzero(near):
+            self.forbid(first + int(row), found.reason, found.amount)
+
+    def _enter(self, axes: Array, verdict: Verdicts, passes: Array, length: Array) -> None:
+        self.axes = np.concatenate([self.axes, axes])
+        self.reason = np.concatenate([self.reason, verdict.reason])
+        self.amount = np.concatenate([self.amount, verdict.amount])
+        self.unreached = np.concatenate([self.unreached, verdict.unreached])
+        self.passes = np.concatenate([self.passes, passes])
+        self.length = np.concatenate([self.length, length])
 
     @property
     def values(self) -> Array:
@@ -125,6 +179,20 @@ class Ledger:
             depth = self.feasibility.depth(self.axes[row], points)
             if depth > limit:
                 self.forbid(int(row), GOUGE, depth - limit)
+
+    def heed(self, found: Closer) -> None:
+        """Learn from a closer look: its contacts are watched, and what it found is held against all free axes.
+
+        Parameters
+        ----------
+        found : Closer
+        """
+        if len(found.points):
+            self.learn(found.points)
+        if len(found.uv):
+            self.feasibility = self.feasibility.watching(found.uv)
+            free = np.flatnonzero(self.reason == FREE)
+            self.reason[free], self.amount[free] = self.feasibility.quick(self.axes[free])
 
     def count(self, axis: Array, feed: int, unreached: float) -> tuple[float, float, float]:
         """Exact value, passes and length of an axis for one feed; the value is charged for what stays.

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.planes import Plane, axis_at, initial_plane, sector, turned
-from toolaxis.orient.sphere import Candidate, counted, distinct, sound
+from toolaxis.orient.polish import Candidate, counted, sound
+from toolaxis.orient.sphere import distinct
 from toolaxis.orient.verdicts import FREE
 
 Array = NDArray[np.float64]

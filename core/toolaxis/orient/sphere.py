@@ -5,7 +5,6 @@ and around forbidden ones next to free ones that would be better; all lobes are 
 count, because the screening value is least true just where it is best.
 """
 
-from dataclasses import dataclass
 from math import radians
 
 import numpy as np
@@ -15,6 +14,7 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.hunt import hunt
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import NormalField
+from toolaxis.orient.polish import Candidate, counted, polish, proven, sound
 from toolaxis.orient.spiral import COVER, own_frame, ring, spiral
 from toolaxis.orient.verdicts import BACK, FREE, Witness
 
@@ -25,44 +25,22 @@ Index = NDArray[np.intp]
 SPACING = radians(10)
 #: Axes around which rings are laid, level by level.
 _BEAM = (14, 10, 8)
+#: Fewer where normals and limits leave little: one for so many first axes, but not below the second number.
+_SHARE, _NARROWEST = 9, 6
 #: Lobes are at least so far apart, rad.
 APART = radians(12)
 _LOBES = 5
+#: Lobes that cost so many times the best one's price are left out, but for the second best.
+_POOR = 1.5
 _POLISHED = 4
 #: Lobes whose first exact value is this much worse than the best are not polished.
 _HOPELESS = 0.02
 #: Values closer than this are ties.
 TIE = 0.001
-_FINEST = radians(0.12)
 #: Free axes so near a refused one are not tried, rad.
 _REPELLED = radians(0.15)
 #: Clearances closer than this are the same, mm.
 _SHARES = 0.25
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """An axis with its exact value.
-
-    Attributes
-    ----------
-    axis : (3,) array
-    feed : int
-        0 for "u", 1 for "v".
-    value : float
-        What is to be least, charged for what stays.
-    passes, length : float
-        Exact count and cutting length, mm, over the whole face.
-    unreached : float
-        Share of the area left to a clean-up tool, from screening.
-    """
-
-    axis: Array
-    feed: int
-    value: float
-    passes: float
-    length: float
-    unreached: float
 
 
 def search(ledger: Ledger) -> list[Candidate]:
@@ -84,15 +62,16 @@ def search(ledger: Ledger) -> list[Candidate]:
     """
     field = ledger.feasibility.normals
     frame = frame_of(field)
-    ledger.look(np.concatenate([[field.mean, frame[2]], spiral(frame, SPACING)]))
+    ledger.look(np.stack([field.mean, frame[2]]))
+    ledger.lay(spiral(frame, SPACING))
     if not np.isfinite(ledger.price).any():
         ledger.proven = hunt(ledger, 2, COVER * SPACING)
     if not np.isfinite(ledger.price).any():
         return []
     if indifferent(ledger):
         return ties(ledger)
-    spacing = SPACING
-    for width in _BEAM:
+    spacing, most = SPACING, max(_NARROWEST, (len(ledger.axes) - ledger.excluded) // _SHARE)
+    for width in np.minimum(_BEAM, most):
         probe(ledger, width // 2)
         refine(ledger, spacing, width)
         spacing /= 2
@@ -214,8 +193,9 @@ def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
     starts = []
     price = ledger.price
     order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
-    for i in lobes(ledger.axes, price, order)[:_LOBES]:
-        start = _first_sound(ledger, ledger.axes[i], order)
+    tops = lobes(ledger.axes, price, order)[:_LOBES]
+    for i in [i for k, i in enumerate(tops) if k < 2 or price[i] <= _POOR * price.min()]:
+        start = _first_proven(ledger, ledger.axes[i], order)
         if start is not None:
             starts.append(start)
     starts.sort(key=lambda c: c.value)
@@ -270,118 +250,32 @@ def lobes(axes: Array, price: Array, order: Index) -> list[int]:
     return chosen
 
 
-def _first_sound(ledger: Ledger, top: Array, order: Index) -> Candidate | None:
-    """The best axis of a lobe that also stands the closer look at the skin, counted; None when a dozen do not."""
+def _first_proven(ledger: Ledger, top: Array, order: Index) -> Candidate | None:
+    """The best axis of a lobe that the proof form accepts, counted; None when a dozen are refused."""
     near = [i for i in order if float(angle_between(ledger.axes[i], top)) <= APART][:12]
     for i in near:
-        if ledger.reason[i] == FREE and sound(ledger, int(i)):
+        if ledger.reason[i] == FREE and sound(ledger, int(i)) and proven(ledger, int(i)):
             return counted(ledger, int(i))
     return None
 
 
-def sound(ledger: Ledger, row: int) -> bool:
-    """Whether an axis stands the closer look at the skin; the ledger is corrected where it does not.
-
-    Parameters
-    ----------
-    ledger : Ledger
-    row : int
-    """
-    ledger.closer += 1
-    reason, amount, points = ledger.feasibility.closer(ledger.axes[row])
-    if reason != FREE:
-        ledger.forbid(row, reason, amount)
-        if len(points):
-            ledger.learn(points)
-    return reason == FREE
-
-
-def counted(ledger: Ledger, row: int, feed: int | None = None) -> Candidate:
-    """Exact value of a row, in the better feed; both are counted when screening cannot tell.
-
-    Parameters
-    ----------
-    ledger : Ledger
-    row : int
-    feed : int, optional
-        The one that is known to be better.
-    """
-    axis, unreached = ledger.axes[row], float(ledger.unreached[row])
-    values = ledger.values[row]
-    feeds = [int(values.argmin()) if feed is None else feed]
-    if feed is None and values.max() < 1.04 * values.min():
-        feeds = [0, 1]
-    return min((Candidate(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
-               key=lambda c: c.value)
-
-
-def polish(ledger: Ledger, start: Candidate, step: float, finest: float = _FINEST) -> Candidate:
-    """Walk to a local optimum by exact counts: rings of eight, turned from ring to ring, halved where none is better.
-
-    Parameters
-    ----------
-    ledger : Ledger
-    start : Candidate
-    step : float
-        First radius of the rings, rad.
-    finest : float
-        Last one, rad.
-    """
-    best, turn = start, 0.0
-    screened = _screened(ledger, best)
-    while step >= finest:
-        turn += 2.399963
-        rows = ledger.look(ring(best.axis, step, turn, 8))
-        better = _better(ledger, rows, best, best.value / screened)
-        if better is None:
-            step /= 2
-            continue
-        row, best = better
-        screened = float(ledger.values[row, best.feed])
-    return best
-
-
-def _screened(ledger: Ledger, one: Candidate) -> float:
-    """Screening value of a candidate in its feed."""
-    found = ledger.worth.screen(one.axis[None])
-    table = found.length if ledger.worth.objective == "length" else found.passes
-    return float(table[0, one.feed]) * ledger.worth.charge(float(found.length[0].min()), one.unreached)
-
-
-def _better(ledger: Ledger, rows: slice, best: Candidate, ratio: float) -> tuple[int, Candidate] | None:
-    """The first row, in the order of what screening promises, that is sound and counts better than the best."""
-    hope = np.where(ledger.reason[rows] == FREE, ledger.values[rows, best.feed] * ratio, np.inf)
-    for k in np.argsort(hope, kind="stable")[:3]:
-        if not hope[k] < best.value * (1 + 0.25 * TIE):
-            return None
-        row = rows.start + int(k)
-        if not sound(ledger, row):
-            continue
-        found = counted(ledger, row, best.feed)
-        if found.value < best.value * (1 - 0.1 * TIE):
-            return row, found
-    return None
-
-
-def repaired(ledger: Ledger, refused: Candidate, found: Witness) -> Candidate | None:
-    """Another axis of the same lobe after the proof refused one: what it found is watched from now on.
+def repaired(ledger: Ledger, refused: Candidate, found: Witness, attempt: int = 0) -> Candidate | None:
+    """Another axis of the same lobe after the proof of the passes refused one.
 
     Parameters
     ----------
     ledger : Ledger
     refused : Candidate
     found : Witness
+    attempt : int
+        How often this lobe was repaired before: its neighbourhood that is left alone grows fourfold each time.
 
     Returns
     -------
     Candidate, or None when the lobe holds no other free axis.
     """
-    if found.uv.any():
-        ledger.feasibility = ledger.feasibility.watching(found.uv[None])
-    apart = angle_between(ledger.axes, refused.axis)
-    for i in np.flatnonzero((apart <= _REPELLED) & (ledger.reason == FREE)):
-        ledger.forbid(int(i), found.reason, found.amount)
+    ledger.close(refused.axis, _REPELLED * 4**attempt, found)
     price = ledger.price
     order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
-    start = _first_sound(ledger, refused.axis, order)
+    start = _first_proven(ledger, refused.axis, order)
     return None if start is None else polish(ledger, start, 4 * _REPELLED, 2 * _REPELLED)
