@@ -108,3 +108,51 @@ def test_two_documents(desk, part_file):
     FreeCAD.closeDocument(first.Document.Name)
     desk.pump(0.2)
     assert desk.form("ToolAxisPlan") is form, "the other document does not matter"
+
+
+def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
+    import FreeCAD
+
+    part, face = wavy
+    document = part.Document
+    holder = document.addObject("App::Part", "Holder")
+    holder.Placement.Base = FreeCAD.Vector(0, 0, 50)
+    box = document.addObject("Part::Cylinder", "Round")
+    holder.addObject(box)
+    link = document.addObject("App::Link", "Again")
+    link.LinkedObject = holder
+    link.Placement.Base = FreeCAD.Vector(60, 0, 0)
+    document.recompute()
+    desk.gui.Selection.clearSelection()
+    for thing, name in ((holder, "Round.Face1"), (link, "Round.Face1"), (part, face)):
+        desk.gui.Selection.addSelection(document.Name, thing.Name, name)
+    desk.gui.runCommand("ToolAxis_PlanOrientations")
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens", 20)
+    form = desk.form("ToolAxisPlan")
+    texts = {form.faces.item(k).text() for k in range(form.faces.count())}
+    assert texts == {f"{box.Label}: Face1", f"{link.Label}: Round.Face1", f"{part.Label}: {face}"}, texts
+    assert form.compute.isEnabled(), form.message.text()
+
+
+def test_tools_of_a_cam_job_are_offered_and_other_bodies_can_be_avoided(desk, wavy):
+    import FreeCAD
+
+    part, face = wavy
+    document = part.Document
+    clamp = document.addObject("Part::Box", "Clamp")
+    clamp.Placement.Base = FreeCAD.Vector(40, 0, 0)
+    document.recompute()
+    cam = pytest.importorskip("Path.Main.Job")
+    cam.Create("Job", [part], None)
+    document.recompute()
+    form = desk.start(part, face)
+    names = [form.tool.itemText(k) for k in range(form.tool.count())]
+    assert len(names) > 1, names
+    form.tabs.setCurrentWidget(form.toolTab)
+    form.tool.setCurrentIndex(1)
+    form.tool.activated.emit(1)
+    desk.shot("22-cam-tool")
+    controller = next(thing for thing in document.Objects if thing.Label == names[1])
+    assert form.diameter.property("rawValue") == pytest.approx(float(controller.Tool.Diameter))
+    bodies = [form.avoid.item(k).text() for k in range(form.avoid.count())]
+    assert bodies == ["Clamp"]

@@ -1,4 +1,4 @@
-"""The panel of an operation in the document: a double click opens it; it moves the tool and leads on to planning again."""
+"""The panel of an operation in the document: a double click opens it; it moves the tool and leads to planning again."""
 
 import pytest
 

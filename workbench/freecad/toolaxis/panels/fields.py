@@ -38,7 +38,7 @@ def length_text(value):
 
 
 def fine_text(value):
-    """A length that may be thousandths of a millimetre: in FreeCAD's unit, with three digits that count.
+    """A length that may be thousandths of a millimetre: in FreeCAD's unit, with four digits that count.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def fine_text(value):
     """
     _, factor, unit = Units.Quantity(float(value), Units.Length).getUserPreferred()
     number = float(value) / factor
-    digits = 2 if number == 0 else min(max(2 - floor(log10(abs(number))), 0), 6)
+    digits = 2 if number == 0 else min(max(3 - floor(log10(abs(number))), 0), 7)
     return f"{number:.{digits}f}" + ("" if unit == '"' else " ") + unit
 
 

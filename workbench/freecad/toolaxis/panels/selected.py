@@ -100,7 +100,9 @@ def tools_in(document):
 
 def _is_body(thing):
     shape = getattr(thing, "Shape", None)
-    if shape is None or thing.TypeId.startswith(("Path::", "Sketcher::", "PartDesign::Feature", "App::Origin")):
+    if shape is None or not (thing.isDerivedFrom("Part::Feature") or thing.isDerivedFrom("App::Link")):
+        return False
+    if thing.isDerivedFrom("PartDesign::Feature") or thing.isDerivedFrom("Part::Part2DObject"):
         return False
     if "ToolBit" in type(getattr(thing, "Proxy", None)).__name__:
         return False
