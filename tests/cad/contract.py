@@ -135,8 +135,9 @@ def check_inside(shape, record, everything):
 
 def check_volume(shape, record, everything):
     """Sense, trims and surfaces of all faces of a solid at once: the divergence theorem."""
-    if len(record.faces) > 100 and not everything:
-        pytest.skip("more than 100 faces: run with --long")
+    poles = sum(face.control.shape[0] * face.control.shape[1] for face in record.faces)
+    if (len(record.faces) > 100 or poles > 10000) and not everything:
+        pytest.skip("more than 100 faces or 10000 control points: run with --long")
     if shape.volume is None:
         pytest.skip("the part has no solid")
     if any("left out" in text for text in record.warnings):

@@ -6,6 +6,7 @@ without a window.  Without the first, a FreeCAD that is installed is looked for;
 skipped, and the reason is printed.
 """
 
+import atexit
 import importlib.util
 import json
 import os
@@ -24,7 +25,7 @@ MARK = "TOOLAXIS-INNER "
 TIME_LIMIT, LONG_TIME_LIMIT = 600.0, 3600.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
-READY = set()
+READY = {}
 
 if INSIDE:
     import FreeCAD  # noqa: F401  before any test's `import Part`, which crashes alone
@@ -87,9 +88,10 @@ class InnerRun(pytest.Item):
     def runtest(self):
         long = self.config.getoption("--long")
         arguments = ["-p", "no:cacheprovider", *(["--long"] if long else []), self.path.relative_to(ROOT).as_posix()]
-        command = command_for(self.variable, arguments, window="gui" in self.path.parts)
-        prepare(self.path, long)
-        judge(*ended(command, LONG_TIME_LIMIT if long else TIME_LIMIT))
+        prefix, rest = command_for(self.variable, arguments, window="gui" in self.path.parts)
+        folder = prepare(self.path, long)
+        known = ["TOOLAXIS_INNER=1", *([f"TOOLAXIS_PREPARED={folder}"] if folder else [])]
+        judge(*ended([*prefix, "env", *known, *rest], LONG_TIME_LIMIT if long else TIME_LIMIT))
 
     def repr_failure(self, excinfo):
         told = isinstance(excinfo.value, InnerFailure)
@@ -99,31 +101,31 @@ class InnerRun(pytest.Item):
         return self.path, None, f"{self.path.name} {self.name}"
 
 
-def prepared_folder(path):
-    """Where the things that a file of tests needs from outside FreeCAD are."""
-    return ROOT / "out" / "freecad" / path.stem.removeprefix("test_")
-
-
 def prepare(path, long):
-    """Run the script beside a file of tests that makes what they need from outside FreeCAD."""
+    """Run the script beside a file of tests that makes what they need from outside FreeCAD; returns its folder."""
     script = path.with_name(f"prepare_{path.stem.removeprefix('test_')}.py")
-    folder = prepared_folder(path)
-    if path in READY or not script.exists():
-        return
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    output, ending = ended([sys.executable, str(script), str(folder), *(["--long"] if long else [])], LONG_TIME_LIMIT)
-    if ending != "ended with 0":
-        raise InnerFailure(f"{script.name} {ending}; its last lines:\n{_tail(output)}")
-    READY.add(path)
+    if not script.exists() or importlib.util.find_spec("OCP") is None:
+        return None
+    if path not in READY:
+        folder = ROOT / "out" / "freecad" / f"{path.stem.removeprefix('test_')}-{os.getpid()}"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        arguments = [str(script), str(folder), *(["--long"] if long else [])]
+        output, ending = ended([sys.executable, *arguments], LONG_TIME_LIMIT)
+        if ending != "ended with 0":
+            raise InnerFailure(f"{script.name} {ending}; its last lines:\n{_tail(output)}")
+        READY[path] = folder.relative_to(ROOT).as_posix()
+    return READY[path]
 
 
 @pytest.fixture(scope="module")
 def prepared(request):
     """The folder that the script beside these tests filled outside FreeCAD."""
-    folder = prepared_folder(request.path)
+    name = request.path.stem.removeprefix("test_")
+    folder = ROOT / os.environ.get("TOOLAXIS_PREPARED", f"out/freecad/{name}")
     if not folder.is_dir():
-        pytest.skip(f"{folder.relative_to(ROOT)} is missing: run the tests from outside FreeCAD first")
+        pytest.skip(f"outside FreeCAD: python tests/workbench/prepare_{name}.py out/freecad/{name}")
     return folder
 
 
@@ -158,10 +160,10 @@ def document():
 
 
 def command_for(variable, arguments, window):
-    """The whole command that runs pytest with some arguments in FreeCAD; skips where there is no FreeCAD."""
+    """The command that runs pytest in FreeCAD, before and after its environment; skips where there is no FreeCAD."""
     prefix = shlex.split(os.environ.get(variable, ""))
     if prefix:
-        return [*prefix, "env", "TOOLAXIS_INNER=1", "python3", "-m", "pytest", *arguments]
+        return prefix, ["python3", "-m", "pytest", *arguments]
     found = next(filter(None, map(shutil.which, INSTALLED[window])), None)
     reason = os.environ.get("TOOLAXIS_FREECAD_MISSING", "none is installed")
     if found is None:
@@ -169,7 +171,7 @@ def command_for(variable, arguments, window):
     if window and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         pytest.skip("no display for FreeCAD's window: run under Xvfb")
     start = ROOT / "tests" / "workbench" / "start.py"
-    return ["env", "TOOLAXIS_INNER=1", f"TOOLAXIS_ARGUMENTS={json.dumps(arguments)}", found, str(start)]
+    return [], [f"TOOLAXIS_ARGUMENTS={json.dumps(arguments)}", found, str(start)]
 
 
 def ended(command, limit):

@@ -87,4 +87,6 @@ def write(folder):
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ROOT / "core"))
-    write(Path(sys.argv[1]))
+    target = Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
+    write(target)

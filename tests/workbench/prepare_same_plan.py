@@ -57,5 +57,6 @@ def write_figures(folder, jobs):
 if __name__ == "__main__":
     sys.path.insert(0, str(ROOT / "core"))
     target, long = Path(sys.argv[1]), "--long" in sys.argv
+    target.mkdir(parents=True, exist_ok=True)
     write_figures(target, FIGURES | (LONG_FIGURES if long else {}))
     write_plans(target, PLANS | (LONG_PLANS if long else {}))

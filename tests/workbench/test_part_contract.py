@@ -1,6 +1,7 @@
 """The contract of the adapters for FreeCAD: the kernel's own answers, and the same parts as through Open CASCADE."""
 
 import hashlib
+import os
 import pickle
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from toolaxis.cad.loading import load
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "out" / "freecad" / "part_contract"
+FOLDER = ROOT / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/part_contract")
 NAMES = sorted(path.stem for path in FOLDER.glob("*.pickle"))
 PARTS = [name for name in NAMES if (FOLDER / f"{name}.step").exists()]
 EVERYTHING = pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])

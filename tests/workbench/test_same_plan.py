@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import os
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from toolaxis.orient.indexed import evaluate_axis
 from toolaxis.plan.document import tool_from
 from toolaxis.shape.kinks import split_at_kinks
 
-FOLDER = Path(__file__).resolve().parents[2] / "out" / "freecad" / "same_plan"
+FOLDER = Path(__file__).resolve().parents[2] / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/same_plan")
 NAMES = sorted(path.parent.name for path in FOLDER.glob("*/plan.json"))
 WRITTEN = json.loads((FOLDER / "figures.json").read_text()) if (FOLDER / "figures.json").exists() else {}
 FIGURES = ("count", "length", "average_strip_width", "gouge", "unreached")
