@@ -88,8 +88,9 @@ def _run(arguments: list[str], file: Path, limit: float) -> "subprocess.Complete
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "TOOLAXIS_NUMBA": "0"}
     command = [sys.executable, *COMMAND, *arguments]
     try:
+        # In a session of its own: Ctrl-C in a terminal goes to every process of the group, and would look like a crash.
         return subprocess.run(command, env=environment, capture_output=True, timeout=limit, check=False,
-                              stdin=subprocess.DEVNULL)
+                              stdin=subprocess.DEVNULL, start_new_session=True)
     except subprocess.TimeoutExpired as reason:
         raise InvalidInput(f"{file} kept the CAD kernel busy for more than {limit:.0f} s: repair the geometry, or "
                            "raise time_limit") from reason
