@@ -167,17 +167,18 @@ class _Rows(NamedTuple):
 def _spacing(chart: Chart, cut: Cut, found: _Rows) -> Array:
     """Distance of two passes that just fit, half of it before and half of it behind each step, (n,).
 
-    It is the upper half width of the one and the lower half width of the other, at the narrowest place; near the
-    borders of two that still lie within.
+    It differs from the least width as, at the narrowest place, the upper half width of the one and the lower half
+    width of the other do from both half widths of a pass between them; near the borders two are taken that still lie
+    within.
     """
     _, _, s0, s1 = chart.bounds
     width = np.where(found.width > 0, found.width, s1 - s0)
     low = np.clip(found.step - width / 2, s0, np.maximum(s1 - width, s0))
     high = np.minimum(low + width, s1)
-    halves = chart.half_widths(cut, np.tile(found.place, 2), np.append(low, high))
-    apart = halves[: len(low), 1] + halves[len(low) :, 0]
-    sound = (apart > found.width / 2) & (apart < 2 * found.width)
-    return np.asarray(np.where(sound, apart, found.width))
+    halves = chart.half_widths(cut, np.tile(found.place, 3), np.concatenate([low, (low + high) / 2, high]))
+    before, between, behind = np.where((halves > 0) & (halves < np.inf), halves, np.nan).reshape(3, -1, 2)
+    change = before[:, 1] + behind[:, 0] - between.sum(axis=1)
+    return np.asarray(found.width + np.where(np.abs(change) < found.width / 2, change, 0.0))
 
 
 def _outermost(chart: Chart, cut: Cut, beyond: "_Beyond") -> _Rows:
