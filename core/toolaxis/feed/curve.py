@@ -1,0 +1,242 @@
+"""Time along a curved path with every axis inside velocity, acceleration and jerk.
+
+The square b of the path speed is sought at stations along the path, greatest where the axes allow it: see
+`barrier`.  The speeds are then turned into pieces of constant path jerk, and the whole is slowed down by the small
+factor by which the sampled axes still exceed their limits: what is returned keeps them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import BSpline, make_interp_spline
+
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.barrier import SpeedProblem, greatest_speeds
+from toolaxis.feed.constraints import AxisBounds
+from toolaxis.feed.profile import profile
+from toolaxis.numeric.vectors import as_rows
+
+Array = NDArray[np.float64]
+
+#: Stations at either end that belong to the constant jerk from rest.
+_END = 10
+
+#: Times in each piece at which the axes are compared with their limits.
+_SAMPLES = 5
+
+#: Share of the limits that the speeds are planned with; the rest is for what happens between stations.
+_PLANNED = 0.999
+
+#: Stretch above which a plan is made again with three times the stations, and the most there are at first.
+_REFINE, _MOST = 1.005, 50_000
+
+
+@dataclass(frozen=True, eq=False)
+class CurveSchedule:
+    """Motion along a curve in pieces of constant path jerk.
+
+    Attributes
+    ----------
+    curve : BSpline
+        Axis positions over the path parameter, mm or rad.
+    times : (k + 1,) array
+        Where the pieces begin and end, s.
+    states : (k + 1, 3) array
+        Path parameter, its velocity and its acceleration there.
+    stretch : float
+        By what factor the sampled limits asked to slow the plan down.
+    """
+
+    curve: BSpline
+    times: Array
+    states: Array
+    stretch: float
+
+    @property
+    def duration(self) -> float:
+        """s."""
+        return float(self.times[-1])
+
+    def path_at(self, times: ArrayLike) -> Array:
+        """Path parameter and its first three derivatives in time, (n, 4).
+
+        Parameters
+        ----------
+        times : (n,) array_like
+            s.
+        """
+        t = np.atleast_1d(np.asarray(times, dtype=float))
+        i = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
+        gone = t - self.times[i]
+        s, v, a = self.states[i].T
+        jerk = np.diff(self.states[:, 2])[i] / np.diff(self.times)[i]
+        return np.stack([s + gone * (v + gone * (a / 2 + gone * jerk / 6)), v + gone * (a + gone * jerk / 2),
+                         a + gone * jerk, jerk], axis=1)
+
+    def at(self, times: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """Positions, velocities, accelerations and jerks of the axes, (n, m) each.
+
+        Parameters
+        ----------
+        times : (n,) array_like
+            s.
+        """
+        s, v, a, j = self.path_at(times).T[:, :, None]
+        q = [self.curve(s[:, 0], order) for order in range(4)]
+        return (q[0], q[1] * v, q[1] * a + q[2] * v**2, q[1] * j + 3 * q[2] * v * a + q[3] * v**3)
+
+
+def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds,
+                   stations: int | None = None) -> CurveSchedule:
+    """The fastest motion from rest to rest along a smooth curve through axis positions.
+
+    Parameters
+    ----------
+    points : (n, m) array_like
+        Axis positions, mm or rad, n of at least 6, on a curve without corners.
+    tips : (n, 3) array_like
+        Tool tips there, mm.
+    feed : float
+        Programmed velocity of the tip, mm/s; infinite for as fast as the axes go.
+    bounds : AxisBounds
+    stations : int, optional
+        How many places along the path are optimised; from the number of points, and more where the path needs it,
+        unless given.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, points coincide, or the feed is not above zero.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eq. (9), with 3 s' s'' f_s + s'^3 f_ss in its third line.
+    Property: no axis exceeds its velocity, acceleration or jerk by more than a millionth at the sampled times.
+    """
+    joints, rows = as_rows(points, len(bounds.velocity), "joint coordinates"), as_rows(tips, 3, "tips")
+    if len(joints) != len(rows) or len(rows) < 6:
+        raise InvalidInput(f"{len(joints)} joint positions for {len(rows)} tips: six or more of each are needed")
+    if not feed > 0:
+        raise InvalidInput(f"feed is {feed} mm/s: it must be above zero")
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    if not (steps > 0).all():
+        raise InvalidInput(f"points {int(np.argmin(steps))} and the next coincide: leave one out")
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    curve, tip = make_interp_spline(along, joints, 5), make_interp_spline(along, rows, 5)
+    limits = _limits_along(curve, tip, float(along[-1]), feed, bounds)
+    count = stations or _enough(float(along[-1]), limits, len(rows))
+    plans: list[CurveSchedule] = []
+    while not plans or (stations is None and plans[-1].stretch > _REFINE and count < _MOST and len(plans) < 3):
+        s = _stations(float(along[-1]), count)
+        problem = _problem(s, curve, tip, feed, bounds)
+        b = greatest_speeds(problem, _slow(problem.stations, float(along[-1]), limits))
+        plans.append(_within(_pieces(problem.stations, b, float(along[-1])), curve, tip, feed, bounds))
+        count *= 3
+    return min(plans, key=lambda plan: plan.duration)
+
+
+def _limits_along(curve: BSpline, tip: BSpline, length: float, feed: float, bounds: AxisBounds) -> Array:
+    """Path velocity, acceleration and jerk that no axis minds anywhere, (3,)."""
+    probe = np.linspace(0.0, length, 400)
+    q = [np.abs(curve(probe, order)).max(axis=0) + 1e-12 for order in (1, 2, 3)]
+    pace = float(np.linalg.norm(tip(probe, 1), axis=1).max())
+    a, j = 0.25 * float((bounds.acceleration / q[0]).min()), 0.25 * float((bounds.jerk / q[0]).min())
+    fast = [0.7 * feed / pace, 0.7 * float((bounds.velocity / q[0]).min()),
+            0.5 * float(np.sqrt((bounds.acceleration / q[1]).min())), 0.5 * float(np.cbrt((bounds.jerk / q[2]).min())),
+            0.25 * float((bounds.jerk / (3 * q[1])).min()) / a]
+    return np.array([min(fast), a, j])
+
+
+def _stations(length: float, count: int) -> Array:
+    """Stations: steps grow with the 2/3 power of the distance to an end, as under constant jerk, then are even."""
+    ramp = length / 8
+    half = 2 * ramp + length / 2
+    u = np.linspace(0.0, 2 * half, count)
+    near = np.minimum(u, 2 * half - u)
+    way = np.where(near < 3 * ramp, near**3 / (27 * ramp**2), near - 2 * ramp)
+    return np.asarray(np.where(u <= half, way, length - way))
+
+
+def _enough(length: float, limits: Array, points: int) -> int:
+    """Stations enough for those at the ends to lie well inside the first jerk."""
+    v, a, j = limits * np.array([1 / 0.7, 4.0, 4.0])
+    first = j / 6 * min(np.sqrt(v / j), a / j) ** 3
+    return int(np.clip(max(2 * points, 2 * _END * np.cbrt(length / (0.2 * first))), 400, 200_000))
+
+
+def _problem(s: Array, curve: BSpline, tip: BSpline, feed: float, bounds: AxisBounds) -> SpeedProblem:
+    """The linear forms at the stations, those at the ends folded into the first and the last unknown."""
+    limits = [_PLANNED * limit[:, None] for limit in (bounds.acceleration, bounds.jerk)]
+    length, inner = s[-1], s[_END:-_END]
+    middle, step = (inner[1:] + inner[:-1]) / 2, np.diff(inner)[:, None]
+    q1, q2 = curve(middle, 1), curve(middle, 2)
+    acceleration = np.stack([-q1 / (2 * step) + q2 / 2, q1 / (2 * step) + q2 / 2], axis=-1) / limits[0]
+    wide = s[_END - 1:len(s) - _END + 1]
+    left, right = np.diff(wide)[:-1, None], np.diff(wide)[1:, None]
+    n1, n2, n3 = (curve(inner, order) for order in (1, 2, 3))
+    low, high, curl = 1 / (2 * left), 1 / (2 * right), 2 / (left + right)
+    jerk = np.stack([low * (n1 * curl - 1.5 * n2), n3 - (low + high) * n1 * curl + 1.5 * n2 * (low - high),
+                     high * (n1 * curl + 1.5 * n2)], axis=-1) / limits[1]
+    jerk[0, :, 1] += jerk[0, :, 0] * (wide[0] / wide[1]) ** (4 / 3)
+    jerk[-1, :, 1] += jerk[-1, :, 2] * ((length - wide[-1]) / (length - wide[-2])) ** (4 / 3)
+    jerk[0, :, 0] = jerk[-1, :, 2] = 0.0
+    with np.errstate(divide="ignore"):
+        most = (_PLANNED * np.minimum((bounds.velocity / np.abs(n1)).min(axis=1),
+                                      feed / np.linalg.norm(tip(inner, 1), axis=1))) ** 2
+    for end, zone, way in ((0, s[:_END + 1], inner[0]), (-1, s[-_END - 1:], length - inner[-1])):
+        start = _PLANNED * float((bounds.jerk / np.maximum(np.abs(curve(zone, 1)), 1e-12)).min())
+        most[end] = min(most[end], start ** (2 / 3) * (6 * way) ** (4 / 3) / 4)
+    return SpeedProblem(inner, most, acceleration, jerk)
+
+
+def _slow(inner: Array, length: float, limits: Array) -> Array:
+    """Squared speeds at stations of a slow motion of seven segments."""
+    motion = profile(length, *limits)
+    grid = np.linspace(0, motion.duration, 2000)
+    times = np.interp(inner, motion.at(grid)[:, 0], grid)
+    for _ in range(8):
+        state = motion.at(times)
+        times = np.clip(times - (state[:, 0] - inner) / np.maximum(state[:, 1], 1e-9), 0, motion.duration)
+    return np.asarray(np.maximum(motion.at(times)[:, 1], 1e-9) ** 2)
+
+
+def _pieces(inner: Array, b: Array, length: float) -> tuple[Array, Array]:
+    """Times and states of pieces of constant path jerk through the speeds, from rest to rest at the length."""
+    v, step = np.sqrt(b), np.diff(inner)
+    first, last = 3 * inner[0] / v[0], 3 * (length - inner[-1]) / v[-1]
+    spans = 2 * step / (v[1:] + v[:-1])
+    nodes = first + np.concatenate([[0.0], np.cumsum(spans)])
+    times = np.concatenate([[0.0], nodes[:-1] + spans / 2, [nodes[-1] + last]])
+    a = np.concatenate([[0.0], np.diff(b) / (2 * step), [0.0]])
+    x = times / times[-1]
+    shapes = [x * (1 - x), x * (1 - x) * (1 - 2 * x)]
+    ends = np.array([_integrated(times, shape)[-1, :2] for shape in shapes]).T
+    missing = np.array([length, 0.0]) - _integrated(times, a)[-1, :2]
+    a = a + np.linalg.solve(ends, missing) @ np.array(shapes)
+    return times, _integrated(times, a)
+
+
+def _integrated(times: Array, a: Array) -> Array:
+    """Way, velocity and acceleration from rest for accelerations that are linear between times, (k, 3)."""
+    t, jerk = np.diff(times), np.diff(a) / np.diff(times)
+    v = np.concatenate([[0.0], np.cumsum(t * (a[:-1] + a[1:]) / 2)])
+    s = np.concatenate([[0.0], np.cumsum(t * (v[:-1] + t * (a[:-1] / 2 + t * jerk / 6)))])
+    return np.stack([s, v, a], axis=1)
+
+
+def _within(pieces: tuple[Array, Array], curve: BSpline, tip: BSpline, feed: float,
+            bounds: AxisBounds) -> CurveSchedule:
+    """The pieces slowed down by the least factor that keeps the sampled axes within their limits."""
+    times, states = pieces
+    plan = CurveSchedule(curve, times, states, 1.0)
+    shares = np.linspace(0, 1, _SAMPLES, endpoint=False) + 0.5 / _SAMPLES
+    sampled = np.concatenate([(times[:-1, None] + np.diff(times)[:, None] * shares).reshape(-1), times[:-1], times[1:]])
+    sampled = np.concatenate([sampled, times[1:] - 1e-9 * np.diff(times)])
+    _, v, a, j = plan.at(sampled)
+    path = plan.path_at(sampled)
+    pace = np.linalg.norm(tip(path[:, 0], 1), axis=1) * path[:, 1] / feed
+    over = [float((np.abs(size) / limit).max()) for size, limit in
+            ((v, bounds.velocity), (a, bounds.acceleration), (j, bounds.jerk))]
+    stretch = max(1.0, float(pace.max()), over[0], over[1] ** (1 / 2), over[2] ** (1 / 3))
+    return CurveSchedule(curve, times * stretch, states / stretch ** np.arange(3), stretch)
