@@ -43,6 +43,9 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
                         orientations=spec.orientations,
                         progress=progress)
+            if made.outcome == "cancelled" and not made.operations:
+                say("toolaxis: no face was finished: nothing is written")
+                raise Cancelled("cancelled by the user")
             write_plan(made, stage.folder)
             if not given.no_pictures and made.outcome != "cancelled":
                 _draw(made, stage.folder, progress)
