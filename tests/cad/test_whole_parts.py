@@ -12,12 +12,15 @@ import pytest
 from toolaxis.cad import load
 from toolaxis.cad.transfer import read_shape
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.tools.assembly import Tool
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"
-MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bosses": "bosses"}
+MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bosses": "bosses",
+        "11_blisk": "blisk", "12_impeller": "impeller"}
 PATCHES = ("waves", "outline", "boss", "bosses")
+ROTORS = ("blisk", "impeller")
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +35,11 @@ def parts(shapes):
 
 def facts(name):
     return json.loads((EXAMPLES / f"{name}.json").read_text())
+
+
+def data(path):
+    """A STEP file after its header and its product's name, which counts the files of a process."""
+    return path.read_text().partition("ADVANCED_BREP_SHAPE_REPRESENTATION")[2]
 
 
 def main_face(part):
@@ -53,6 +61,8 @@ def test_a_script_makes_what_is_committed(script, parts, tmp_path, monkeypatch):
     monkeypatch.setattr(block, "HERE", tmp_path)
     runpy.run_path(str(EXAMPLES / f"{script}.py"), run_name="__main__")
     assert (tmp_path / f"{name}.json").read_text() == (EXAMPLES / f"{name}.json").read_text()
+    if data(tmp_path / f"{name}.step") == data(EXAMPLES / f"{name}.step"):
+        return
     again, committed = load(read_shape(str(tmp_path / f"{name}.step"))[0]), parts[name]
     assert len(again.faces) == len(committed.faces)
     for one, other in zip(again.faces, committed.faces, strict=True):
@@ -127,3 +137,88 @@ def test_the_fillet_at_the_drafted_boss_has_its_radius(parts):
     assert 1 / k.min() == pytest.approx(4, abs=0.03)
     assert 1 / k.max() == pytest.approx(4, abs=0.03)
     assert part.face(fillet).kinks == ((), ())
+
+
+def around_blade(part, number):
+    """Side, edge, side and edge of one blade: what borders a tip."""
+    return sorted(part.neighbours(number))
+
+
+def tips(part):
+    """Faces that border four faces, all over convex edges, and have no hole."""
+    return [face.number for face in part.faces
+            if len(face.trims) < 2 and len(part.neighbours(face.number, "convex")) == 4
+            and len(part.neighbours(face.number)) == 4]
+
+
+def turned(points, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
+
+
+@pytest.mark.parametrize("name", ROTORS)
+def test_every_blade_has_four_smooth_faces_and_four_fillets_under_a_tip(name, parts):
+    part, blades = parts[name], facts(name)["blades"]
+    found = tips(part)
+    assert len(found) == blades
+    sides = [number for tip in found for number in around_blade(part, tip)]
+    assert len(set(sides)) == len(sides) == 4 * blades
+    for number in sides:
+        smooth = part.neighbours(number, "tangent")
+        assert len(smooth) == 3
+        (fillet,) = set(smooth) - set(sides)
+        assert len(part.neighbours(fillet, "tangent")) == 4
+        assert not part.neighbours(fillet, "convex") and not part.neighbours(fillet, "concave")
+
+
+@pytest.mark.parametrize("name", ROTORS)
+def test_a_turn_by_one_blade_brings_every_face_onto_a_face(name, parts):
+    part, blades = parts[name], facts(name)["blades"]
+    nets = [face.surface.control[..., :3] for face in part.faces if face.kind == "bspline"]
+    assert len(nets) == 8 * blades
+    middles = np.array([net.mean(axis=(0, 1)) for net in nets])
+    for net in nets[:8] + nets[-8:]:
+        wanted = turned(net, 2 * np.pi / blades)
+        k = int(np.linalg.norm(middles - wanted.mean(axis=(0, 1)), axis=1).argmin())
+        assert np.abs(nets[k] - wanted).max() < 1e-6
+
+
+@pytest.mark.parametrize("name, radius", [("blisk", 3.5), ("impeller", 2.0)])
+def test_the_fillets_are_a_ball_of_one_radius(name, radius, parts):
+    part = parts[name]
+    for side in around_blade(part, tips(part)[0]):
+        (fillet,) = [n for n in part.neighbours(side, "tangent") if n not in around_blade(part, tips(part)[0])]
+        face = part.face(fillet)
+        k = face.curvature(face.grid(40, 12))
+        assert 1 / k.k1 == pytest.approx(radius, rel=0.03)
+        assert (k.k2 < 0.05).all()
+
+
+def test_the_least_gap_of_the_blisk(parts):
+    """Distances between the faces of neighbouring blades from points of one to the other's surfaces."""
+    part = parts["blisk"]
+    first, *others = tips(part)
+    middle = {tip: part.face(tip).evaluate(part.face(tip).grid(3, 3)).point.mean(axis=0) for tip in tips(part)}
+    second = min(others, key=lambda tip: np.linalg.norm(middle[tip] - middle[first]))
+    gap = np.inf
+    for one in around_blade(part, first):
+        face = part.face(one)
+        u0, u1, v0, v1 = face.bounds
+        uv = np.stack(np.meshgrid(np.linspace(u0, u1, 61), np.linspace(v0, v1, 25), indexing="ij"), -1).reshape(-1, 2)
+        points = face.evaluate(uv).point
+        for other in around_blade(part, second):
+            gap = min(gap, float(nearest(part.face(other), points).distance.min()))
+    assert gap == pytest.approx(facts("blisk")["least_gap"], abs=0.01)
+
+
+def test_the_volume_of_the_blisk_is_that_of_disc_and_blades(shapes):
+    """A cone's frustum with a bore, and sixteen blades by their thickness; fillets are some percent of the blades."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    size = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shapes["blisk"], size)
+    disc = np.pi * 50 * (52.007**2 + (25 * np.tan(np.radians(6))) ** 2 / 3 - 25**2)
+    mean_thickness = (5.0 + 2.8) / 2 * (0.32 + 0.68 * 2 / 3)
+    blades = 16 * mean_thickness * 38.5 * (102 - 52)
+    assert size.Mass() == pytest.approx(disc + blades, rel=0.02)
