@@ -89,6 +89,23 @@ def test_moving_the_part_changes_nothing() -> None:
     assert there == pytest.approx(here, rel=1e-9)
 
 
+def test_smooth_passes_are_followed_faster_than_their_chords() -> None:
+    """A curved zigzag of many points: as curves its cuts take less, its links and straight cuts the same."""
+    x = np.linspace(-40, 40, 120)
+    tips, kinds = [], []
+    for k in range(3):
+        way = x[:: 1 if k % 2 == 0 else -1]
+        tips.append(np.stack([way, np.full_like(x, 4.0 * k), 15 * np.cos(way / 20)], axis=1))
+        kinds += [Motion.LINK, *[Motion.CUT] * (len(x) - 1)]
+    path = _path(np.concatenate(tips), kinds)
+    chords, curves = (machining_time(MIKRON, path, Feeds(80.0, smooth=smooth)) for smooth in (False, True))
+    length = path.length(Motion.CUT)
+    assert length / 80 < curves.cut < 0.7 * chords.cut and 0 < curves.link < 1.5
+    straight = _path(*_rules(4))
+    times = [machining_time(MIKRON, straight, Feeds(50.0, tolerance=0.0, smooth=way)).total for way in (False, True)]
+    assert times[1] == pytest.approx(times[0], rel=1e-9)
+
+
 def test_index_moves() -> None:
     """416 moves of about 0.094 deg at 0.119 s are what separates the paper's per-path strategy from one orientation."""
     assert index_time(MIKRON, (0, 0), (0, np.radians(0.094))) == pytest.approx(0.119, abs=5e-4)

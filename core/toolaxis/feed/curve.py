@@ -128,7 +128,7 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
     count = stations or _enough(float(along[-1]), limits, len(rows))
     plans: list[CurveSchedule] = []
     while not plans or (stations is None and plans[-1].stretch > _REFINE and count < _MOST and len(plans) < 3):
-        s = _stations(float(along[-1]), count)
+        s = _stations(float(along[-1]), count, limits)
         problem = _problem(s, curve, tip, feed, bounds)
         b = greatest_speeds(problem, _slow(problem.stations, float(along[-1]), limits))
         plans.append(_within(_pieces(problem.stations, b, float(along[-1])), curve, tip, feed, bounds))
@@ -148,21 +148,32 @@ def _limits_along(curve: BSpline, tip: BSpline, length: float, feed: float, boun
     return np.array([min(fast), a, j])
 
 
-def _stations(length: float, count: int) -> Array:
-    """Stations: steps grow with the 2/3 power of the distance to an end, as under constant jerk, then are even."""
-    ramp = length / 8
-    half = 2 * ramp + length / 2
-    u = np.linspace(0.0, 2 * half, count)
-    near = np.minimum(u, 2 * half - u)
-    way = np.where(near < 3 * ramp, near**3 / (27 * ramp**2), near - 2 * ramp)
-    return np.asarray(np.where(u <= half, way, length - way))
+def _first(limits: Array) -> float:
+    """Way under the first jerk from rest where all axes go along, mm."""
+    v, a, j = limits * np.array([1 / 0.7, 4.0, 4.0])
+    return float(j / 6 * min(np.sqrt(v / j), a / j) ** 3)
 
 
 def _enough(length: float, limits: Array, points: int) -> int:
     """Stations enough for those at the ends to lie well inside the first jerk."""
-    v, a, j = limits * np.array([1 / 0.7, 4.0, 4.0])
-    first = j / 6 * min(np.sqrt(v / j), a / j) ** 3
-    return int(np.clip(max(2 * points, 2 * _END * np.cbrt(length / (0.2 * first))), 400, 200_000))
+    return int(np.clip(max(points, 2 * _END * np.cbrt(length / (0.2 * _first(limits)))), 400, 200_000))
+
+
+def _stations(length: float, count: int, limits: Array) -> Array:
+    """Stations: steps grow with the 2/3 power of the distance to an end, as under constant jerk, then are even.
+
+    They grow over as much of the path as it takes to put the first of them well inside the first jerk, up to an eighth.
+    """
+    low, high = 0.0, length / 8
+    for _ in range(60):
+        ramp = (low + high) / 2
+        ends = (_END * (4 * ramp + length) / count) ** 3 / (27 * ramp * ramp)
+        low, high = (low, ramp) if ends < 0.1 * _first(limits) else (ramp, high)
+    half = 2 * high + length / 2
+    u = np.linspace(0.0, 2 * half, count)
+    near = np.minimum(u, 2 * half - u)
+    way = np.where(near < 3 * high, near**3 / (27 * high**2), near - 2 * high)
+    return np.asarray(np.where(u <= half, way, length - way))
 
 
 def _problem(s: Array, curve: BSpline, tip: BSpline, feed: float, bounds: AxisBounds) -> SpeedProblem:

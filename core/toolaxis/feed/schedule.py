@@ -1,6 +1,7 @@
 """Machining time of tool paths with a fixed tool axis, links and index moves included."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, isfinite, isnan
 
 import numpy as np
@@ -9,19 +10,26 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.constraints import linear_bounds
+from toolaxis.feed.curve import schedule_curve
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
 from toolaxis.feed.profile import travel_time
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
-from toolaxis.numeric.vectors import angle_between
+from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]
 
 #: How far the axes of a path may differ and still count as one, rad.
 FIXED = 1e-6
 
+#: Change of direction between neighbouring segments at which a smooth cut ends, rad.
+CORNER = 0.25
+
 #: Steps shorter than this are no motion, mm.
 NO_STEP = 1e-9
+
+#: Points from which on a smooth cut is planned as a curve.
+_CURVE = 6
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,9 @@ class Feeds:
         Greatest velocity of links, mm/s; as fast as the axes go unless given.
     tolerance : float
         How far the controller may cut a corner, mm; 0 for exact stops.
+    smooth : bool
+        Whether the controller follows cuts as smooth curves through their points, as one with splines or a compressor
+        does; they then start and end at rest, and so does every piece between corners of more than `CORNER`.
 
     Raises
     ------
@@ -49,6 +60,7 @@ class Feeds:
     approach: float | None = None
     rapid: float = inf
     tolerance: float = 0.01
+    smooth: bool = False
 
     def __post_init__(self) -> None:
         for name, value in (("cut", self.cut), ("approach", self.approach), ("rapid", self.rapid)):
@@ -112,6 +124,13 @@ def path_schedule(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayL
     UnsupportedGeometry
         When the axis varies.
     """
+    joints, tips, kinds = _moves(machine, path, rotary, table_from_part)
+    return schedule_polyline(joints, tips, feeds.of(kinds), linear_bounds(machine), feeds.tolerance), kinds
+
+
+def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None,
+           table_from_part: ArrayLike | None) -> tuple[Array, Array, NDArray[np.int8]]:
+    """Linear coordinates and tips where the path bends, and the kind of each motion between them."""
     steps = np.linalg.norm(np.diff(path.cl, axis=0), axis=1)
     moving = np.concatenate([[True], steps > NO_STEP])
     tips, kinds = path.cl[moving], path.kind[moving][1:]
@@ -120,8 +139,7 @@ def path_schedule(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayL
     if angle_between(path.axis, path.axis[0]).max() > FIXED:
         raise UnsupportedGeometry("the tool axis varies along the path: only paths with a fixed axis are timed")
     angles = _angles(machine, path.axis[0], table_from_part) if rotary is None else np.asarray(rotary, dtype=float)
-    joints = linear_coordinates(machine, tips, angles, table_from_part=table_from_part)
-    return schedule_polyline(joints, tips, feeds.of(kinds), linear_bounds(machine), feeds.tolerance), kinds
+    return linear_coordinates(machine, tips, angles, table_from_part=table_from_part), tips, kinds
 
 
 def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
@@ -133,10 +151,28 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
     machine, path, feeds, rotary, table_from_part
         As for `path_schedule`.
     """
-    schedule, kinds = path_schedule(machine, path, feeds, rotary, table_from_part)
-    times = schedule.segment_times
-    by_kind = {kind: float(times[kinds == kind].sum()) for kind in Motion}
+    joints, tips, kinds = _moves(machine, path, rotary, table_from_part)
+    bounds, wanted = linear_bounds(machine), feeds.of(kinds)
+    by_kind = dict.fromkeys(Motion, 0.0)
+    for begin, end in _pieces(tips, kinds) if feeds.smooth else [(0, len(kinds))]:
+        here, there = joints[begin:end + 1], tips[begin:end + 1]
+        if feeds.smooth and kinds[begin] == Motion.CUT and len(there) >= _CURVE:
+            by_kind[Motion.CUT] += schedule_curve(here, there, feeds.cut, bounds).duration
+            continue
+        times = schedule_polyline(here, there, wanted[begin:end], bounds, feeds.tolerance).segment_times
+        for kind in Motion:
+            by_kind[kind] += float(times[kinds[begin:end] == kind].sum())
     return MachiningTime(by_kind[Motion.CUT], by_kind[Motion.ENTRY], by_kind[Motion.EXIT], by_kind[Motion.LINK])
+
+
+def _pieces(tips: Array, kinds: NDArray[np.int8]) -> list[tuple[int, int]]:
+    """Ranges of motions: cuts between corners, and what lies between cuts."""
+    ways = unit(np.diff(tips, axis=0))
+    corner = angle_between(ways[1:], ways[:-1]) > CORNER
+    cut = kinds == Motion.CUT
+    ends = np.flatnonzero((cut[1:] != cut[:-1]) | (cut[1:] & cut[:-1] & corner)) + 1
+    edges = [0, *ends.tolist(), len(kinds)]
+    return list(pairwise(edges))
 
 
 def index_time(machine: Machine, start: ArrayLike, end: ArrayLike, by_hand: float | None = None) -> float:
