@@ -9,7 +9,7 @@ from toolaxis.machine.setup import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.report.plots import operation_picture
+from toolaxis.report.plots import operation_picture, widths_picture
 from toolaxis.shape.part import Part
 
 
@@ -30,3 +30,10 @@ def test_no_legend_leaves_the_picture(size, tool):
     for ax in made.axes:
         box = ax.get_legend().get_window_extent()
         assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= made.bbox.width and box.y1 <= made.bbox.height
+
+
+def test_no_picture_makes_matplotlib_grumble(caplog):
+    face = ta.Face.from_bspline([[[x, y, 0] for y in (0, 30)] for x in (0, 90)], degree=(1, 1))
+    lines = [(face.evaluate([[0.1, v], [0.5, v], [0.9, v]]).point, np.array([1.0, 2.0, 1.5])) for v in (0.2, 0.7)]
+    widths_picture(lines, (face, ta.Tool.ball(diameter=8)), "op01").canvas.draw()
+    assert not caplog.records

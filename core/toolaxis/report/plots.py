@@ -337,8 +337,7 @@ def widths_picture(lines: Sequence[tuple[Array, Array]], area: tuple[Face, Tool]
                                                    norm=norm, linewidths=2.2))
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(contact, axis=0), axis=1))])
         graph.plot(along, width, color=BLUE, linewidth=0.6, alpha=0.6)
-    plan.set_xlim(*seen.extent[:2])
-    plan.set_ylim(*seen.extent[2:])
+    plan.autoscale_view()
     if image is not None:
         made.colorbar(image, ax=plan, shrink=0.85, extend="max").set_label("strip width, mm")
     scale_bar(plan, seen)
