@@ -1,6 +1,7 @@
 """`make bench`: run every benchmark of this folder, or those that are named, and print their tables.
 
-Each module has a `main()` that prints.  A module that cannot run says why, and the others go on.
+Each module has a `main()` that prints.  A module that cannot run says why, and the others go on.  With ``--short``
+those that have a `short()` run that instead, on fewer faces.
 """
 
 import importlib
@@ -35,6 +36,8 @@ def _processor() -> str:
 
 def main(chosen: list[str]) -> int:
     """Run the benchmarks and return 1 where one failed."""
+    brief = "--short" in chosen
+    chosen = [name for name in chosen if name != "--short"]
     names = sorted(path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
     unknown = sorted(set(chosen) - set(names))
     if unknown:
@@ -47,7 +50,8 @@ def main(chosen: list[str]) -> int:
         print(f"\n=== {name} ===", flush=True)
         began = time.perf_counter()
         try:
-            importlib.import_module(f"benchmarks.{name}").main()
+            module = importlib.import_module(f"benchmarks.{name}")
+            (getattr(module, "short", module.main) if brief else module.main)()
         except Exception:
             failed.append(name)
             traceback.print_exc()

@@ -99,14 +99,19 @@ def row(name: str, t: np.ndarray, n: np.ndarray) -> str:
             f"{1e3 * guess_s:11.3f}  {made_s / guess_s:5.0f}")
 
 
-def main() -> None:
+def short() -> None:
+    """Print the table of three faces."""
+    main(("freeform", "trimmed", "small seed 1"))
+
+
+def main(faces: tuple[str, ...] = FACES) -> None:
     """Print the table."""
     chosen = sys.argv[1:] if Path(sys.argv[0]).name == Path(__file__).name else []
     print(f"{TOOL.name}, scallop {SCALLOP} mm; errors against passes made, less the unused share of the last, worst %")
     print(f"{'face':22s} axes  made passes    count  estimate  literal | other feed | < 3 deg: axes  count  estimate |"
           "  made s  count ms  estimate ms  ratio")
     every = []
-    for name in chosen or FACES:
+    for name in chosen or faces:
         face = face_named(name)
         ready = Estimator.of(face, TOOL, SCALLOP)
         axes, least = free_axes(face, ready)
