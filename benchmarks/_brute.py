@@ -24,7 +24,10 @@ Array = NDArray[np.float64]
 
 #: What is left for the error of quadratures, as a share of the count.
 MARGIN = 0.02
-_NODES, _GAPS, _BATCH, _AUDITED = 15, 12, 128, 100
+#: The same for a first bound from fewer passes and places, which spares most axes the better one.
+_ROUGH_MARGIN = 0.12
+_ROUGH, _FINE = (5, 4), (15, 12)
+_BATCH, _AUDITED = 128, 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,14 +48,17 @@ class Floor:
     Attributes
     ----------
     worth : Worth
+    size : (int, int)
+        Passes on each smooth stretch, and gaps between places on a pass.
     """
 
     worth: Worth
+    size: tuple[int, int] = _FINE
 
     @cached_property
     def places(self) -> tuple[_Places, _Places]:
         """Places for feed u and v."""
-        return _places(self.worth.charts[0]), _places(self.worth.charts[1])
+        return _places(self.worth.charts[0], self.size), _places(self.worth.charts[1], self.size)
 
     def lengths(self, axes: Array) -> Array:
         """Lower bounds, (k, 2) mm, for feed u and v; inf where an axis leaves no strip at some place."""
@@ -78,14 +84,14 @@ class Floor:
                 + tool.flat_radius * across / np.where(size > 0, size, 1.0))
 
 
-def _places(chart: IsoChart) -> _Places:
+def _places(chart: IsoChart, size: tuple[int, int]) -> _Places:
     edges = panels(chart)
-    nodes, weight = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weight = np.polynomial.legendre.leggauss(size[0])
     half = np.diff(edges)[:, None] / 2
     steps = ((edges[1:] + edges[:-1])[:, None] / 2 + half * nodes).ravel()
     a0, a1, _, _ = chart.bounds
     found = rows(chart, steps)
-    points: RowPoints = row_points(found, (a1 - a0) / _GAPS)
+    points: RowPoints = row_points(found, (a1 - a0) / size[1])
     line = found.line[points.interval]
     met, start = np.unique(line, return_index=True)
     return _Places(chart.uv(points.along, steps[line]), start, (half * weight).ravel()[met],
@@ -115,7 +121,7 @@ def least_length(judged: Feasibility, worth: Worth, grid: Array, full: bool = Fa
 
     `full` counts every axis that screening leaves, bounds or not.
     """
-    found, floor = Least(), Floor(worth)
+    found, floor, rough = Least(), Floor(worth), Floor(worth, _ROUGH)
     axes = np.concatenate([some[judged.quick(some)[0] == FREE] for some in np.array_split(grid, 100)])
     found.visible = len(axes)
     if not len(axes):
@@ -124,7 +130,11 @@ def least_length(judged: Feasibility, worth: Worth, grid: Array, full: bool = Fa
     axes = axes[np.argsort(screened, kind="stable")]
     for first in range(0, len(axes), _BATCH):
         some = axes[first:first + _BATCH]
-        for axis, bound in zip(some, floor.lengths(some), strict=True):
+        bounds = rough.lengths(some) * (1 - _ROUGH_MARGIN) / (1 - MARGIN)
+        near = full | (bounds * (1 - MARGIN) < found.length).any(axis=1)
+        if near.any():
+            bounds[near] = floor.lengths(some[near])
+        for axis, bound in zip(some, bounds, strict=True):
             open_ = [k for k in range(2) if full or bound[k] * (1 - MARGIN) < found.length]
             found.left_out += [(axis, k, float(bound[k])) for k in range(2) if k not in open_ and bound[k] < np.inf]
             if open_ and judged.screen(axis).reason[0] == FREE:
