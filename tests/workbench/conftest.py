@@ -2,8 +2,8 @@
 
 Which FreeCAD that is says the environment variable TOOLAXIS_FREECAD: the beginning of a command that runs the rest of
 it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets the tests
-without a window.  Without the first, a FreeCAD that is installed is looked for; where there is none the tests are
-skipped, and the reason is printed.
+without a window, those in ONCE only with --long.  Without the first, a FreeCAD that is installed is looked for; where
+there is none the tests are skipped, and the reason is printed.
 """
 
 import atexit
@@ -22,9 +22,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = importlib.util.find_spec("FreeCAD") is not None
 MARK = "TOOLAXIS-INNER "
-TIME_LIMIT, LONG_TIME_LIMIT = 600.0, 3600.0
+TIME_LIMIT, LONG_TIME_LIMIT = 1200.0, 5400.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
+ONCE = ("test_same_plan.py",)
 READY = {}
 
 if INSIDE:
@@ -70,7 +71,8 @@ class InnerFile(pytest.File):
 
     def collect(self):
         yield InnerRun.from_parent(self, name="in FreeCAD", variable="TOOLAXIS_FREECAD")
-        if "gui" not in self.path.parts and os.environ.get("TOOLAXIS_FREECAD_OLD"):
+        once = "gui" in self.path.parts or (self.path.name in ONCE and not self.config.getoption("--long"))
+        if os.environ.get("TOOLAXIS_FREECAD_OLD") and not once:
             yield InnerRun.from_parent(self, name="in the older FreeCAD", variable="TOOLAXIS_FREECAD_OLD")
 
 
