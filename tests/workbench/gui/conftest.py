@@ -207,7 +207,7 @@ class Desk:
         if thing is not None and not faces:
             self.gui.Selection.addSelection(thing.Document.Name, thing.Name)
         self.gui.runCommand("ToolAxis_PlanOrientations")
-        self.wait(lambda: self.form("ToolAxisPlan") or self.errors, "the panel opens", 20)
+        self.wait(lambda: self.form("ToolAxisPlan") or self.errors, "the panel opens")
         assert not self.errors, self.errors
         return self.form("ToolAxisPlan")
 
@@ -296,3 +296,13 @@ def wavy(desk, part_file):
     part = desk.open(part_file)
     kinds = [type(face.Surface).__name__ for face in part.Shape.Faces]
     return part, f"Face{kinds.index('BSplineSurface') + 1}"
+
+
+@pytest.fixture
+def form(desk, wavy):
+    """The panel for the wavy face, with a scallop height that is quickly computed."""
+    part, face = wavy
+    form = desk.start(part, face)
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.2 mm")
+    return form

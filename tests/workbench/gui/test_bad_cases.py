@@ -127,7 +127,7 @@ def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
     for thing, name in ((holder, "Round.Face1"), (link, "Round.Face1"), (part, face)):
         desk.gui.Selection.addSelection(document.Name, thing.Name, name)
     desk.gui.runCommand("ToolAxis_PlanOrientations")
-    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
     texts = {form.faces.item(k).text() for k in range(form.faces.count())}
     assert texts == {f"{box.Label}: Face1", f"{link.Label}: Round.Face1", f"{part.Label}: {face}"}, texts

@@ -26,7 +26,7 @@ def test_panels_in_the_dark(desk, wavy):
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
     desk.shot("5-objects")
     desk.gui.runCommand("ToolAxis_Verify")
-    desk.wait(lambda: desk.form("ToolAxisVerify") is not None, "the panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisVerify") is not None, "the panel opens")
     form = desk.form("ToolAxisVerify")
     desk.wait(lambda: form.verify.isEnabled(), "the judge is done")
     desk.pump(0.5)

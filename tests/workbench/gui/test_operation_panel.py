@@ -19,7 +19,7 @@ def operation(desk, wavy):
 
 def opened(desk, operation):
     operation.ViewObject.doubleClicked()
-    desk.wait(lambda: desk.form("ToolAxisOperation") is not None, "the panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisOperation") is not None, "the panel opens")
     return desk.form("ToolAxisOperation")
 
 
@@ -43,7 +43,7 @@ def test_plan_again_takes_the_place_of_the_old_results(desk, operation):
     count = len(document.Objects)
     form = opened(desk, operation)
     desk.press(form.again)
-    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the planning panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the planning panel opens")
     form = desk.form("ToolAxisPlan")
     assert form.faces.count() == 1 and form.scallop.property("rawValue") == pytest.approx(0.2)
     desk.type(form.scallop, "0.4 mm")
@@ -68,7 +68,7 @@ def test_a_changed_part_makes_it_stale_and_recompute_mends_it(desk, operation):
     desk.shot("41-stale")
     desk.press(desk.standard_button("Close"))
     desk.gui.runCommand("ToolAxis_Recompute")
-    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
     desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
     desk.press(desk.standard_button("Ok"))
@@ -80,4 +80,4 @@ def test_the_operation_deleted_under_its_panel(desk, operation):
     document = operation.Document
     opened(desk, operation)
     document.removeObject(operation.Name)
-    desk.wait(lambda: desk.form("ToolAxisOperation") is None, "the panel closes", 20)
+    desk.wait(lambda: desk.form("ToolAxisOperation") is None, "the panel closes")

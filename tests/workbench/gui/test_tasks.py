@@ -45,7 +45,7 @@ def test_a_result_arrives_once_on_the_gui_thread(desk):
     ears = Ears(work)
     work.start()
     assert work.running
-    desk.wait(lambda: ears.heard, "the result arrives", 10)
+    desk.wait(lambda: ears.heard, "the result arrives")
     desk.pump(0.3)
     assert ears.heard == [("done", 42)] and not work.running
     assert ears.threads == {threading.main_thread()} and worked_in[0] is not threading.main_thread()
@@ -55,9 +55,9 @@ def test_stages_are_told_but_not_each_report(desk):
     work, ears = started(patient)
     desk.pump(1.0)
     work.cancel()
-    desk.wait(lambda: ears.heard, "it stops", 10)
+    desk.wait(lambda: ears.heard, "it stops")
     assert ears.heard == [("cancelled", None)]
-    assert 1 <= len(ears.stages) < 30 and all(0 <= share <= 1 for _, share in ears.stages)
+    assert 1 <= len(ears.stages) < 150 and all(0 <= share <= 1 for _, share in ears.stages)
 
 
 def test_intermediate_results_are_digested_off_the_gui_thread(desk):
@@ -73,9 +73,10 @@ def test_intermediate_results_are_digested_off_the_gui_thread(desk):
     work = Work(compute, None, lambda offered: digested.append(threading.current_thread()) or f"got {offered}")
     ears = Ears(work)
     work.interim.connect(seen.append)
+    begin = time.monotonic()
     work.start()
-    desk.wait(lambda: ears.heard, "the result arrives", 20)
-    assert 1 <= len(seen) < 10 and seen[0].startswith("got ")
+    desk.wait(lambda: ears.heard, "the result arrives")
+    assert 1 <= len(seen) <= 2 + (time.monotonic() - begin) / 0.3 and seen[0].startswith("got ")
     assert threading.main_thread() not in digested
 
 
@@ -86,7 +87,7 @@ def test_errors_are_sentences(desk, reason, words):
         raise reason
 
     _, ears = started(compute)
-    desk.wait(lambda: ears.heard, "it fails", 10)
+    desk.wait(lambda: ears.heard, "it fails")
     assert ears.heard[0][0] == "failed" and words in ears.heard[0][1]
 
 
@@ -97,7 +98,7 @@ def test_an_error_of_the_library_is_its_own_sentence(desk):
         raise InvalidInput("scallop is 0 mm:\n it must be above zero.")
 
     _, ears = started(compute)
-    desk.wait(lambda: ears.heard, "it fails", 10)
+    desk.wait(lambda: ears.heard, "it fails")
     assert ears.heard == [("failed", "scallop is 0 mm: it must be above zero")]
 
 
@@ -111,7 +112,7 @@ def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotte
     assert ears.heard == []
     from freecad.toolaxis import tasks
 
-    desk.wait(lambda: not tasks._running, "the thread is let go", 10)
+    desk.wait(lambda: not tasks._running, "the thread is let go")
 
 
 def test_the_end_of_the_application_waits_for_what_stops(desk):
@@ -120,5 +121,5 @@ def test_the_end_of_the_application_waits_for_what_stops(desk):
     _, ears = started(patient)
     desk.pump(0.1)
     tasks.stop_all()
-    desk.wait(lambda: ears.heard, "it stops", 5)
+    desk.wait(lambda: ears.heard, "it stops")
     assert ears.heard == [("cancelled", None)]

@@ -19,7 +19,7 @@ def opened(desk):
     """The form of Verify, open and still judging."""
     desk.gui.Selection.clearSelection()
     desk.gui.runCommand("ToolAxis_Verify")
-    desk.wait(lambda: desk.form("ToolAxisVerify") is not None, "the panel opens", 20)
+    desk.wait(lambda: desk.form("ToolAxisVerify") is not None, "the panel opens")
     return desk.form("ToolAxisVerify")
 
 
@@ -53,7 +53,7 @@ def test_stop_and_verify_again(desk, planned):
     form = opened(desk)
     if form.stop.isEnabled():
         desk.press(form.stop)
-    desk.wait(lambda: form.verify.isEnabled(), "the judge stops", 30)
+    desk.wait(lambda: form.verify.isEnabled(), "the judge stops")
     desk.press(form.verify)
     desk.wait(lambda: form.verify.isEnabled(), "the judge is done")
     assert "nside tolerance" in form.message.text()
@@ -64,4 +64,4 @@ def test_document_closed_while_judging(desk, planned):
 
     opened(desk)
     FreeCAD.closeDocument(planned.Name)
-    desk.wait(lambda: desk.form("ToolAxisVerify") is None, "the panel closes", 20)
+    desk.wait(lambda: desk.form("ToolAxisVerify") is None, "the panel closes")

@@ -32,7 +32,7 @@ class _Thread(QtCore.QThread):
         super().__init__()
         self.compute, self.digest = compute, digest
         self.interim: Any = None
-        self.taken = monotonic()
+        self.taken = -_PACE
         self.stop = Event()
         self.latest: tuple[str, float, float] | None = None
         self.result: Any = None
