@@ -8,7 +8,7 @@ from scipy.optimize import linprog
 
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.constraints import AxisBounds
-from toolaxis.feed.curve import schedule_curve
+from toolaxis.feed.curve import _problem, schedule_curve
 from toolaxis.feed.profile import travel_time
 
 MIKRON = AxisBounds(np.full(3, 500.0), np.array([2500.0, 3000.0, 2100.0]), np.full(3, 5000.0))
@@ -123,6 +123,26 @@ def test_with_jerk_as_linear_programming(seed: int) -> None:
     points = _wave(seed)
     other = _by_linear_programming(points, 150.0)
     assert 0.95 * other < schedule_curve(points, points, 150.0, MIKRON).duration < 1.03 * other
+
+
+def test_the_differences_are_the_derivatives() -> None:
+    """Accelerations and jerks of a known speed, on stations that are not evenly apart, against the chain rule."""
+    from scipy.interpolate import make_interp_spline
+
+    points = _wave(2)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    curve = make_interp_spline(along, points, 5)
+    s = along[-1] * np.linspace(0.05, 0.98, 3000) ** 1.5
+    problem = _problem(s, curve, curve, 150.0, MIKRON)
+    inner = problem.stations
+    b, first, second = (400 * np.cos(inner / 30 + k * np.pi / 2) / 30**k + (600 if k == 0 else 0) for k in range(3))
+    acceleration, jerk = problem.forms(b)
+    q = [curve(inner, k) for k in (1, 2, 3)]
+    exact = q[0] * first[:, None] / 2 + q[1] * b[:, None]
+    middle = (exact[1:] + exact[:-1]) / 2
+    assert np.abs(acceleration * 0.999 * MIKRON.acceleration - middle).max() < 1e-3 * np.abs(exact).max()
+    exact = q[0] * second[:, None] / 2 + 1.5 * q[1] * first[:, None] + q[2] * b[:, None]
+    assert np.abs(jerk * 0.999 * MIKRON.jerk - exact)[1:-1].max() < 2e-2 * np.abs(exact).max()
 
 
 def test_two_rotary_axes_too() -> None:

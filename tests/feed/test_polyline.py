@@ -50,6 +50,18 @@ def test_the_tip_stays_within_tolerance_and_feed(tolerance: float) -> None:
     assert np.linalg.norm(v, axis=1).max() <= 80.0 * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-2])
+def test_a_blend_uses_its_tolerance_and_no_more(tolerance: float) -> None:
+    """At gentle corners the tip passes the corner at just the tolerance."""
+    turns = np.radians(4) * np.arange(6)
+    steps = 60 * np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    points = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    found = schedule_polyline(points, points, np.inf, MIKRON, tolerance)
+    q = found.motion().at(np.linspace(0, found.duration, 200_000))[0]
+    missed = [np.linalg.norm(q - corner, axis=1).min() for corner in points[1:-1]]
+    assert np.allclose(missed, tolerance, rtol=0.03)
+
+
 def test_a_straight_move_as_ruckig_in_three_axes() -> None:
     ruckig = pytest.importorskip("ruckig", reason="ruckig is the oracle of straight moves")
     rng = np.random.default_rng(8)

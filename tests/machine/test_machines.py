@@ -190,9 +190,16 @@ def test_whole_turns_inside_the_range() -> None:
     assert np.degrees(narrow.rounded(radians(180.4))) == pytest.approx(180)
 
 
-@pytest.mark.parametrize("name", NAMES)
+def _askew() -> Machine:
+    """The two solutions meet inside the range of B, away from its ends and from the axis of C."""
+    plain, drive = load_machine("dmg-dmu-60t"), Drive(1.0, 1.0, 1.0)
+    head = RotaryAxis("B", np.array([0.0, 1.0, 2.0]), np.zeros(3), drive, -1.0, 4.0)
+    return Machine("askew", plain.linear, plain.table, (head,), (0.3, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("name", [*NAMES, "askew"])
 def test_excess_is_the_angle_to_the_nearest_reached_axis(name: str) -> None:
-    machine, rng = load_machine(name), np.random.default_rng(5)
+    machine, rng = _askew() if name == "askew" else load_machine(name), np.random.default_rng(5)
     reach = MachineReach(machine, _offset(rng))
     axes = rng.normal(size=(200, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
