@@ -127,7 +127,7 @@ def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, t
 
 
 def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: float = 0.0,
-            table_from_part: ArrayLike | None = None, near: ArrayLike = ()) -> Solutions:
+            table_from_part: ArrayLike | None = None, *, near: ArrayLike = ()) -> Solutions:
     """All joint coordinates that bring the tool to points with tool axes.
 
     Parameters
