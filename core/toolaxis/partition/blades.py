@@ -1,0 +1,302 @@
+"""Blades on a hub, found by the rotational symmetry of a part's faces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import UnsupportedGeometry
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+
+Array = NDArray[np.float64]
+
+#: Samples along each side of a face.
+SAMPLES = 9
+#: A face is of revolution where its normals pass the axis within this share of their distance from it.
+MEETS = 2e-3
+#: Faces are alike within this share of their area, and in place within this share of the part's diagonal.
+ALIKE, IN_PLACE = 0.03, 0.01
+#: The flow turns outwards where the edges' distances from the axis differ by more than this share.
+OUTWARDS = 0.15
+#: Faces and blades smaller than this share of the largest are not looked at.
+SMALL = 0.01
+#: Most blades that are looked for, and the least share of faces in place that is a pattern at all.
+MOST, PATTERN = 100, 0.6
+
+
+@dataclass(frozen=True)
+class Blade:
+    """The faces of one blade, by number.
+
+    Attributes
+    ----------
+    suction, pressure : tuple of int
+        Its sides: the one that bulges, and the one that is more hollow.
+    leading, trailing : tuple of int
+        Faces between the sides at both ends of the chord; empty where the sides meet in an edge.
+    fillets : tuple of int
+        Faces that join the blade to the hub smoothly.
+    tip : tuple of int
+        Faces of revolution that border this blade only.
+    others : tuple of int
+        What else belongs to it.
+    """
+
+    suction: tuple[int, ...]
+    pressure: tuple[int, ...]
+    leading: tuple[int, ...]
+    trailing: tuple[int, ...]
+    fillets: tuple[int, ...]
+    tip: tuple[int, ...]
+    others: tuple[int, ...]
+
+    @property
+    def faces(self) -> tuple[int, ...]:
+        """All its faces."""
+        return tuple(sorted(self.suction + self.pressure + self.leading + self.trailing + self.fillets + self.tip
+                            + self.others))
+
+
+@dataclass(frozen=True, eq=False)
+class Bladed:
+    """A part with blades.
+
+    Attributes
+    ----------
+    point, axis : (3,) array
+        A point of the axis, mm, and its direction.
+    blades : tuple of Blade
+        In the order in which a right-handed turn about the axis meets them.
+    hub : tuple of int
+        Faces of revolution that border a blade or its fillets, tips apart.
+    """
+
+    point: Array
+    axis: Array
+    blades: tuple[Blade, ...]
+    hub: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """What is known of each face by its number: points, normals, mean curvature, centre, area."""
+
+    points: dict[int, Array]
+    normals: dict[int, Array]
+    bulge: dict[int, float]
+    centre: dict[int, Array]
+    area: dict[int, float]
+
+
+def blades_of(part: Part) -> Bladed:
+    """Hub and blades of a blisk, a fan or an impeller.
+
+    Parameters
+    ----------
+    part : Part
+
+    Raises
+    ------
+    UnsupportedGeometry
+        When no axis has a pattern of faces around it, or the pattern has faces missing or out of place.
+
+    Notes
+    -----
+    Leading is the edge nearer the axis where the flow turns outwards, else the end where the sides stand flatter to
+    the axis, as on a compressor; of a turbine wheel the two names are the wrong way round.
+
+    **Source**: [zhu2016] Sec. 6.6 takes suction side, pressure side, leading and trailing edge as given.
+
+    **Properties**: 1. moving the part changes the axis only; 2. every face belongs to one blade at most.
+    """
+    samples = _sampled(part)
+    sculptured = [face.number for face in part.sculptured]
+    if not sculptured:
+        raise UnsupportedGeometry("the part has no sculptured face: blades are looked for among those")
+    point, axis, count, strangers = _pattern(part, samples, sculptured)
+    if strangers:
+        raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
+                                  f"{strangers[0]} the first): blades are missing or moved; choose faces by hand")
+    turned = [face.number for face in part.faces if _of_revolution(samples, face.number, point, axis)]
+    groups = _groups(part, [face.number for face in part.faces if face.number not in turned], samples)
+    groups = [group for group in groups if _has_like(samples, group[0], sculptured)]
+    if len(groups) != count:
+        raise UnsupportedGeometry(f"{len(groups)} groups of faces stand around an axis of {count} equal parts: one "
+                                  "blade each is needed; blades that touch each other cannot be told apart")
+    ordered = _in_turn([(group, samples.centre[group[0]] - point) for group in groups], axis)
+    found = tuple(_blade(part, group, turned, samples, (point, axis)) for group in ordered)
+    tips = {n for blade in found for n in blade.tip}
+    beside = {n for group in groups for m in group for n in part.neighbours(m)}
+    return Bladed(point, axis, found, tuple(n for n in turned if n in beside and n not in tips))
+
+
+def _sampled(part: Part) -> _Samples:
+    points, normals, bulge, centre, area = {}, {}, {}, {}, {}
+    for face in part.faces:
+        uv = _inside(face)
+        points[face.number], normals[face.number] = face.evaluate(uv).point, face.normal(uv)
+        k = face.curvature(uv)
+        bulge[face.number] = float(-np.median(k.k1 + k.k2))
+        centre[face.number], area[face.number] = points[face.number].mean(axis=0), face.area
+    return _Samples(points, normals, bulge, centre, area)
+
+
+def _inside(face: Face) -> Array:
+    uv = face.grid(SAMPLES, SAMPLES)
+    return uv if len(uv) >= SAMPLES else np.concatenate([uv, *face.outline])
+
+
+def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Array, Array, int, list[int]]:
+    """Axis and number of equal parts with the most faces in place, and the faces out of place."""
+    best = PATTERN
+    found: tuple[Array, Array, int, list[int]] | None = None
+    for exact, point, axis in _axes(part, samples, sculptured):
+        looked = [n for n in sculptured if not _of_revolution(samples, n, point, axis)]
+        least = SMALL * max((samples.area[n] for n in looked), default=0.0)
+        looked = [n for n in looked if samples.area[n] >= least]
+        for count in range(2, MOST + 1 if looked else 2):
+            pairs, away = _counterparts(part, samples, looked, (point, axis), 2 * np.pi / count)
+            fit = sum(samples.area[n] * (1 - away[n] / 2) for n in pairs) / sum(samples.area[n] for n in looked)
+            if fit > best + 1e-3 or (found is not None and fit > best - 1e-3 and count > found[2]):
+                best = fit
+                line = (point, axis) if exact else _refined(samples, pairs, point, axis)
+                found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
+    if found is None:
+        raise UnsupportedGeometry("no axis has a pattern of like faces around it: blades cannot be found on this part")
+    return found
+
+
+def _has_like(samples: _Samples, number: int, numbers: list[int]) -> bool:
+    """Whether another face has its area."""
+    return any(abs(samples.area[n] / samples.area[number] - 1) <= ALIKE for n in numbers if n != number)
+
+
+def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bool, Array, Array]]:
+    """Axes worth trying: the line that normals of surfaces of revolution meet, exact, and the axis of inertia."""
+    round_ = [f.number for f in part.faces if f.kind in ("cylinder", "cone", "torus", "revolution")]
+    result = [(True, *_met_by_normals(samples, round_))] if round_ else []
+    points = np.concatenate([samples.points[n] for n in sculptured])
+    share = [np.full(len(samples.points[n]), samples.area[n] / len(samples.points[n])) for n in sculptured]
+    weight = np.concatenate(share)
+    values, vectors = np.linalg.eigh(np.cov(points.T, aweights=weight))
+    axis = vectors[:, 0 if values[1] - values[0] > values[2] - values[1] else 2]
+    return [*result, (False, np.average(points, axis=0, weights=weight), axis)]
+
+
+def _met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array]:
+    """The line d, m = a x d that lines (p, n) meet: n . (d x p) + n . m = 0, by least squares, strangers left out."""
+    point, d = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    for _ in range(4):
+        p, n = (np.concatenate([table[k] for k in numbers]) for table in (samples.points, samples.normals))
+        area = np.concatenate([np.full(len(samples.points[k]), samples.area[k]) for k in numbers])
+        middle, size = p.mean(axis=0), float(np.ptp(p, axis=0).max())
+        rows = np.concatenate([np.cross((p - middle) / size, n), n], axis=1) * np.sqrt(area)[:, None]
+        line = np.linalg.svd(rows, full_matrices=False)[2][-1]
+        length = max(float(np.linalg.norm(line[:3])), 1e-9)
+        d, point = line[:3] / length, middle + size * np.cross(line[:3], line[3:]) / length**2
+        kept = [k for k in numbers if _of_revolution(samples, k, point, d)]
+        if len(kept) in (0, len(numbers)):
+            break
+        numbers = kept
+    return point, d
+
+
+def _turn(axis: Array, angle: float) -> Array:
+    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+
+
+def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[Array, Array],
+                  angle: float) -> tuple[dict[int, int], dict[int, float]]:
+    """Faces that a turn brings onto a face like them, and how far from it as a share of what is allowed."""
+    point, axis = line
+    centres = np.array([samples.centre[n] for n in looked])
+    areas = np.array([samples.area[n] for n in looked])
+    moved = (centres - point) @ _turn(axis, angle).T + point
+    away = np.linalg.norm(moved[:, None] - centres, axis=2)
+    away[np.abs(areas[:, None] / areas - 1) > ALIKE] = np.inf
+    np.fill_diagonal(away, np.inf)
+    best = away.argmin(axis=1)
+    share = away[np.arange(len(looked)), best] / (IN_PLACE * part.diagonal)
+    near = np.flatnonzero(share < 1)
+    return {looked[i]: looked[int(best[i])] for i in near}, {looked[i]: float(share[i]) for i in near}
+
+
+def _refined(samples: _Samples, pairs: dict[int, int], point: Array, axis: Array) -> tuple[Array, Array]:
+    """The axis of the turn that brings the centres of faces closest to their counterparts'."""
+    a, b = (np.array([samples.centre[n] for n in numbers]) for numbers in (pairs.keys(), pairs.values()))
+    weight = np.array([samples.area[n] for n in pairs])
+    ma, mb = np.average(a, axis=0, weights=weight), np.average(b, axis=0, weights=weight)
+    u, _, vt = np.linalg.svd((a - ma).T @ ((b - mb) * weight[:, None]))
+    turn = (vt.T * [1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+    way = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+    if np.linalg.norm(way) < 1e-6:
+        return point, axis
+    d = way / np.linalg.norm(way)
+    foot = np.linalg.lstsq(np.eye(3) - turn, mb - turn @ ma, rcond=1e-9)[0]
+    return foot + d * ((ma - foot) @ d), d
+
+
+def _of_revolution(samples: _Samples, number: int, point: Array, axis: Array) -> bool:
+    around = np.cross(axis, samples.points[number] - point)
+    reach = np.linalg.norm(around, axis=1)
+    return bool((np.abs((samples.normals[number] * around).sum(axis=1)) <= MEETS * np.maximum(reach, 1e-9)).all())
+
+
+def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]]:
+    """Faces that hang together, each group with its largest first; small groups are left out."""
+    left, groups = set(numbers), []
+    while left:
+        group = [min(left)]
+        for n in group:
+            group += [m for m in part.neighbours(n) if m in left and m not in group]
+        left -= set(group)
+        groups.append(sorted(group, key=lambda n: -samples.area[n]))
+    size = [sum(samples.area[n] for n in group) for group in groups]
+    return [group for group, own in zip(groups, size, strict=True) if own > 10 * SMALL * max(size)]
+
+
+def _in_turn(groups: list[tuple[list[int], Array]], axis: Array) -> list[list[int]]:
+    """Groups of faces, each with a point of it from the axis, in the order of a right-handed turn, the first first."""
+    start = groups[0][1]
+    angle = [float(np.arctan2(axis @ np.cross(start, at), start @ at - (start @ axis) * (at @ axis))) % (2 * np.pi)
+             for _, at in groups]
+    angle[0] = 0.0
+    return [groups[k][0] for k in np.argsort(angle)]
+
+
+def _blade(part: Part, group: list[int], turned: list[int], samples: _Samples, line: tuple[Array, Array]) -> Blade:
+    own = set(group)
+    fillets = [n for n in group if any(m in turned for m in part.neighbours(n, "tangent"))]
+    tip = [n for n in turned if part.neighbours(n) and own.issuperset(part.neighbours(n))]
+    body = [n for n in group if n not in fillets]
+    suction, pressure = sorted(body[:2], key=lambda n: -samples.bulge[n])
+    leading, trailing = _edges(part, body[2:], (suction, pressure), samples, line)
+    named = {suction, pressure, *leading, *trailing}
+    return Blade((suction,), (pressure,), leading, trailing, tuple(sorted(fillets)), tuple(sorted(tip)),
+                 tuple(n for n in sorted(body) if n not in named))
+
+
+def _edges(part: Part, rest: list[int], sides: tuple[int, int], samples: _Samples,
+           line: tuple[Array, Array]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Leading and trailing edge: of the faces between both sides, those farthest from each other."""
+    between = [n for n in rest if set(sides) <= set(part.neighbours(n))]
+    if len(between) < 2:
+        return (), ()
+    centre = np.array([samples.centre[n] for n in between])
+    away = np.linalg.norm(centre[:, None] - centre, axis=2)
+    i, j = sorted(np.unravel_index(int(away.argmax()), away.shape), key=lambda k: between[k])
+    first, second = (_foremost(samples, sides, samples.centre[between[k]], line) for k in (i, j))
+    radial = abs(first[0] - second[0]) > OUTWARDS * max(first[0], second[0])
+    swap = first[0] > second[0] if radial else first[1] < second[1]
+    ends = ((between[i],), (between[j],))
+    return ends[::-1] if swap else ends
+
+
+def _foremost(samples: _Samples, sides: tuple[int, int], end: Array, line: tuple[Array, Array]) -> tuple[float, float]:
+    """Distance of an edge from the axis, and how flat the sides stand to the axis there."""
+    point, axis = line
+    points, normals = (np.concatenate([table[n] for n in sides]) for table in (samples.points, samples.normals))
+    near = np.argsort(np.linalg.norm(points - end, axis=1))[:max(len(points) // 8, 1)]
+    return float(np.linalg.norm(np.cross(axis, end - point))), float(np.abs(normals[near] @ axis).mean())
