@@ -17,6 +17,7 @@ from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
 from toolaxis.orient.worth import FEEDS
+from toolaxis.path.layout import Layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
@@ -92,15 +93,14 @@ class _Remembering(Task):
         super().__init__(job.feasibility, job.worth, job.groups, job.progress, job.direction)
         object.__setattr__(self, "path", None)
 
-    def made(self, axis: Array, feed: str) -> ToolPath:
-        """The passes with an axis.
+    def traced(self, placed: Layout) -> ToolPath:
+        """Passes with their links.
 
         Parameters
         ----------
-        axis : (3,) array
-        feed : str
+        placed : Layout
         """
-        path = super().made(axis, feed)
+        path = super().traced(placed)
         object.__setattr__(self, "path", path)
         return path
 

@@ -20,8 +20,10 @@ from toolaxis.orient.sector import sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
-from toolaxis.path.isoparametric import passes
+from toolaxis.path.isoparametric import layout
+from toolaxis.path.layout import Layout
 from toolaxis.path.linking import Linking
+from toolaxis.path.tracing import trace
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -66,11 +68,8 @@ class Task:
         boxes = np.array([face.box for group in self.groups for face in group.faces])
         return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
-    def made(self, axis: Array, feed: str) -> ToolPath:
-        """The passes with an axis, cut out where the tool must not go.
-
-        Next to walls and where the skin goes on beyond the sub-surface they begin and end without ramps: a ramp goes on
-        along the feed, into what stands there.
+    def laid(self, axis: Array, feed: str) -> Layout:
+        """The passes with an axis, cut out where the tool must not go, before they are traced.
 
         Parameters
         ----------
@@ -78,14 +77,37 @@ class Task:
         feed : str
         """
         worth, feasibility = self.worth, self.feasibility
+        return layout(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
+                      reach=lambda uv: feasibility.reach(uv, axis), progress=self.progress)
+
+    def traced(self, placed: Layout) -> ToolPath:
+        """Passes with their links.
+
+        Next to walls and where the skin goes on beyond the sub-surface they begin and end without ramps: a ramp goes on
+        along the feed, into what stands there.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
         low, high = self.box
+        axis = placed.cut.axis
         height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
-        walls = any(group.role == OTHER or (group.role == SKIN and any(one is not worth.face for one in group.faces))
+        own = self.worth.face
+        walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
                     for group in self.groups)
-        return passes(worth.face, worth.tool, axis, worth.scallop, feed, direction=self.direction,
-                      allowance=worth.allowance, reach=lambda uv: feasibility.reach(uv, axis),
-                      tolerance=feasibility.tolerance,
-                      linking=Linking(height, run_in=0.0) if walls else Linking(height), progress=self.progress)
+        return trace(placed, self.direction, self.feasibility.tolerance,
+                     linking=Linking(height, run_in=0.0) if walls else Linking(height))
+
+    def made(self, axis: Array, feed: str) -> ToolPath:
+        """The very passes, links and ramps included, that `finished` proves.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        return self.traced(self.laid(axis, feed))
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -264,9 +286,12 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
     one : Candidate
     """
     feed = FEEDS[one.feed]
-    path = job.made(one.axis, feed)
+    placed = job.laid(one.axis, feed)
+    path = job.traced(placed)
     proof = prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
     unreached = job.feasibility.unreached(one.axis)
+    if unreached > 0:
+        unreached = max(unreached, placed.uncut)
     length = path.length(Motion.CUT)
     area = job.worth.face.area * (1 - unreached)
     notes = () if unreached == 0 else (f"{100 * unreached:.1f} % of the area lies at walls and is left to clean-up",)
