@@ -69,8 +69,9 @@ class _Thread(QtCore.QThread):
 
     def _offered(self, make: Callable[[], Any]) -> None:
         if monotonic() - self.taken > _PACE and self.digest is not None:
-            self.interim = self.digest(make())
-            self.taken = monotonic()
+            digested = self.digest(make())
+            if digested is not None:
+                self.interim, self.taken = digested, monotonic()
 
 
 def sentence(reason: BaseException) -> str:
@@ -95,7 +96,7 @@ class Work(QtCore.QObject):
         Called with a `toolaxis.progress.Progress` in another thread; it must touch no document and no widget.
     parent : QObject, optional
     digest : callable, optional
-        Makes of an intermediate result, in the other thread, what `interim` is emitted with.
+        Makes of an intermediate result, in the other thread, what `interim` is emitted with; None for nothing yet.
     """
 
     progressed = QtCore.Signal(str, float)

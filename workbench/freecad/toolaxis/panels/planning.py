@@ -19,6 +19,8 @@ from .watching import Watch
 translate = FreeCAD.Qt.translate
 
 _TYPED = 0
+#: Axes that make a map worth showing.
+_ENOUGH = 40
 
 
 class PlanPanel:
@@ -296,10 +298,11 @@ class PlanPanel:
 
 
 def _growing(offered):
-    """The picture of an intermediate result; runs off the GUI thread."""
+    """The picture of an intermediate result, None while it is too coarse; runs off the GUI thread."""
     from .axispicture import picture_of
 
-    return picture_of(*offered)
+    face, found = offered
+    return picture_of(face, found) if len(found.axis) >= _ENOUGH else None
 
 
 def _planned(task, progress):
