@@ -169,7 +169,7 @@ def test_kept_while_the_face_lives():
 
 
 def test_bad_input():
-    with pytest.raises(InvalidInput, match="outside"):
+    with pytest.raises(InvalidInput, match="trim loop 0 of face 1 leaves the surface"):
         cells(_wavy(trims=(_circle(3, 3, .4),)))
     with pytest.raises(InvalidInput, match="at least one"):
         forest([])

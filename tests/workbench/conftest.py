@@ -156,9 +156,10 @@ def document():
     import FreeCAD
 
     made = FreeCAD.newDocument("Objects")
+    name = made.Name
     yield made
-    if made.Name in FreeCAD.listDocuments():
-        FreeCAD.closeDocument(made.Name)
+    if name in FreeCAD.listDocuments():
+        FreeCAD.closeDocument(name)
 
 
 def command_for(variable, arguments, window):
