@@ -107,6 +107,30 @@ def _holds(shape, point):
     return best <= e * (1 + 1e-6) + 1e-9 or e >= radius
 
 
+ALONG_THE_ISO_LINES = {
+    "rectangle": [[0, 0], [1, 0], [1, 1], [0, 1]],
+    "many edges": [*[[t, 0] for t in np.arange(8) / 8], *[[1, t] for t in np.arange(8) / 8],
+                   *[[1 - t, 1] for t in np.arange(8) / 8], *[[0, 1 - t] for t in np.arange(8) / 8]],
+    "notch": [[0, 0], [1, 0], [1, .4], [.7, .4], [.7, .6], [1, .6], [1, 1], [0, 1]],
+    "angle": [[0, 0], [1, 0], [1, .5], [.5, .5], [.5, 1], [0, 1]],
+    "chamfer": [[0, 0], [.9, 0], [1, .1], [1, 1], [0, 1]],
+}
+
+
+@pytest.mark.parametrize("name", ALONG_THE_ISO_LINES)
+@pytest.mark.parametrize("origin, size", [(0.1, 0.8), (0.0, 1.0)])
+def test_edges_along_the_iso_lines_hide_nothing(name, origin, size):
+    """Loops that run along parameter lines, more or less: rounding must not decide what is inside of a cell."""
+    rng = np.random.default_rng(11)
+    for exponent in np.repeat(np.arange(-17.0, -5.0), 3):
+        loop = origin + size * np.array(ALONG_THE_ISO_LINES[name], dtype=float)
+        loop += 10.0**exponent * rng.standard_normal(loop.shape) * rng.integers(0, 2, loop.shape)
+        face = _wavy(trims=(np.clip(loop, 0, 1),))
+        leaf, uv = cells(face).leaf, face.grid(40, 40)
+        off = np.abs(uv[:, None] - leaf[None, :, :2]) - leaf[None, :, 2:4]
+        assert off.max(axis=2).min(axis=1).max() < 1e-7, exponent
+
+
 def test_holes_are_left_out():
     face = FACES["hole"]
     tree = cells(face)

@@ -1,5 +1,6 @@
 """The plain twin of `toolaxis.contact.descent`: the same bounds on whole arrays of open cells, breadth first."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,8 @@ from toolaxis.contact.descent import BUDGET, DECIDED, ToolData
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.cells import Cells
-from toolaxis.shape.subdivision import clipped, remainder
+from toolaxis.shape.face import Face
+from toolaxis.shape.subdivision import clipped, margin_of, reached, remainder
 from toolaxis.tools.solid import piece_distance_numpy
 
 Array = NDArray[np.float64]
@@ -60,26 +62,31 @@ def _trimmed(cells: Cells, front: _Front) -> tuple[_Front, NDArray[np.intp], _Co
     index = np.repeat(start, count) + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     u, v, du, dv = front.rect.T
     rect = np.stack([u - du, u + du, v - dv, v + dv], axis=1)
-    through, ends = clipped(rect[owner], cells.edges[index])
+    through, ends = clipped(rect[owner], cells.edges[index], 1e-9 * np.stack([du, dv], axis=1)[owner])
     cut = np.zeros(len(leaf), dtype=bool)
     cut[owner[through]] = True
     owners, points = [np.repeat(owner[through], 2)], [ends[through].reshape(-1, 2)]
     rows = np.flatnonzero(cut)
     for corner in ((0, 2), (0, 3), (1, 2), (1, 3)):
-        within = _contains(cells, front.node[rows], rect[rows][:, corner])
+        within = _asked(cells, front.node[rows], rect[rows][:, corner], _reached)
         owners.append(rows[within])
         points.append(rect[rows[within]][:, corner])
     kept = ~front.below | cut
     rest = np.flatnonzero(~kept)
-    kept[rest] = _contains(cells, front.node[rest], front.rect[rest, :2])
+    kept[rest] = _asked(cells, front.node[rest], front.rect[rest, :2], Face.contains)
     return _shrunk(front, (cut, kept), np.concatenate(owners), np.concatenate(points))
 
 
-def _contains(cells: Cells, node: Indices, uv: Array) -> Flags:
+def _reached(face: Face, uv: Array) -> Flags:
+    return reached(face, uv, margin_of(face))
+
+
+def _asked(cells: Cells, node: Indices, uv: Array, question: Callable[[Face, Array], Flags]) -> Flags:
+    """The answers of the nodes' faces for one parameter each."""
     number = cells.link[node, 2]
     found = np.zeros(len(uv), dtype=bool)
     for k in np.unique(number):
-        found[number == k] = cells.faces[k].contains(uv[number == k])
+        found[number == k] = question(cells.faces[k], uv[number == k])
     return found
 
 

@@ -78,6 +78,33 @@ def inside_leaf(edges: Array, reference: Array, u: float, v: float) -> bool:
 
 
 @built_in
+def touched(edges: Array, rect: Rect) -> bool:
+    """Whether an edge comes into a small rectangle, or within rounding of it.
+
+    Parameters
+    ----------
+    edges : (k, 4) array
+        u, v of both ends.
+    rect : (float, float, float, float)
+        Centre and half widths.
+    """
+    for k in range(edges.shape[0]):
+        enter, leave = 0.0, 1.0
+        for axis in range(2):
+            start, along = edges[k, axis] - rect[axis], edges[k, 2 + axis] - edges[k, axis]
+            half = rect[2 + axis] + 4e-15 * (abs(edges[k, axis]) + abs(edges[k, 2 + axis]))
+            if along == 0.0:
+                if abs(start) > half:
+                    leave = -1.0
+            else:
+                first, second = (-half - start) / along, (half - start) / along
+                enter, leave = max(enter, min(first, second)), min(leave, max(first, second))
+        if enter <= leave:
+            return True
+    return False
+
+
+@built_in
 def shrunk(region: Array, count: int, axis: int, least: float) -> tuple[float, float]:
     """Middle and half width of corners along u or v; the corners become shares of it.
 
@@ -124,8 +151,10 @@ def trim_cell(edges: Array, reference: Array, rect: Rect, region: Array) -> tupl
         return (0 if inside_leaf(edges, reference, u, v) else -1), u, v, du, dv
     for i in (-1.0, 1.0):
         for j in (-1.0, 1.0):
-            if inside_leaf(edges, reference, u + i * du, v + j * dv):
-                region[count, 0], region[count, 1] = u + i * du, v + j * dv
+            x, y = u + i * du, v + j * dv
+            # An edge in the border zone was not clipped, and rounding decides on which side of it the corner lies.
+            if inside_leaf(edges, reference, x, y) or touched(edges, (x, y, 3e-9 * du, 3e-9 * dv)):
+                region[count, 0], region[count, 1] = x, y
                 count += 1
     u, du = shrunk(region, count, 0, 1e-9 * du)
     v, dv = shrunk(region, count, 1, 1e-9 * dv)

@@ -73,9 +73,9 @@ def count(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "
     -----
     The integral over the step parameter of 1 / min over the pass of both half widths together, to 0.1 %: that of the
     neighbour before it and that of the neighbour behind it which meet there, from the first pass to the last, whose
-    strips end on the borders, and one.  Where few passes lie on widths that vary by much, those made may differ by a
-    twentieth of a pass, for the integral sees the widths between passes too.  A pass is what lies inside the loops and, past a slanting border, what its
-    strip still reaches.
+    strips end on the borders, and one.  A pass is what lies inside the loops and, past a slanting border, what its
+    strip still reaches.  Where few passes lie on widths that vary by much, those made may differ by a twentieth of a
+    pass, for the integral sees the widths between them too.
 
     **Source**: [zhu2016] Eqs. (3) to (6) in the limit of vanishing patches, with the difference between the strip of
     one pass and the distance of two, which are not the same where half widths are not.

@@ -17,6 +17,7 @@ _COARSEST, _FINEST = 16, 64
 _DEEPEST = 48
 _ROUNDING = 1e-12
 _MARGIN = 1e-9
+_CORNERS = ((0, 2), (0, 3), (1, 2), (1, 3))
 _REFERENCE = np.array([0.4876237, 0.5312345])
 
 
@@ -76,7 +77,19 @@ def grid_lines(knots: Array, degree: int, low: float, high: float) -> Array:
     return np.concatenate([*pieces, [high]])
 
 
-def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
+def margin_of(face: Face) -> Array:
+    """Width in u and v of the border zone of rectangles in which an edge counts as one that stays outside, (2,).
+
+    Parameters
+    ----------
+    face : Face
+    """
+    u0, u1, v0, v1 = face.bounds
+    rounding = 1e-14 * np.array([abs(u0) + abs(u1), abs(v0) + abs(v1)])
+    return np.asarray(_MARGIN * np.array([u1 - u0, v1 - v0]) + rounding)
+
+
+def clipped(rect: Array, edges: Array, margin: Array) -> tuple[Flags, Array]:
     """Whether edges run through the inner part of rectangles, and what is left of them.
 
     Parameters
@@ -85,6 +98,8 @@ def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
         u0, u1, v0, v1.
     edges : (k, 4) array
         u, v of both ends.
+    margin : (2,) or (k, 2) array
+        Width of the border zone that does not count as inner part; never more than half of it.
 
     Returns
     -------
@@ -93,7 +108,8 @@ def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
         Meaningless where the edge stays outside.
     """
     start, along = edges[:, :2], edges[:, 2:] - edges[:, :2]
-    middle, half = (rect[:, 0::2] + rect[:, 1::2]) / 2, (rect[:, 1::2] - rect[:, 0::2]) / 2 * (1 - _MARGIN)
+    middle, half = (rect[:, 0::2] + rect[:, 1::2]) / 2, (rect[:, 1::2] - rect[:, 0::2]) / 2
+    half = np.maximum(half - margin, half / 2)
     still = np.asarray(along == 0)
     step = np.where(still, 1.0, along)
     first, second = (middle - half - start) / step, (middle + half - start) / step
@@ -102,6 +118,23 @@ def clipped(rect: Array, edges: Array) -> tuple[Flags, Array]:
     leave = np.where(still, np.inf, np.maximum(first, second)).min(axis=1).clip(None, 1.0)
     ends = start[:, None] + np.stack([enter, leave], axis=1)[:, :, None] * along[:, None]
     return ~outside & (enter < leave), ends
+
+
+def reached(face: Face, uv: Array, margin: Array) -> Flags:
+    """Whether parameters lie on the face or so near to it that rounding and left-out edges could decide, (n,).
+
+    Parameters
+    ----------
+    face : Face
+    uv : (n, 2) array
+    margin : (2,) array
+        From `margin_of`.
+    """
+    found = face.contains(uv)
+    for side in ((-3.0, -3.0), (-3.0, 3.0), (3.0, -3.0), (3.0, 3.0)):
+        rest = np.flatnonzero(~found)
+        found[rest] = face.contains(uv[rest] + side * margin)
+    return found
 
 
 def _halved(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array]) -> _Level:
@@ -146,6 +179,7 @@ class _Builder:
         self.bounds = self._second_derivatives()
         self.edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in face.trims]
                                     or [np.empty((0, 4))])
+        self.margin = margin_of(face)
         self.extra = face.tolerance + _ROUNDING * (1 + float(np.abs(face.surface.control[..., :3]).max()))
         self.levels: list[_Level] = []
         self.centres: list[Array] = []
@@ -160,27 +194,32 @@ class _Builder:
         return np.concatenate(rows)
 
     def trimmed(self, level: _Level) -> _Level:
-        """Nodes that have something inside the loops, shrunk to the box around it."""
+        """Nodes that have something inside the loops, shrunk to the box around it.
+
+        What is left of a crossed node has its corners at the ends of clipped edges and at corners of the node; those
+        count where an edge in the border zone, which was not clipped, might hide that they are inside.
+        """
         if not len(self.edges):
             return level
-        through, ends = clipped(level.rect[level.owner], self.edges[level.edge])
+        through, ends = clipped(level.rect[level.owner], self.edges[level.edge], self.margin)
         owner, edge, ends = level.owner[through], level.edge[through], ends[through]
         crossed = np.zeros(len(level.rect), dtype=bool)
         crossed[owner] = True
-        kept = crossed.copy()
-        kept[~crossed] = self.face.contains(level.middle[~crossed])
+        thin = np.asarray((level.half <= 4 * self.margin).any(axis=1))
+        kept = crossed | thin
+        kept[~kept] = self.face.contains(level.middle[~kept])
         low, high = np.full((len(kept), 2), np.inf), np.full((len(kept), 2), -np.inf)
         np.minimum.at(low, owner, ends.min(axis=1))
         np.maximum.at(high, owner, ends.max(axis=1))
-        for corner in ((0, 2), (0, 3), (1, 2), (1, 3)):
+        for corner in _CORNERS:
             point = level.rect[:, corner]
             within = crossed.copy()
-            within[crossed] = self.face.contains(point[crossed])
+            within[crossed] = reached(self.face, point[crossed], self.margin)
             low[within], high[within] = np.minimum(low, point)[within], np.maximum(high, point)[within]
-        margin = _MARGIN * 2 * level.half
-        box = np.stack([np.maximum(low - margin, level.rect[:, 0::2]), np.minimum(high + margin, level.rect[:, 1::2])],
-                       axis=2).reshape(-1, 4)
-        return level._replace(owner=owner, edge=edge).chosen(kept, np.where(crossed[:, None], box, level.rect))
+        box = np.stack([np.maximum(low - self.margin / 2, level.rect[:, 0::2]),
+                        np.minimum(high + self.margin / 2, level.rect[:, 1::2])], axis=2).reshape(-1, 4)
+        shrunk = crossed & ~thin
+        return level._replace(owner=owner, edge=edge).chosen(kept, np.where(shrunk[:, None], box, level.rect))
 
     def centred(self, level: _Level) -> tuple[Array, Flags]:
         """q, a, b and e of every node (e only counts in single base cells), and which of them need no splitting."""

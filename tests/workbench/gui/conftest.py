@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -151,9 +152,10 @@ class Desk:
     def standard_button(self, name):
         """A button in the bar of the task panel."""
         for box in self.window.findChildren(self.widgets.QDialogButtonBox):
-            button = box.button(getattr(self.widgets.QDialogButtonBox, name))
-            if button is not None and button.isVisible():
-                return button
+            with suppress(RuntimeError):  # that of an earlier panel, which Qt has deleted meanwhile
+                button = box.button(getattr(self.widgets.QDialogButtonBox, name))
+                if button is not None and button.isVisible():
+                    return button
         raise AssertionError(f"there is no button {name}")
 
     def dialog_text(self, action):

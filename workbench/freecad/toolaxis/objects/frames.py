@@ -15,8 +15,13 @@ def kind_of_frame(document):
     ----------
     document : App.Document
     """
-    kinds = document.supportedTypes()
-    return next(kind for kind in ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem") if kind in kinds)
+    import Part  # noqa: F401  makes its types known
+
+    if "Part::LocalCoordinateSystem" in document.supportedTypes():
+        return "Part::LocalCoordinateSystem"
+    import PartDesign  # noqa: F401
+
+    return "PartDesign::CoordinateSystem"
 
 
 def add_frame(document):
