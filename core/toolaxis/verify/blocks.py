@@ -67,6 +67,9 @@ def in_chunks(work: Callable[[tuple[int, int]], None], blocks: int, threads: int
               report: Callable[[float, float], None]) -> None:
     """Work off blocks in chunks, which are the same whatever the number of threads.
 
+    The first chunk is done before there are threads: compiled kernels must not be loaded by two at a time (numba on
+    Python 3.14 then ends the process).
+
     Parameters
     ----------
     work : callable
@@ -78,10 +81,12 @@ def in_chunks(work: Callable[[tuple[int, int]], None], blocks: int, threads: int
         Called with the blocks done and the blocks in all; may raise to stop.
     """
     chunks = [(b, min(b + CHUNK, blocks)) for b in range(0, blocks, CHUNK)]
-    if threads <= 1:
-        for chunk in chunks:
-            work(chunk)
-            report(chunk[1], blocks)
+    alone = chunks if threads <= 1 else chunks[:1]
+    for chunk in alone:
+        work(chunk)
+        report(chunk[1], blocks)
+    chunks = chunks[len(alone):]
+    if not chunks:
         return
     with ThreadPoolExecutor(threads) as pool:
         jobs = [pool.submit(work, chunk) for chunk in chunks]
