@@ -27,6 +27,8 @@ TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
 ONCE = ("test_same_plan.py",)
 READY = {}
+# CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
+STARTER = "import sys, FreeCAD, Path, pytest; sys.exit(pytest.main(sys.argv[1:]))"
 
 if INSIDE:
     import FreeCAD  # noqa: F401  before any test's `import Part`, which crashes alone
@@ -166,7 +168,7 @@ def command_for(variable, arguments, window):
     """The command that runs pytest in FreeCAD, before and after its environment; skips where there is no FreeCAD."""
     prefix = shlex.split(os.environ.get(variable, ""))
     if prefix:
-        return prefix, ["python3", "-m", "pytest", *arguments]
+        return prefix, ["python3", "-c", STARTER, *arguments]
     found = next(filter(None, map(shutil.which, INSTALLED[window])), None)
     reason = os.environ.get("TOOLAXIS_FREECAD_MISSING", "none is installed")
     if found is None:

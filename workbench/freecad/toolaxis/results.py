@@ -169,7 +169,7 @@ def _standing_frame(operation, op, part, title):
 def _standing_passes(operation, op, frame, title):
     passes = child(operation, "Path::Feature")
     if passes is None:
-        import Path  # noqa: F401  makes the type known
+        import PathApp  # noqa: F401  makes the type known
 
         passes = operation.Document.addObject("Path::Feature", "Passes")
         operation.addObject(passes)

@@ -19,7 +19,7 @@ def kind_of_frame(document):
 
     if "Part::LocalCoordinateSystem" in document.supportedTypes():
         return "Part::LocalCoordinateSystem"
-    import PartDesign  # noqa: F401
+    import _PartDesign  # noqa: F401  its types without its Python code, which wants a window
 
     return "PartDesign::CoordinateSystem"
 

@@ -21,7 +21,7 @@ def commands(path, frame, feedrate):
     list of Path.Command
         As many as there are points.
     """
-    import Path
+    import PathApp as Path
 
     from toolaxis.cldata.toolpath import Motion
 
@@ -68,7 +68,7 @@ def fill_passes(thing, made):
     thing : App.DocumentObject
     made : list of Path.Command
     """
-    import Path
+    import PathApp as Path
 
     thing.Path = Path.Path(made)
 
