@@ -1,0 +1,6 @@
+"""What tests of contacts share lies beside them, in `dense.py`."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parent))
