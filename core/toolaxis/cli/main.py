@@ -5,9 +5,10 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from toolaxis import __version__
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
@@ -154,32 +155,33 @@ class _Ended(KeyboardInterrupt):
 
 
 class _Interrupt:
-    """The first Ctrl-C asks the work to stop where it can be stopped; the second one ends it at once."""
+    """The first Ctrl-C, or the first SIGTERM, asks the work to stop where it can be; the second ends it at once."""
 
     def __init__(self) -> None:
         self._pressed = 0
+        self._before: dict[signal.Signals, Any] = {}
 
     def asked(self) -> bool:
-        """Whether Ctrl-C was pressed."""
+        """Whether Ctrl-C was pressed or SIGTERM came."""
         return self._pressed > 0
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         self._pressed += 1
         if self._pressed == 1:
-            os.write(2, b"toolaxis: stopping; Ctrl-C again ends at once\n")  # print may be what was interrupted
+            again = b"Ctrl-C" if number == signal.SIGINT else b"the signal"
+            os.write(2, b"toolaxis: stopping; " + again + b" again ends at once\n")  # print may be interrupted itself
         elif self._pressed == 2:  # a third one would only disturb the clearing up
             raise _Ended
 
     def __enter__(self) -> "_Interrupt":
-        try:
-            self._before = signal.signal(signal.SIGINT, self._on_signal)
-        except ValueError:  # not the main thread: nobody can press Ctrl-C here
-            self._before = None
+        with suppress(ValueError):  # not the main thread: no signal comes here
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self._before[number] = signal.signal(number, self._on_signal)
         return self
 
     def __exit__(self, *reason: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
+        for number, before in self._before.items():
+            signal.signal(number, before)
 
 
 if __name__ == "__main__":
