@@ -78,7 +78,18 @@ def array_as_a_whole(document, parts):
     return array, array, "1.Face"
 
 
-STANDS = (alone, moved, in_containers, linked, linked_with_its_place, array_of_links, array_as_a_whole)
+def linked_in_an_assembly(document, parts):
+    import AssemblyApp  # noqa: F401  makes its types known
+
+    link, _, name = linked(document, parts)
+    assembly = document.addObject("Assembly::AssemblyObject", "Assembly")
+    assembly.addObject(link)
+    assembly.Placement = Placement(Vector(5, 6, 7), Rotation(Vector(1, 0, 0), 40))
+    return link, assembly, name
+
+
+STANDS = (alone, moved, in_containers, linked, linked_with_its_place, array_of_links, array_as_a_whole,
+          linked_in_an_assembly)
 
 
 @pytest.fixture(params=STANDS, ids=lambda make: make.__name__)
