@@ -61,3 +61,43 @@ def test_separate_polygons_keep_their_own_holes():
         if len(group) == 2:
             assert (group[1].min(axis=0) > group[0].min(axis=0)).all()
             assert (group[1].max(axis=0) < group[0].max(axis=0)).all()
+
+
+ALONG_THE_LINE = {
+    "rectangle": [[0, 0], [1, 0], [1, 1], [0, 1]],
+    "notch": [[0, 0], [1, 0], [1, .375], [.75, .375], [.75, .625], [1, .625], [1, 1], [0, 1]],
+    "angle": [[0, 0], [1, 0], [1, .5], [.5, .5], [.5, 1], [0, 1]],
+    "stairs": [[0, 0], [1, 0], [1, .25], [.75, .25], [.75, .5], [.5, .5], [.5, .75], [0, .75]],
+    "trough": [[0, 0], [1, 0], [1, 1], [.75, 1], [.75, .5], [.25, .5], [.25, 1], [0, 1]],
+}
+WINDOW = [[.125, .125], [.125, .25], [.25, .25], [.25, .125]]
+
+
+@pytest.mark.parametrize("name", ALONG_THE_LINE)
+@pytest.mark.parametrize("low, size", [(0.0, 1.0), (1000.0, 3.0), (-7.3, 1e-3)])
+def test_edges_along_the_line_leave_sound_pieces_and_no_slivers(name, low, size):
+    """Rounding decides neither how many pieces there are nor what they are."""
+    rng = np.random.default_rng(7)
+    for off in [0.0, *10.0**np.repeat(np.arange(-17, -9), 6)]:
+        loops = [np.array(loop) for loop in (ALONG_THE_LINE[name], WINDOW)[:rng.integers(1, 3)]]
+        axis, limit = rng.integers(2), rng.integers(0, 9) / 8
+        whole = shapely.Polygon(loops[0], loops[1:])
+        moved = tuple(low + size * (loop + off * rng.standard_normal(loop.shape) * rng.integers(0, 2, loop.shape))
+                      for loop in loops)
+        for above in (True, False):
+            a, b = (limit, 9) if above else (-9, limit)
+            left = whole.intersection(shapely.box(a, -9, b, 9) if axis == 0 else shapely.box(-9, a, 9, b))
+            wanted = [one for one in getattr(left, "geoms", [left]) if one.area > 1e-6]
+            found = [[(loop - low) / size for loop in group]
+                     for group in grouped(clipped(moved, axis, low + size * limit, above))]
+            ours = [shapely.Polygon(group[0], group[1:]) for group in found]
+            assert len(ours) == len(wanted), (off, axis, limit)
+            assert all(one.is_valid for one in ours)
+            assert shapely.union_all(ours).symmetric_difference(left).area < 1e-7
+
+
+def test_a_loop_that_touches_another_is_no_hole_of_it():
+    beside = np.array([[4.0, 1], [4, 3], [5, 2]])
+    inner = np.array([[4.0, 1], [4, 3], [3, 2]])
+    assert [len(group) for group in grouped((SQUARE, beside))] == [1, 1]
+    assert [len(group) for group in grouped((SQUARE, inner))] == [2]

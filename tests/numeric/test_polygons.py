@@ -46,6 +46,19 @@ def test_slanted_borders_count_as_inside() -> None:
     assert not inside(slabs((loop,)), walk(loop, at) + outwards).any()
 
 
+@pytest.mark.parametrize("swap", [False, True])
+@pytest.mark.parametrize("low", [0.0, 1000.0])
+def test_borders_along_the_axes_count_as_inside_whatever_rounding_did(low: float, swap: bool) -> None:
+    """A point counts as on an edge at the same distance above and below it as beside it."""
+    rng, t = np.random.default_rng(4), np.linspace(0, 8, 81)
+    for size in np.repeat([1e-18, 1e-17, 1e-16, 1e-15], 10) * (low + 1):
+        loops = tuple((low + loop)[:, ::-1 if swap else 1] for loop in (SQUARE, HOLE))
+        moved = tuple(loop + size * rng.uniform(-1, 1, loop.shape) for loop in loops)
+        border = np.concatenate([walk(loop, t) for loop in loops])
+        for answer in (inside, inside_numpy):
+            assert answer(slabs(moved), border).all()
+
+
 @given(st.floats(0.1, 50), st.floats(-300, 300), st.floats(-300, 300), st.booleans(), st.integers(0, 99))
 @settings(max_examples=40, deadline=None)
 def test_follows_scale_shift_swap_and_reversal(scale: float, x: float, y: float, swap: bool, seed: int) -> None:

@@ -3,11 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.numeric.polygons import chords, inside, signed_area, slabs
 
 Array = NDArray[np.float64]
 
-SLIVER = 1e-12
+#: Loops whose mean width is less than this share of the polygon's size are left out.
+SLIVER = 1e-6
+#: Vertices nearer to the line than this share of the polygon's size lie on it: rounding must not decide on which side.
+ON_LINE = 1e-9
 
 
 def clipped(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> tuple[Array, ...]:
@@ -26,22 +29,45 @@ def clipped(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> t
     Returns
     -------
     tuple of (k, 2) arrays
-        Loops without area are left out; empty where nothing remains.
+        Loops without area or as thin as rounding makes them are left out; empty where nothing remains.
 
-    **Properties**: 1. the areas of both sides add up to the whole.
+    **Properties**: 1. the areas of both sides add up to the whole, but for `SLIVER`; 2. vertices moved by less than
+    `ON_LINE` change the loops by no more than that.
     """
+    if not loops:
+        return ()
     sign = 1.0 if above else -1.0
+    size = np.ptp(np.concatenate(loops), axis=0)
+    snapped = [_snapped(loop, axis, limit, ON_LINE * float(size[axis])) for loop in loops]
+    depths = [sign * (loop[:, axis] - limit) for loop in snapped]
+    if all((depth >= 0).all() for depth in depths):
+        return _with_width(snapped, size)
     whole: list[Array] = []
     chains: list[Array] = []
-    for loop in loops:
-        depth = sign * (loop[:, axis] - limit)
-        if (depth >= 0).all():
+    for loop, depth in zip(snapped, depths, strict=True):
+        if (depth >= 0).all() and (depth == 0).sum() < 2:
             whole.append(loop)
         elif (depth > 0).any():
             chains += _chains(loop, depth, axis, limit)
-    joined = whole + _joined(chains, 1 - axis)
-    size = max((float(np.ptp(loop, axis=0).prod()) for loop in loops), default=0.0)
-    return tuple(loop for loop in joined if len(loop) > 2 and abs(signed_area(loop)) > SLIVER * size)
+    return _with_width(whole + _joined(chains, axis), size)
+
+
+def _snapped(loop: Array, axis: int, limit: float, reach: float) -> Array:
+    """A loop with its vertices next to the line moved onto it."""
+    moved = loop.copy()
+    moved[np.abs(loop[:, axis] - limit) <= reach, axis] = limit
+    return moved
+
+
+def _with_width(loops: list[Array], size: Array) -> tuple[Array, ...]:
+    """The loops that are more than slivers of a polygon of given size."""
+    scale = np.where(size > 0, size, 1.0)
+    kept = []
+    for loop in loops:
+        unit = (loop - loop[0]) / scale
+        if len(loop) > 2 and abs(signed_area(unit)) > SLIVER * float(np.ptp(unit, axis=0).max()):
+            kept.append(loop)
+    return tuple(kept)
 
 
 def grouped(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
@@ -54,7 +80,8 @@ def grouped(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
     """
     groups: list[list[Array]] = []
     for loop in sorted(loops, key=lambda one: -abs(signed_area(one))):
-        around = [group for group in groups if inside(slabs(tuple(group)), loop).mean() > 0.5]
+        within = _inner_point(loop)
+        around = [group for group in groups if inside(slabs(tuple(group)), within)[0]]
         if around:
             around[-1].append(loop)
         else:
@@ -62,9 +89,20 @@ def grouped(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
     return [tuple(group) for group in groups]
 
 
+def _inner_point(loop: Array) -> Array:
+    """A point inside a loop and well off it, (1, 2): whatever touches the loop does not hold it by rounding."""
+    heights = np.unique(loop[:, 1])
+    if len(heights) < 2:
+        return loop[:1]
+    k = int(np.argmax(np.diff(heights)))
+    y = (heights[k] + heights[k + 1]) / 2
+    across = chords((loop,), y)
+    return np.array([[across[np.argmax(np.diff(across)[:, 0])].mean(), y]])
+
+
 def _chains(loop: Array, depth: Array, axis: int, limit: float) -> list[Array]:
-    """Runs of a loop on the kept side, each from the line to the line."""
-    inside = depth >= 0
+    """Runs of a loop strictly on the kept side, each from the line to the line."""
+    inside = depth > 0
     start = int(np.flatnonzero(~inside)[0])
     order = np.r_[start:len(loop), 0:start + 1]
     loop, depth, inside = loop[order], depth[order], inside[order]
@@ -83,12 +121,17 @@ def _crossing(p: Array, q: Array, dp: float, dq: float, axis: int, limit: float)
     return np.asarray(point)
 
 
-def _joined(chains: list[Array], along: int) -> list[Array]:
-    """Closed loops from chains, their ends joined in pairs along the line."""
-    ends = sorted((float(chain[end][along]), k, end) for k, chain in enumerate(chains) for end in (0, -1))
+def _joined(chains: list[Array], axis: int) -> list[Array]:
+    """Closed loops from chains, their ends joined in pairs along the line, in the order in which they leave it."""
+    ends = []
+    for k, chain in enumerate(chains):
+        for end, after in ((0, 1), (-1, -2)):
+            way = chain[after] - chain[end]
+            ends.append((float(chain[end][1 - axis]), float(way[1 - axis] / abs(way[axis])), k, end))
+    ends.sort()
     partner: dict[tuple[int, int], tuple[int, int]] = {}
     for one, other in zip(ends[::2], ends[1::2], strict=True):
-        partner[one[1:]], partner[other[1:]] = other[1:], one[1:]
+        partner[one[2:]], partner[other[2:]] = other[2:], one[2:]
     loops, free = [], set(range(len(chains)))
     while free:
         first = key = (min(free), 0)

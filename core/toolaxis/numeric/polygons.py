@@ -1,6 +1,6 @@
 """Points in polygons with holes: even-odd crossing counts over edges sorted into horizontal slabs.
 
-The border counts as inside, holes' borders too, within `BORDER` of the polygon's size.
+The border counts as inside, holes' borders too, within `BORDER` of the greatest coordinates.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from toolaxis.numeric.compiled import compiled
 
 Array = NDArray[np.float64]
 
-#: Half width of the border, as a share of the polygon's greatest coordinate: rounding of a crossing, and no more.
+#: Half width of the border, as a share of the polygon's greatest x and y: rounding of a crossing, and no more.
 BORDER = 1e-14
 
 
@@ -41,8 +41,8 @@ class Slabs:
         Edges that touch slab k are ``member[start[k]:start[k + 1]]``.
     low, height : float
         Lower end of the first slab and height of each.
-    border : float
-        Distance along x within which a point is on an edge.
+    border : (float, float)
+        Distances along x and along y within which a point is on an edge.
     """
 
     edges: Array
@@ -50,7 +50,7 @@ class Slabs:
     member: NDArray[np.int64]
     low: float
     height: float
-    border: float
+    border: tuple[float, float]
 
 
 def slabs(loops: tuple[Array, ...]) -> Slabs:
@@ -63,11 +63,12 @@ def slabs(loops: tuple[Array, ...]) -> Slabs:
     """
     edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in loops])
     edges = edges[(edges[:, 0] != edges[:, 2]) | (edges[:, 1] != edges[:, 3])]
-    lower, upper = edges[:, [1, 3]].min(axis=1), edges[:, [1, 3]].max(axis=1)
+    border = (BORDER * float(np.abs(edges[:, 0::2]).max(initial=0.0)),
+              BORDER * float(np.abs(edges[:, 1::2]).max(initial=0.0)))
+    lower, upper = edges[:, [1, 3]].min(axis=1) - border[1], edges[:, [1, 3]].max(axis=1) + border[1]
     low, high = (float(lower.min()), float(upper.max())) if len(edges) else (0.0, 1.0)
     count = max(1, min(4096, 2 * len(edges)))
     height = max((high - low) / count, np.finfo(float).tiny)
-    border = BORDER * float(np.abs(edges).max(initial=0.0))
     first = np.clip(((lower - low) / height).astype(np.int64), 0, count - 1)
     last = np.clip(((upper - low) / height).astype(np.int64), 0, count - 1)
     width = last - first + 1
@@ -79,10 +80,10 @@ def slabs(loops: tuple[Array, ...]) -> Slabs:
 
 
 @compiled
-def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]], grid: tuple[float, float, float],
-            points: Array, out: NDArray[np.bool_]) -> None:
+def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
+            grid: tuple[float, float, float, float], points: Array, out: NDArray[np.bool_]) -> None:
     start, member = table
-    low, height, border = grid
+    low, height, wide, tall = grid
     count = start.shape[0] - 1
     for k in range(points.shape[0]):
         x, y = points[k, 0], points[k, 1]
@@ -93,16 +94,13 @@ def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]], gr
             for m in range(start[slab], start[slab + 1]):
                 e = member[m]
                 x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
-                if y0 == y1:
-                    if y == y0 and min(x0, x1) <= x <= max(x0, x1):
-                        odd = True
-                        break
-                elif min(y0, y1) <= y <= max(y0, y1):
-                    beyond = x0 + (x1 - x0) * (y - y0) / (y1 - y0) - x
-                    if abs(beyond) <= border:
-                        odd = True
-                        break
-                    if beyond > 0.0 and (y0 > y) != (y1 > y):
+                if min(y0, y1) - tall <= y <= max(y0, y1) + tall:
+                    if min(x0, x1) - wide <= x <= max(x0, x1) + wide:
+                        dx, dy = x1 - x0, y1 - y0
+                        if abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide:
+                            odd = True
+                            break
+                    if (y0 > y) != (y1 > y) and x0 + (x1 - x0) * (y - y0) / (y1 - y0) > x:
                         odd = not odd
         out[k] = odd
 
@@ -123,7 +121,7 @@ def inside(table: Slabs, points: Array) -> NDArray[np.bool_]:
     if not _compiled.available:
         return inside_numpy(table, points)
     out = np.empty(len(points), dtype=np.bool_)
-    _inside(table.edges, (table.start, table.member), (table.low, table.height, table.border), points, out)
+    _inside(table.edges, (table.start, table.member), (table.low, table.height, *table.border), points, out)
     return out
 
 
@@ -135,14 +133,14 @@ def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
     odd, on = np.zeros((2, len(points)), dtype=bool)
     finite = np.asarray(np.isfinite(points).all(axis=1))
     x, y = np.where(finite[:, None], points, 0.0).T
+    wide, tall = table.border
     for x0, y0, x1, y1 in table.edges:
-        touched = (y >= min(y0, y1)) & (y <= max(y0, y1))
-        if y0 == y1:
-            on |= touched & (x >= min(x0, x1)) & (x <= max(x0, x1))
-            continue
-        beyond = x0 + (x1 - x0) * (y - y0) / (y1 - y0) - x
-        on |= touched & (np.abs(beyond) <= table.border)
-        odd ^= (beyond > 0) & ((y0 > y) != (y1 > y))
+        dx, dy = x1 - x0, y1 - y0
+        near = (y >= min(y0, y1) - tall) & (y <= max(y0, y1) + tall)
+        near &= (x >= min(x0, x1) - wide) & (x <= max(x0, x1) + wide)
+        on |= near & (np.abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide)
+        if dy != 0:
+            odd ^= ((y0 > y) != (y1 > y)) & (x0 + dx * (y - y0) / dy > x)
     return np.asarray((odd | on) & finite)
 
 
