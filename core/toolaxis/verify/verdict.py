@@ -293,7 +293,9 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, .
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms)]
-    notes = [f"{name} not checked" for name, room in rooms.items() if room == NOT_CHECKED]
+    why = {"cutter": "there is nothing besides the machined skin"}
+    notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
+             for name, room in rooms.items() if room == NOT_CHECKED]
     return OperationVerdict(
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
         reached_max, share, gouge_max, task.tolerance.gouge, rooms,
