@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.path.chart import Cut, IsoChart
-from toolaxis.path.count import count, measure
+from toolaxis.path.count import count, measure, panels
 from toolaxis.path.estimate import Estimator, estimate, sum_rows_numpy
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.lean import lean_ratio, lean_ratios, lean_table
@@ -55,6 +55,28 @@ def test_count_agrees_with_passes_made(make, seed, trim):
     for axis in (make["leaning"](25), make["leaning"](15, 20)):
         made = layout(face, TORUS, axis, 0.02).used
         assert count(face, TORUS, axis, 0.02) == pytest.approx(made, rel=2e-3)
+
+
+ALONG_THE_PASSES = {
+    "rectangle": [[0, 0], [1, 0], [1, 1], [0, 1]],
+    "angle": [[0, 0], [1, 0], [1, .5], [.5, .5], [.5, 1], [0, 1]],
+    "trough": [[0, 0], [1, 0], [1, 1], [.75, 1], [.75, .5], [.25, .5], [.25, 1], [0, 1]],
+}
+
+
+@pytest.mark.parametrize("name", ALONG_THE_PASSES)
+@pytest.mark.parametrize("feed", ["u", "v"])
+def test_noise_of_loops_along_the_passes_changes_no_count(make, name, feed):
+    """The first and the last pass are those along the border, not along the one vertex that is farthest out."""
+    rng, loop = np.random.default_rng(5), np.array(ALONG_THE_PASSES[name])
+    whole, cut = make["wavy"](3, (50.0, 40.0), 4.0), Cut(TORUS, make["leaning"](20, 30), 0.05)
+    chart = IsoChart(whole.trimmed((loop,)), feed)
+    exact = measure(chart, cut)
+    for off in (1e-16, 1e-12, 1e-8, 1e-7):
+        moved = np.clip(loop + off * rng.standard_normal(loop.shape), 0, 1)
+        other = IsoChart(whole.trimmed((moved,)), feed)
+        assert measure(other, cut) == pytest.approx(exact, rel=1e-3)
+        assert panels(other) == pytest.approx(panels(chart), abs=1e-5)
 
 
 def _sheet(seed):

@@ -19,8 +19,9 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-#: Lines are kept this share of the range off its ends, where inside and outside cannot be told apart.
-_EDGE = 1e-9
+#: Lines are kept this share of the range off its ends: there the noise of a loop along the end, and no more than that,
+#: would decide which parts of a line are inside.
+_EDGE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,8 @@ _EXACT_GAPS = 12
 _HALVINGS = 4
 _CANDIDATES = 2
 _SETTLED = 3
+#: Edges that rise by less than this share of the range are level: rounding must not hide where a loop turns.
+_LEVEL = 1e-6
 
 # Nodes and weights of Gauss and Kronrod with 7 and 15 points on [-1, 1], for the upper half.
 _NODES = np.array([0.0, 0.207784955007898467600689403773245, 0.405845151377397166906606412076961,
@@ -131,8 +133,9 @@ def panels(chart: Chart) -> Array:
     _, _, s0, s1 = chart.bounds
     turns = [s0, s1, *chart.breaks[1]]
     for loop in chart.loops:
-        before, after = loop[:, 1] - np.roll(loop[:, 1], 1), np.roll(loop[:, 1], -1) - loop[:, 1]
-        turns += loop[before * after <= 0, 1].tolist()
+        way = np.roll(loop[:, 1], -1) - loop[:, 1]
+        way = np.where(np.abs(way) > _LEVEL * (s1 - s0), way, 0.0)
+        turns += loop[np.roll(way, 1) * way <= 0, 1].tolist()
     inner = np.sort(np.array(turns))
     keep = [s0]
     for place in inner:
