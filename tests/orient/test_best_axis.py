@@ -65,6 +65,18 @@ def test_both_methods_beat_the_mean_normal_side(make, method):
     assert found.outcome in OUTCOMES
 
 
+def test_rules_name_one_axis_and_stay_with_it(make):
+    face = make.seeded(73)
+    searched, ruled = (best_axis(face, TOOL, H, method=method) for method in ("sphere", "roman"))
+    assert ruled.outcome == "feasible" and ruled.count > searched.count
+    again = evaluate_axis(face, TOOL, ruled.axis, H)
+    assert (again.length, again.passes, again.feed) == (ruled.length, ruled.passes, ruled.feed)
+    mean = best_axis(face, Tool.ball(8), H, method="normal")
+    assert mean.outcome == "feasible" and mean.axis @ face.normal(face.grid(40, 40)).mean(axis=0) > 0.99 * 0.9
+    refused = best_axis(face, TOOL, H, method="normal")
+    assert refused.outcome == "not_found" and refused.axis is None and "contact wanders" in refused.reasons[0]
+
+
 def test_a_given_axis_is_judged_the_same_way(make):
     face = make.seeded(74)
     found = best_axis(face, TOOL, H)

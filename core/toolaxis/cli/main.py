@@ -67,8 +67,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
-    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors"),
-                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016")
+    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors", "roman", "normal"),
+                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; to "
+                          "compare: the axis of Roman's rule, or the mean normal")
     sub.add_argument("--objective", default="length", choices=("length", "passes"),
                      help="what is least: cutting length (default) or number of passes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")

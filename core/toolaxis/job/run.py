@@ -70,7 +70,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
     method : str
-        "sphere" or "sectors".
+        "sphere", "sectors", "roman" or "normal".
     feedrate, spindle : float
         mm/min and rev/min, for the CL files.
     tolerance : Tolerance, optional

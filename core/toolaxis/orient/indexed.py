@@ -16,7 +16,7 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
-from toolaxis.orient.sector import sectors
+from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
 from toolaxis.orient.worth import FEEDS, Worth
@@ -33,7 +33,9 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-METHODS = {"sphere": search, "sectors": sectors}
+METHODS = {"sphere": search, "sectors": sectors, "roman": by_roman, "normal": by_mean_normal}
+#: Methods that only name an axis: where that is refused, none beside it is tried.
+RULES = ("roman", "normal")
 
 #: Height above everything at which links cross, mm.
 CROSSING = 5.0
@@ -179,7 +181,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.
     method : str
-        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors.
+        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; for comparison "roman":
+        the axis of Roman's rule, and "normal": the mean normal, each with the same proof and nothing beside it.
     objective : str
         "length" or "passes": what is to be least.
     part : Part, optional
@@ -223,13 +226,13 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
-        return settled(job, ledger, METHODS[method](ledger))
+        return settled(job, ledger, METHODS[method](ledger), 1 if method in RULES else _ATTEMPTS)
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
                            evaluations=ledger.evaluations, map=ledger.map())
 
 
-def settled(job: Task, ledger: Ledger, found: list[Candidate]) -> Orientation:
+def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
     """The best candidate that the proof accepts, or why there is none.
 
     Parameters
@@ -238,10 +241,12 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate]) -> Orientation:
     ledger : Ledger
     found : list of Candidate
         The best of each lobe, best first.
+    attempts : int
+        How often each is tried, repaired between; 1 to take them as they are.
     """
     refused: list[str] = []
     for k in range(len(found)):
-        accepted = _accepted(job, ledger, found[k], refused)
+        accepted = _accepted(job, ledger, found[k], refused, attempts)
         if accepted is not None:
             others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
             return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
@@ -260,10 +265,10 @@ def _sound(job: Task, one: Candidate) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str]) -> Orientation | None:
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str], attempts: int) -> Orientation | None:
     """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: Candidate | None = one
-    for attempt in range(_ATTEMPTS):
+    for attempt in range(attempts):
         if candidate is None:
             return None
         witness = ledger.feasibility.witness(candidate.axis)
@@ -273,7 +278,7 @@ def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str]) -> 
                 return result
             witness = proof.witness
         refused.append(f"refused {direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
-        candidate = repaired(ledger, candidate, witness, attempt)
+        candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
     return None
 
 

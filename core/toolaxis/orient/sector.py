@@ -173,3 +173,28 @@ def mean_normal(ledger: Ledger) -> Array:
     ledger : Ledger
     """
     return ledger.feasibility.normals.mean
+
+
+def by_roman(ledger: Ledger) -> list[Candidate]:
+    """Roman's rule as a search of its own: its axis with its value, or nothing where that axis is forbidden.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    return _alone(ledger, roman_axis(ledger))
+
+
+def by_mean_normal(ledger: Ledger) -> list[Candidate]:
+    """The mean normal as a search of its own: with its value, or nothing where that axis is forbidden.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    return _alone(ledger, mean_normal(ledger))
+
+
+def _alone(ledger: Ledger, axis: Array) -> list[Candidate]:
+    row = ledger.look(axis[None]).start
+    return [counted(ledger, row)] if ledger.reason[row] == FREE else []

@@ -14,7 +14,7 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-METHODS = ("sphere", "sectors")
+METHODS = ("sphere", "sectors", "roman", "normal")
 OBJECTIVES = ("length", "passes")
 DIRECTIONS = ("zigzag", "climb", "conventional")
 
