@@ -16,7 +16,7 @@ from freecad.toolaxis.results import child
 from freecad.toolaxis.staleness import same, signature
 
 from toolaxis.errors import Cancelled, ToolAxisError
-from toolaxis.progress import Progress
+from toolaxis.progress import NO_PROGRESS, Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMITS = "cone:0.2,0.1,1,2"
@@ -66,6 +66,48 @@ def test_a_changed_part_makes_results_stale(operation, document, parts, part):
     part.Shape = parts.wavy()
     document.recompute()
     assert not operation.Stale, "and back again"
+
+
+def test_a_verdict_holds_for_what_was_judged(operation, document, parts, part):
+    bridge.verify(operation)
+    assert operation.Verdict == "passed"
+    document.recompute(None, True)
+    assert operation.Verdict == "passed"
+    part.Shape = parts.wavy(10.3)
+    document.recompute()
+    assert operation.Verdict == "out of date" and "verify again" in operation.VerdictReasons[0]
+    bridge.verify(operation)
+    assert operation.Verdict == "failed" and operation.Stale
+    part.Shape = parts.wavy()
+    document.recompute()
+    assert not operation.Stale and operation.Verdict == "out of date"
+    operation.Scallop = 2.0
+    document.recompute()
+    assert bridge.verify(operation).passed
+    operation.Scallop = 0.3
+    document.recompute()
+    assert operation.Verdict == "out of date"
+
+
+def test_a_part_changed_while_it_was_judged(operation, document, parts, part):
+    found = bridge.verification(operation)(NO_PROGRESS).operations
+    part.Shape = parts.wavy(10.3)
+    bridge.keep_verdict(operation, found)
+    document.recompute()
+    assert operation.Verdict == "out of date"
+
+
+def test_a_part_that_cannot_be_made_any_more_makes_results_stale(document, parts):
+    base, hole = parts.block(document, "Base"), document.addObject("Part::Cylinder", "Hole")
+    hole.Height, hole.Placement = 60, Placement(Vector(10, 8, -500), Rotation())
+    cut = document.addObject("Part::Cut", "Cut")
+    cut.Base, cut.Tool = base, hole
+    document.recompute()
+    made = parts.planned(document, (cut, parts.sculptured_name(cut)))[0]
+    assert not made.Stale
+    document.removeObject(hole.Name)
+    document.recompute()
+    assert "Invalid" in cut.State and made.Stale and made.StaleReasons
 
 
 def test_one_pole_a_hundredth_of_a_millimetre_off_is_a_change(document, parts):

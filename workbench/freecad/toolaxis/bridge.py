@@ -161,12 +161,14 @@ def verification(operation):
     from toolaxis.errors import InvalidInput
 
     from .reading import Source
+    from .staleness import standing as what_stands
     from .standing import Standing
 
     inputs = inputs_of(operation)
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
     standing, source, tool = Standing.of(operation), Source.of(inputs), inputs.assembled()
+    operation.Proxy.judging = what_stands(operation)
 
     def compute(progress):
         import toolaxis as ta

@@ -204,6 +204,8 @@ def _standing_tool(operation, tool, title):
 def keep_verdict(operation, verdicts):
     """Keep the judge's verdict on an operation: figures, worst places, and maps as a coloured mesh.
 
+    It holds for what stood in the document when `bridge.verification` was asked.
+
     Parameters
     ----------
     operation : App.DocumentObject
@@ -218,4 +220,5 @@ def keep_verdict(operation, verdicts):
     from .objects.maps import keep
 
     with one_step(operation.Document, translate("ToolAxis", "Verify")):
+        operation.JudgedWith, operation.JudgedShapes = operation.Proxy.judging
         return keep(operation, verdicts[0], child(operation, "Path::Feature").Placement)

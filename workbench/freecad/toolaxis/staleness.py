@@ -95,6 +95,24 @@ def digest(inputs):
     return json.dumps(words, sort_keys=True)
 
 
+def standing(operation):
+    """What a verdict on an operation is about: the inputs as text, and the numbers of the shapes.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+
+    Raises
+    ------
+    InvalidInput
+        When the part or a body to avoid has no shape any more.
+    """
+    from .bridge import inputs_of
+
+    inputs = inputs_of(operation)
+    return digest(inputs), signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
+
+
 def why_stale(operation):
     """Why the results of an operation do not hold any more, sentences; none where they do.
 

@@ -2,6 +2,7 @@
 
 import FreeCAD
 
+from . import is_operation
 from .properties import Property, Proxy, assign
 
 _ASKED, _FOUND, _JUDGED, _KEPT = "Inputs", "Result", "Verdict", "Tool Axis"
@@ -43,7 +44,9 @@ KEPT = (
     Property("IntegerList", "Motions", _KEPT, "Kind of each motion", True, True),
     Property("IntegerList", "Starts", _KEPT, "Where each pass starts", True, True))
 VERDICT = (
-    Property("String", "Verdict", _JUDGED, "not verified, passed or failed", True),
+    Property("String", "Verdict", _JUDGED, "not verified, passed, failed, or out of date", True),
+    Property("String", "JudgedWith", _JUDGED, "Inputs at the time of the verdict, JSON", True, True),
+    Property("FloatList", "JudgedShapes", _JUDGED, "Shapes at the time of the verdict", True, True),
     Property("StringList", "VerdictReasons", _JUDGED, "Why it failed, and what was not checked", True),
     Property("Length", "ScallopMax", _JUDGED, "Greatest height left where the cutter came", True),
     Property("Float", "ShareWithin", _JUDGED, "Share of the area left within the scallop height", True),
@@ -70,9 +73,40 @@ class Operation(Proxy):
     Type = "ToolAxisOperation"
     properties = (*INPUTS, *RESULTS, *KEPT, *VERDICT)
 
+    def __init__(self, thing):
+        super().__init__(thing)
+        watch()
+
+    def onDocumentRestored(self, thing):
+        """Give an operation of an older version what it does not have yet."""
+        super().onDocumentRestored(thing)
+        watch()
+
     def execute(self, thing):
-        """Compare with what was planned; computes no axis."""
+        """Compare with what was planned and judged; computes no axis."""
         mark(thing)
+
+
+class _Watch:
+    """Marks operations that FreeCAD left out of a recompute because the part behind them failed."""
+
+    def slotRecomputedDocument(self, document):
+        """Mark the operations of a document where something is invalid."""
+        if any("Invalid" in thing.State for thing in document.Objects):
+            for thing in document.Objects:
+                if is_operation(thing):
+                    mark(thing)
+
+
+_WATCH = _Watch()
+_watching = []
+
+
+def watch():
+    """Follow the recomputes of all documents, once."""
+    if not _watching:
+        FreeCAD.addDocumentObserver(_WATCH)
+        _watching.append(_WATCH)
 
 
 def mark(thing):
@@ -90,7 +124,20 @@ def mark(thing):
         FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
         reasons = [f"it cannot be compared with what was planned ({reason})"]
     assign(thing, StaleReasons=reasons, Stale=bool(reasons))
+    if thing.Verdict in ("passed", "failed") and not _verdict_holds(thing):
+        assign(thing, Verdict="out of date", VerdictReasons=["the part or the inputs have changed since: verify again"])
     return bool(reasons)
+
+
+def _verdict_holds(thing):
+    from ..staleness import same, standing
+
+    try:
+        words, shapes = standing(thing)
+    except Exception as reason:
+        FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
+        return False
+    return words == thing.JudgedWith and same(list(thing.JudgedShapes), shapes)
 
 
 def set_inputs(thing, inputs):
