@@ -1,15 +1,14 @@
 """Tools from text: a short form, a tool file, or a name from the tool library; holders likewise."""
 
 import json
-import os
 import re
-import sys
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.resources import named_files
 from toolaxis.tools.assembly import Tool
 
 _KINDS = ("torus", "ball", "flat", "tapered")
@@ -28,14 +27,7 @@ def library() -> dict[str, Path]:
     dict of str to Path
         The folder in the environment variable TOOLAXIS_TOOLS, if set, comes first.
     """
-    folders = [Path(os.environ["TOOLAXIS_TOOLS"])] if os.environ.get("TOOLAXIS_TOOLS") else []
-    folders += [Path(__file__).resolve().parents[3] / "resources" / "tools",
-                Path(sys.prefix) / "share" / "toolaxis" / "tools"]
-    found: dict[str, Path] = {}
-    for folder in folders:
-        for path in sorted([*folder.glob("*.toml"), *folder.glob("*.fctb")]):
-            found.setdefault(path.stem, path)
-    return found
+    return named_files("tools", ".toml", ".fctb")
 
 
 def load_tool(text: str, **body: Any) -> Tool:

@@ -3,8 +3,6 @@
 In the files lengths are mm, angles degrees, times seconds; in memory angles are radians.
 """
 
-import os
-import sys
 import tomllib
 from math import inf, radians
 from pathlib import Path
@@ -16,6 +14,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.fcm import machine_from_fcm
+from toolaxis.resources import named_files
 
 _MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head"}
 _LINEAR = {"name", "direction", "limits", "velocity", "acceleration", "jerk"}
@@ -31,14 +30,7 @@ def library() -> dict[str, Path]:
     dict of str to Path
         The folder in the environment variable TOOLAXIS_MACHINES, if set, comes first.
     """
-    folders = [Path(os.environ["TOOLAXIS_MACHINES"])] if os.environ.get("TOOLAXIS_MACHINES") else []
-    folders += [Path(__file__).resolve().parents[3] / "resources" / "machines",
-                Path(sys.prefix) / "share" / "toolaxis" / "machines"]
-    found: dict[str, Path] = {}
-    for folder in folders:
-        for path in sorted([*folder.glob("*.toml"), *folder.glob("*.fcm")]):
-            found.setdefault(path.stem, path)
-    return found
+    return named_files("machines", ".toml", ".fcm")
 
 
 def load_machine(text: str) -> Machine:
