@@ -13,8 +13,8 @@ from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.progress import Progress
 
-_LATER = {"machine": "choosing a machine by name; give its axis range with --limits",
-          "strategy": "any other strategy than one fixed axis per face"}
+_LATER = {"machine": ("choosing a machine by name", "give its axis range with --limits"),
+          "strategy": ("any other strategy than one fixed axis per face", "leave it out")}
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -54,10 +54,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _spec(given: Namespace) -> Spec:
-    for name, what in _LATER.items():
+    for name, (what, remedy) in _LATER.items():
         value = getattr(given, name)
         if value is not None and (name, value) != ("strategy", "indexed"):
-            raise InvalidInput(f"--{name} {value}: {what} is not part of this version; leave it out")
+            raise InvalidInput(f"--{name} {value}: {what} is not part of this version: {remedy}")
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
