@@ -8,13 +8,14 @@ import pytest
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import Cone, parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
+from toolaxis.orient import sphere
 from toolaxis.orient.hunt import hunt
 from toolaxis.orient.indexed import task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.sector import mean_normal, roman_axis, sectors
 from toolaxis.orient.sphere import search
 from toolaxis.orient.spiral import spiral
-from toolaxis.orient.verdicts import FREE
+from toolaxis.orient.verdicts import FREE, GOUGE
 from toolaxis.orient.worth import Worth
 from toolaxis.path.count import count
 from toolaxis.shape.face import Face
@@ -146,6 +147,16 @@ def test_limits_that_exclude_the_face_are_proven_to(make):
     open_.feasibility = task(make.seeded(67), TOOL, H).feasibility
     open_.look(np.array([[0, 0, 1.0], [0, 0, 1.0], unit([0.3, 0.2, 1.0])]))
     assert not hunt(open_, 2, radians(10))
+
+
+def test_a_closer_look_may_refuse_the_last_axis(make, monkeypatch):
+    def refuse(ledger, _):
+        for row in np.flatnonzero(ledger.reason == FREE):
+            ledger.forbid(int(row), GOUGE, 1.0)
+
+    monkeypatch.setattr(sphere, "probe", refuse)
+    ledger, found = searched(make.seeded(68))
+    assert found == [] and not ledger.proven and len(ledger.axes) > 0
 
 
 def test_objectives_choose_by_what_they_name(make):

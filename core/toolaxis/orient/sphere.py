@@ -150,6 +150,8 @@ def refine(ledger: Ledger, spacing: float, width: int) -> None:
     """
     price, all_values = ledger.price, ledger.values.min(axis=1)
     free = np.flatnonzero(np.isfinite(price))
+    if not len(free):  # a closer look has refused the last one
+        return
     best = _spread(ledger.axes, free[np.argsort(price[free], kind="stable")], 0.6 * spacing, width - width // 2)
     border = np.flatnonzero((ledger.reason > BACK) & np.isfinite(all_values) & (all_values < 1.02 * price.min()))
     if len(border):
