@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from .arguments import document_of, faces_of, fields_of, operation_of, progress_of, tool_of
 from .cam import tool_from as tool_from
 from .defaults import defaults as defaults
 from .results import apply as apply
@@ -179,54 +180,16 @@ def verification(operation):
     return compute
 
 
-def chosen(faces):
-    """Faces as (object, "Face7") pairs from what is easy to write.
-
-    Parameters
-    ----------
-    faces : object, (object, "Face7"), (object, ("Face7", ...)), or list of these
-        An object alone stands for its sculptured faces.
-
-    Raises
-    ------
-    InvalidInput
-        When nothing is given, or something that has no such faces.
-    """
-    import FreeCAD
-
-    from toolaxis.errors import InvalidInput
-
-    from .reading import sculptured
-
-    if isinstance(faces, FreeCAD.DocumentObject) or (isinstance(faces, tuple) and len(faces) == 2
-                                                     and isinstance(faces[1], str | list | tuple)
-                                                     and isinstance(faces[0], FreeCAD.DocumentObject)
-                                                     and not _pairs(faces[1])):
-        faces = [faces]
-    found = []
-    for item in faces or ():
-        thing, names = item if isinstance(item, tuple) else (item, ())
-        names = [names] if isinstance(names, str) else list(names)
-        found += [(thing, name) for name in names or sculptured(thing)]
-    if not found:
-        raise InvalidInput("nothing is selected: select one or more faces, or a body")
-    return tuple(dict.fromkeys(found))
-
-
-def _pairs(names):
-    return not isinstance(names, str) and any(isinstance(name, tuple) for name in names)
-
-
 def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
     """Plan faces of a document: compute, and put the operations into the tree, as one undo step.
 
     Parameters
     ----------
     document : App.Document
-    faces : object, (object, "Face7"), or list of these
+    faces : object, (object, "Face7"), (object, 7), "Block.Face7", or list of these
         An object alone stands for its sculptured faces.
     tool : str, toolaxis.Tool, or a CAM tool controller or tool bit, optional
-    scallop : float, optional
+    scallop : float or Quantity, optional
         mm
     progress : toolaxis.progress.Progress, optional
     **given
@@ -242,16 +205,11 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
     ToolAxisError
         In one sentence; the document is then as it was.
     """
-    from toolaxis.progress import NO_PROGRESS
-
-    inputs = defaults(document, chosen(faces))
-    if tool is not None:
-        inputs = replace(inputs, **tool_fields(tool))
-    if scallop is not None:
-        given["scallop"] = float(scallop)
-    if given:
-        inputs = replace(inputs, **given)
-    return apply(document, inputs, task(inputs)(progress or NO_PROGRESS))
+    document, progress = document_of(document), progress_of(progress)
+    fields = fields_of(document, {"scallop": scallop, **given})
+    fields = (tool_fields(tool) if tool is not None else {}) | fields
+    inputs = replace(defaults(document, faces_of(document, faces)), **fields)
+    return apply(document, inputs, task(inputs)(progress))
 
 
 def tool_fields(tool):
@@ -261,7 +219,7 @@ def tool_fields(tool):
     ----------
     tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
     """
-    if isinstance(tool, str):
+    if isinstance(tool_of(tool), str):
         from toolaxis.job.toolfile import load_tool
 
         tool = load_tool(tool)
@@ -295,12 +253,11 @@ def recompute(operation, progress=None):
         In one sentence; the document is then as it was.
     """
     from toolaxis.errors import InvalidInput
-    from toolaxis.progress import NO_PROGRESS
 
-    inputs = inputs_of(operation)
+    inputs = inputs_of(operation_of(operation))
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
-    made = task(inputs)(progress or NO_PROGRESS)
+    made = task(inputs)(progress_of(progress))
     return apply(operation.Document, inputs, made, operation)
 
 
@@ -321,9 +278,7 @@ def verify(operation, progress=None):
     ToolAxisError
         In one sentence, where there is nothing to judge.
     """
-    from toolaxis.progress import NO_PROGRESS
-
-    verdicts = verification(operation)(progress or NO_PROGRESS).operations
+    verdicts = verification(operation_of(operation))(progress_of(progress)).operations
     keep_verdict(operation, verdicts)
     return verdicts[0]
 
@@ -337,4 +292,4 @@ def is_stale(operation):
     """
     from .staleness import why_stale
 
-    return bool(why_stale(operation))
+    return bool(why_stale(operation_of(operation)))
