@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import FreeCAD
 
-from .objects.frames import add_frame, kind_of_frame, place_frame
+from .objects.belongings import child, frame_of
+from .objects.frames import add_frame, place_frame
 from .objects.operation import Operation, mark, set_inputs, set_results
 from .objects.passes import commands, fill_passes
 from .objects.tool import ToolOnPasses, tool_shape
@@ -142,20 +143,9 @@ def _region(op, number):
     return None if not plain or plain.isalpha() else [loop.tolist() for loop in op.face.trims]
 
 
-def child(operation, kind):
-    """The object of a type in an operation; None without one.
-
-    Parameters
-    ----------
-    operation : App.DocumentObject
-    kind : str
-    """
-    return next((thing for thing in operation.Group if thing.isDerivedFrom(kind)), None)
-
-
 def _standing_frame(operation, op, part, title):
     document = operation.Document
-    frame = child(operation, kind_of_frame(document))
+    frame = frame_of(operation)
     if frame is None:
         frame = add_frame(document)
         operation.addObject(frame)
@@ -176,6 +166,7 @@ def _standing_passes(operation, op, frame, title):
     passes.Label = translate("ToolAxis", "Passes {}").format(title)
     fill_passes(passes, commands(op.path, op.frame, frame[1]))
     passes.Placement = frame[0].Placement
+    passes.setExpression("Placement", None)  # the same words may mean a frame that was deleted
     passes.setExpression("Placement", f"{frame[0].Name}.Placement")
     if FreeCAD.GuiUp:  # else FreeCAD draws a line to the first point from the origin, maybe through the part
         first = passes.Path.Commands[0].Placement.Base
@@ -189,13 +180,15 @@ def _standing_tool(operation, tool, title):
     if standing is None:
         standing = document.addObject("Part::FeaturePython", "ToolOnPasses")
         ToolOnPasses(standing)
-        standing.Passes = passes
-        standing.setExpression("Placement", f"{passes.Name}.Placement * Station")
         if FreeCAD.GuiUp:
             from .views.tool import ToolView
 
             ToolView(standing.ViewObject)
         operation.addObject(standing)
+    if standing.Passes != passes:
+        standing.Passes = passes
+        standing.setExpression("Placement", None)
+        standing.setExpression("Placement", f"{passes.Name}.Placement * Station")
     standing.Label = translate("ToolAxis", "Tool {}").format(title)
     standing.Shape = tool_shape(tool)
     standing.Proxy.execute(standing)

@@ -123,12 +123,13 @@ def why_stale(operation):
     from toolaxis.errors import ToolAxisError
 
     from .bridge import inputs_of
+    from .objects.belongings import missing
 
     if not operation.PlannedWith:
         return ["nothing was planned yet"]
     inputs = inputs_of(operation)
     if not inputs.faces:
-        return ["the part was deleted"]
+        return ["the part was deleted", *missing(operation)]
     planned = json.loads(operation.PlannedWith)
     now = json.loads(digest(inputs))
     reasons = []
@@ -142,7 +143,8 @@ def why_stale(operation):
     try:
         found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
     except ToolAxisError as reason:
-        return [*reasons, str(reason)]
+        return [*reasons, str(reason), *missing(operation)]
+    reasons += missing(operation)
     return reasons + _what_changed(list(operation.Signature), found, len(inputs.obstacles))
 
 

@@ -44,8 +44,8 @@ class Standing:
         from toolaxis.errors import InvalidInput
         from toolaxis.plan.document import orientation_from
 
+        from .objects.belongings import child
         from .objects.passes import read_back
-        from .results import child
 
         passes = child(operation, "Path::Feature")
         if passes is None or len(passes.Path.Commands) < 2:

@@ -3,6 +3,7 @@
 import FreeCAD
 
 from . import is_operation
+from .belongings import Keeper, note
 from .properties import Property, Proxy, assign
 
 _ASKED, _FOUND, _JUDGED, _KEPT = "Inputs", "Result", "Verdict", "Tool Axis"
@@ -78,17 +79,18 @@ class Operation(Proxy):
         watch()
 
     def onDocumentRestored(self, thing):
-        """Give an operation of an older version what it does not have yet."""
+        """Give an operation of an older version what it does not have yet, and tell what was not opened."""
         super().onDocumentRestored(thing)
         watch()
+        note(thing)
 
     def execute(self, thing):
         """Compare with what was planned and judged; computes no axis."""
         mark(thing)
 
 
-class _Watch:
-    """Marks operations that FreeCAD left out of a recompute because the part behind them failed."""
+class _Watch(Keeper):
+    """Marks also operations that FreeCAD left out of a recompute because the part behind them failed."""
 
     def slotRecomputedDocument(self, document):
         """Mark the operations of a document where something is invalid."""

@@ -133,7 +133,7 @@ class VerifyPanel:
         form, judging = self.form, self.work is not None
         form.progress.setVisible(judging)
         form.stop.setEnabled(judging)
-        form.verify.setEnabled(not judging)
+        form.verify.setEnabled(not judging and bool(self.operations))
         chosen = self.chosen
         several = self.found is not None and len(self.found) > 1
         for widget in (form.operation, form.operationLabel):

@@ -42,6 +42,10 @@ class OperationView:
                 thing.Label, "; ".join(thing.StaleReasons))
             FreeCADGui.getMainWindow().statusBar().showMessage(text, _TIME)
 
+    def onDelete(self, view, names):
+        """Delete it without the question that FreeCAD asks for groups: what belongs to it goes with it."""
+        return True
+
     def doubleClicked(self, view):
         """Open the operation's panel: results, map, the tool on its passes, and the way to plan it again."""
         if FreeCADGui.Control.activeDialog():

@@ -1,0 +1,113 @@
+"""What belongs to an operation: frame, passes, tool and maps; what of it is missing, and what goes with it."""
+
+from . import is_operation
+from .properties import assign
+
+#: FreeCAD's own coordinate systems, the newer first; documents of either kind are opened in both.
+FRAMES = ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem")
+
+
+def child(operation, kind):
+    """The object of a type in an operation; None without one.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    kind : str
+    """
+    return next((thing for thing in operation.Group if thing.isDerivedFrom(kind)), None)
+
+
+def frame_of(operation):
+    """The work coordinate system of an operation; None without one.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    return next(filter(_is_frame, operation.Group), None)
+
+
+def _is_frame(thing):
+    return thing.TypeId in FRAMES and "Frame" in thing.PropertiesList
+
+
+def _is_passes(thing):
+    return thing.TypeId == "Path::Feature"
+
+
+def belongings(operation):
+    """The objects in an operation that it was given here; what a user has put there is not among them.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    return [thing for thing in operation.Group
+            if _is_frame(thing) or _is_passes(thing) or getattr(getattr(thing, "Proxy", None), "Type", "") ==
+            "ToolAxisTool" or (thing.TypeId == "Mesh::Feature" and "Shows" in thing.PropertiesList)]
+
+
+def missing(operation, without=None):
+    """What an operation that was planned does not have any more, sentences.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    without : App.DocumentObject, optional
+        An object that is about to be deleted.
+    """
+    if not operation.Motions:
+        return []
+    there = [thing for thing in operation.Group if without is None or thing.Name != without.Name]
+    reasons = []
+    if not any(map(_is_frame, there)):
+        reasons.append("its work coordinate system is missing (deleted, or of a kind that this FreeCAD does not know)")
+    if not any(map(_is_passes, there)):
+        reasons.append("its passes are missing")
+    return reasons
+
+
+def note(operation, without=None):
+    """Mark an operation stale for what it does not have any more, at once and without a look at the shapes.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    without : App.DocumentObject, optional
+        An object that is about to be deleted.
+    """
+    new = [reason for reason in missing(operation, without) if reason not in operation.StaleReasons]
+    if new:
+        assign(operation, StaleReasons=[*operation.StaleReasons, *new], Stale=True)
+
+
+class Keeper:
+    """Follows all documents: what belongs to an operation goes with it, and what is deleted alone is told.
+
+    Nothing is done while FreeCAD itself undoes or redoes: it brings back, or takes away, what was recorded.
+    """
+
+    def __init__(self):
+        self.going = set()
+
+    def slotDeletedObject(self, thing):
+        """Called by FreeCAD before an object is deleted."""
+        document = thing.Document
+        if document is None or document.Transacting or document.Restoring:
+            return
+        if is_operation(thing):
+            self._take(document, thing)
+            return
+        for above in thing.InList:
+            if is_operation(above) and above.Name not in self.going and thing in above.Group:
+                note(above, thing)
+
+    def _take(self, document, operation):
+        self.going.add(operation.Name)
+        try:
+            for name in [thing.Name for thing in belongings(operation)]:
+                if document.getObject(name) is not None:
+                    document.removeObject(name)
+        finally:
+            self.going.discard(operation.Name)
