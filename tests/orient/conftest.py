@@ -56,8 +56,16 @@ def floor_and_wall(height=25.0, size=15.0):
     return Part.from_faces([patch(z, s), wall, side], edges)
 
 
+def slot(height=25.0, size=15.0):
+    """The same floor (face 1) between two walls, along +y (2) and along -y (3)."""
+    s = size
+    floor, wall, _ = floor_and_wall(height, size).faces
+    edges = [Edge((1, k), "concave", np.array([[-s, y, 0], [s, y, 0.0]])) for k, y in ((2, s), (3, -s))]
+    return Part.from_faces([floor, wall, flat([-s, -s, 0], [0, 0, height], [2 * s, 0, 0])], edges)
+
+
 @pytest.fixture(scope="session")
 def make():
-    """Makers of faces: patch, saddle, seeded, bowl, flat, floor_and_wall."""
+    """Makers of faces: patch, saddle, seeded, bowl, flat, floor_and_wall, slot."""
     return SimpleNamespace(patch=patch, saddle=saddle, seeded=seeded, bowl=bowl, flat=flat,
-                           floor_and_wall=floor_and_wall)
+                           floor_and_wall=floor_and_wall, slot=slot)

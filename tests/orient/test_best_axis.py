@@ -148,6 +148,15 @@ def test_next_to_a_wall_a_clean_up_zone_stays_and_is_told(make):
     assert prove(path, HELD, job.groups).witness is None
 
 
+def test_a_tool_without_shank_comes_out_between_walls_higher_than_it_is_known(make):
+    part, tool = make.slot(), Tool.torus(8, 2)
+    assert tool.height < 25
+    found = best_axis(part.faces[0], tool, H, part=part, limits="cone:0,0,1,60")
+    assert found.outcome == "feasible", found.reasons
+    job = task(part.faces[0], tool, H, part=part)
+    assert prove(job.made(found.axis, found.feed), tool, job.groups).witness is None
+
+
 def test_the_proof_sees_one_bad_motion(make):
     part = make.floor_and_wall()
     job = task(part.faces[0], HELD, H, part=part)

@@ -130,3 +130,18 @@ def test_names_are_read_back(diameter: float, share: float, angle: float) -> Non
 def test_sizes_that_make_no_tool(make: Any, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
         make()
+
+
+@pytest.mark.parametrize("tool, wide, component", [
+    (Tool.torus(12, 1), 6.0, "cutter"), (Tool.ball(8, stickout=40), 4.0, "shank"),
+    (Tool.tapered(6, 1, 5), None, "shank"),
+    (Tool.ball(8, stickout=40, holder=[(10, 0), (20, 30), (0, 30)]), 20.0, "holder")])
+def test_a_tool_carried_on_is_as_wide_as_its_upper_end(tool, wide, component):
+    longer = tool.carried_on(tool.height + 25)
+    wide = tool.profile.top_radius if wide is None else wide
+    heights = tool.height + np.linspace(1, 24, 5)
+    beside = np.column_stack([np.full(5, wide + 3.0), np.zeros(5), heights])
+    assert longer.distance(beside, component).value == pytest.approx(3.0)
+    below = np.random.default_rng(1).uniform([-9, -9, -2], [9, 9, 0.8 * tool.height], (200, 3))
+    assert (longer.distance(below).value <= tool.distance(below).value + 1e-12).all()
+    assert longer.carried_on(5.0) is longer and longer.height == pytest.approx(tool.height + 25)

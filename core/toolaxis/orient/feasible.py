@@ -235,8 +235,8 @@ class Feasibility:
         roles : tuple of str
             Groups that are looked at.
         """
-        moves = motions(tips(contacts.point, contacts.normal, axis, self.tool, self.allowance), axis)
-        n = len(moves)
+        places = tips(contacts.point, contacts.normal, axis, self.tool, self.allowance)
+        moves, n = motions(places, axis), len(places)
         worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
                         np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
         for number, group in enumerate(self.groups):
@@ -244,23 +244,31 @@ class Feasibility:
                 continue
             fine = FINE if group.role != OTHER else COARSE
             left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
-            found = bounded(group.cells, self.tool, moves, group.required + 2 * fine, fine, left_out)
+            tool = self._carried_on(places, axis, group) if group.role == OTHER else self.tool
+            found = bounded(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
             beside = np.zeros(n, dtype=bool)
             if group.role == OTHER and len(contacts.near):
                 hit = np.asarray((found.lower < group.required).any(axis=1))
-                beside = self._beside(group, moves, hit, contacts.near)
+                beside = self._beside(tool, group, moves, (hit, contacts.near))
             worst = self._worse(worst, found, number, beside)
         return worst
 
-    def _beside(self, group: Group, moves: Array, hit: Bools, near: Bools) -> Bools:
+    def _carried_on(self, places: Array, axis: Array, group: Group) -> Tool:
+        """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it."""
+        highest = float(np.maximum(*(group.box * axis)).sum())
+        return self.tool.carried_on(highest - float((places @ axis).min()))
+
+    @staticmethod
+    def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Bools, Bools]) -> Bools:
         """Which of the positions that were hit come too near to a wall that is near them."""
+        hit, near = at
         beside = np.zeros(len(hit), dtype=bool)
         for k in np.flatnonzero(near[hit].any(axis=0)):
             rows = np.flatnonzero(hit & near[:, k] & ~beside)
             if len(rows):
                 only = np.full((len(group.faces), 3), -np.inf)
                 only[k] = 0.0
-                found = bounded(group.cells, self.tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
+                found = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
                 beside[rows] = (found.lower < group.required).any(axis=1)
         return beside
 

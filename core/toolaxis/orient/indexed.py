@@ -67,7 +67,7 @@ class Task:
     @property
     def box(self) -> Array:
         """Corners of the box around everything, (2, 3) mm."""
-        boxes = np.array([face.box for group in self.groups for face in group.faces])
+        boxes = np.array([group.box for group in self.groups])
         return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
     def laid(self, axis: Array, feed: str) -> Layout:

@@ -44,6 +44,12 @@ class Group:
         """The faces' cells under one root."""
         return forest(self.faces)
 
+    @cached_property
+    def box(self) -> Array:
+        """Corners of the box around the faces, (2, 3) mm."""
+        boxes = np.array([face.box for face in self.faces])
+        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
 
 def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: Part | None = None,
             skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),

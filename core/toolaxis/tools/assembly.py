@@ -1,7 +1,7 @@
 """The whole rotating solid: cutter, shank, holder and how far the cutter sticks out."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, isfinite, radians
 from typing import Any
 
@@ -258,6 +258,28 @@ class Tool:
             found["holder"] = self.holder + np.array([0.0, self.stickout - self.holder[0, 1]])
         return found
 
+    @property
+    def height(self) -> float:
+        """Height above the tip up to which the tool is known, mm."""
+        return max(self.flute_length, *(float(line[:, 1].max()) for line in self.outlines.values()), 0.0)
+
+    def carried_on(self, height: float) -> "Tool":
+        """The tool with its uppermost known component carried on upwards as a cylinder, for whatever holds it.
+
+        Parameters
+        ----------
+        height : float
+            Height above the tip that the tool shall reach at least, mm.
+        """
+        if height <= self.height:
+            return self
+        if self.holder is not None and self.stickout is not None:
+            return replace(self, holder=_carried(self.holder, height - self.height))
+        if not self.outlines and self.half_angle == 0:
+            return replace(self, flute_length=height)
+        end = self.outlines.get("shank", np.array([[self.profile.top_radius, self.flute_length]]))
+        return replace(self, shank=_carried(end, height - self.height))
+
     def distance(self, points: ArrayLike, component: str | None = None) -> Distance:
         """Exact signed distance of points from the whole rotating solid, or from one component.
 
@@ -309,6 +331,13 @@ def _flute(usual: float, given: Any, corner_radius: float, stickout: float | Non
         raise InvalidInput(f"flute length is {length} mm, above the stick-out {stickout} mm: "
                            "lengthen the stick-out or shorten the cutting edge")
     return length
+
+
+def _carried(line: Array, further: float) -> Array:
+    """A polyline (radius, z) that goes on upwards from its upper end, as wide as it is there."""
+    top = line[-1, 1]
+    wide = line[line[:, 1] == top, 0].max()
+    return np.vstack([line, [[wide, top], [wide, top + further]]])
 
 
 def _above(line: Array, z: float) -> Array:
