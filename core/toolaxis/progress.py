@@ -1,6 +1,8 @@
 """Progress reports and cancellation: the one object that long work is handed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 
 from toolaxis.errors import Cancelled
@@ -77,3 +79,31 @@ class Progress:
 
 
 NO_PROGRESS = Progress()
+
+_HEARD: ContextVar[Progress] = ContextVar("toolaxis_progress", default=NO_PROGRESS)
+
+
+@contextmanager
+def heard(progress: Progress) -> Iterator[None]:
+    """Let loops deep inside, which are handed no progress, hear in this thread whether to stop.
+
+    Parameters
+    ----------
+    progress : Progress
+    """
+    token = _HEARD.set(progress)
+    try:
+        yield
+    finally:
+        _HEARD.reset(token)
+
+
+def breathe() -> None:
+    """Stop here if the user asked to: called every few milliseconds by long loops that are handed no progress.
+
+    Raises
+    ------
+    Cancelled
+        When the progress that is `heard` in this thread says so.
+    """
+    _HEARD.get().check()

@@ -12,6 +12,7 @@ from toolaxis.cad.records import FaceRecord, ShapeRecord
 from toolaxis.cad.surfaces import PlainSurface, convert, grid, map_of
 from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.progress import breathe
 from toolaxis.shape.part import Body
 from toolaxis.tolerances import Tolerance
 
@@ -53,6 +54,7 @@ def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
     record = ShapeRecord()
     share = (tolerance or Tolerance()).trim
     for number, face in enumerate(faces, 1):
+        breathe()
         try:
             converted, warnings = record_of_face(face, number, share)
         except UnsupportedGeometry as reason:

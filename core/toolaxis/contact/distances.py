@@ -10,6 +10,7 @@ from toolaxis.contact.descent import ToolData, descend_many, scratch
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.vectors import as_rows
+from toolaxis.progress import breathe
 from toolaxis.shape.cells import Cells
 from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import solid_pieces
@@ -18,6 +19,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _PIECES_AT_ONCE = 60
+#: Motions between two moments to stop.
+_MOTIONS_AT_ONCE = 256
 
 
 class Found(NamedTuple):
@@ -141,11 +144,16 @@ def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]
 
 def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
-    if not _compiled.available:
-        return descend_many_numpy(cells, tool, moves, cutoff)
-    answer = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
-    descend_many(cells.data, tool, (moves, cutoff), scratch(cells.data), answer)
-    return answer
+    values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
+    room = scratch(cells.data) if _compiled.available else None
+    for first in range(0, len(moves), _MOTIONS_AT_ONCE):
+        breathe()
+        some = slice(first, first + _MOTIONS_AT_ONCE)
+        if room is None:
+            values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
+        else:
+            descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
+    return values, tags
 
 
 def _merged(one: Found, other: Found) -> Found:

@@ -21,7 +21,7 @@ from toolaxis.path.layout import Layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
-from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -130,7 +130,8 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
     Cancelled
         When the user asked to stop.
     """
-    found, path = judged(search_task(plan, op, progress), axis, feed)
+    with heard(progress):
+        found, path = judged(search_task(plan, op, progress), axis, feed)
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if path is None:
         return Operation(op.number, op.face, found)

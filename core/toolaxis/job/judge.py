@@ -10,7 +10,7 @@ from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
@@ -45,7 +45,7 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
     if not isinstance(plan, Plan):
         raise InvalidInput(f"verify takes the Plan that toolaxis.plan made, not a {type(plan).__name__}: the command "
                            "toolaxis verify judges a folder")
-    with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
+    with heard(progress), tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         write_plan(plan, Path(folder))
         return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, progress=progress)
 
@@ -64,7 +64,8 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     found = []
     for index, op in enumerate(done):
         name = f"{op.name} ({index + 1} of {len(done)})"
-        found.append(judge(_task(plan, op), spacing, threads, progress.within(name)))
+        with heard(progress):
+            found.append(judge(_task(plan, op), spacing, threads, progress.within(name)))
     return Verdict(tuple(found))
 
 

@@ -24,7 +24,7 @@ from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
@@ -104,7 +104,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
     job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions,
                orientations)
-    return job.carried_out(targets, progress)
+    with heard(progress):
+        return job.carried_out(targets, progress)
 
 
 def _listed(obstacles: Any) -> list[Any]:

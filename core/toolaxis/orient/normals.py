@@ -1,10 +1,11 @@
 """All normals of a face at once: the cap that holds them, and the range of their angles to an axis, proven."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -19,6 +21,8 @@ Bools = NDArray[np.bool_]
 
 _CELLS = 24
 _ROUNDS = 13
+#: Cells that are looked at between two moments to stop.
+_AT_ONCE = 4096
 #: Cells are not divided further once their normals are known to this angle, rad.
 _FINE = 1e-4
 
@@ -184,9 +188,7 @@ class NormalField:
         seen = [np.inf, -np.inf]
         where = [rectangles[0, :2], rectangles[0, :2]]
         for rounds in range(_ROUNDS + 1):
-            middle = np.stack([rectangles[:, :2].mean(axis=1), rectangles[:, 2:].mean(axis=1)], axis=1)
-            angle, spread = self._spread(t, middle, rectangles, bounds)
-            inside = self.face.contains(middle)
+            middle, inside, angle, spread = _in_pieces(partial(self._looked, t), rectangles, bounds)
             for k, best in enumerate((np.argmin, np.argmax)):
                 if inside.any():
                     i = np.flatnonzero(inside)[best(angle[inside])]
@@ -199,15 +201,15 @@ class NormalField:
             high = max(high, float((angle + spread)[~doubtful].max(initial=-np.inf)))
             if not doubtful.any():
                 break
-            rectangles, bounds = _quartered(rectangles[doubtful]), np.repeat(bounds[doubtful], 4, axis=0)
-            met = _touching(self.face, rectangles)
-            rectangles, bounds = rectangles[met], bounds[met]
+            rectangles, bounds = _in_pieces(partial(_divided, self.face), rectangles[doubtful], bounds[doubtful])
             if not len(rectangles):
                 break
         return Range(max(low, 0.0), min(high, pi), where[0], where[1])
 
-    def _spread(self, t: Array, middle: Array, rectangles: Array, bounds: Array) -> tuple[Array, Array]:
-        """Angle of t to the normal in the middle of each cell, and how far normals of the cell are from it at most."""
+    def _looked(self, t: Array, rectangles: Array, bounds: Array) -> tuple[Array, Bools, Array, Array]:
+        """Middles of cells, which of them lie on the face, the angle of t to the normal in each, and how far normals
+        of the cell are from it at most."""
+        middle = _middles(rectangles)
         d, n = self.face.evaluate(middle), self.face.normal(middle)
         hu, hv = np.diff(rectangles[:, :2])[:, 0] / 2, np.diff(rectangles[:, 2:])[:, 0] / 2
         off_u, off_v = bounds[:, 0] * hu + bounds[:, 1] * hv, bounds[:, 1] * hu + bounds[:, 2] * hv
@@ -215,7 +217,29 @@ class NormalField:
         size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), pi)
-        return angle_between(np.broadcast_to(t, n.shape), n), spread
+        return middle, self.face.contains(middle), angle_between(np.broadcast_to(t, n.shape), n), spread
+
+
+def _in_pieces(work: Callable[[Array, Array], tuple[Any, ...]], rectangles: Array, bounds: Array) -> tuple[Any, ...]:
+    """What work makes of cells, a few thousand at once, with a moment to stop between."""
+    found = []
+    for first in range(0, len(rectangles), _AT_ONCE):
+        breathe()
+        some = slice(first, first + _AT_ONCE)
+        found.append(work(rectangles[some], bounds[some]))
+    return found[0] if len(found) == 1 else tuple(np.concatenate(parts) for parts in zip(*found, strict=True))
+
+
+def _middles(rectangles: Array) -> Array:
+    u0, u1, v0, v1 = rectangles.T
+    return np.stack([(u0 + u1) / 2, (v0 + v1) / 2], axis=1)
+
+
+def _divided(face: Face, rectangles: Array, bounds: Array) -> tuple[Array, Array]:
+    """The quarters of cells that may hold a point of the face, with the bounds of what they are quarters of."""
+    quarters = _quartered(rectangles)
+    met = _touching(face, quarters)
+    return quarters[met], np.repeat(bounds, 4, axis=0)[met]
 
 
 def _along(loop: Array, count: int) -> Array:
@@ -247,7 +271,7 @@ def _quartered(rectangles: Array) -> Array:
 
 def _touching(face: Face, rectangles: Array) -> Bools:
     """Whether rectangles may hold a point of the face: their middle lies on it, or an edge of a loop comes near."""
-    middle = np.stack([rectangles[:, :2].mean(axis=1), rectangles[:, 2:].mean(axis=1)], axis=1)
+    middle = _middles(rectangles)
     if not face.trims:
         return np.ones(len(rectangles), dtype=bool)
     half = np.stack([np.diff(rectangles[:, :2])[:, 0], np.diff(rectangles[:, 2:])[:, 0]], axis=1) / 2
@@ -255,6 +279,7 @@ def _touching(face: Face, rectangles: Array) -> Bools:
     for loop in face.trims:
         ends = np.roll(loop, -1, axis=0)
         for k in np.flatnonzero(~met):
+            breathe()
             met[k] = _edge_meets(loop - middle[k], ends - middle[k], half[k])
     return met
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bspline import MAX_DEGREE, SurfaceData, surface_derivatives_many
+from toolaxis.progress import breathe
 from toolaxis.shape.surface import Derivatives, Domain
 
 Array = NDArray[np.float64]
@@ -152,6 +153,7 @@ class NurbsSurface:
         uv : (n, 2) array
             Parameters; outside the domain the surface goes on linearly in the parameter that was crossed.
         """
+        breathe()  # nearly every long loop comes by here
         table = surface_derivatives_many(self.data, np.asarray(uv, dtype=float).reshape(-1, 2))
         return Derivatives(*(table[:, k] for k in range(6)))
 

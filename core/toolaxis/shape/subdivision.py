@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -241,6 +242,7 @@ class _Builder:
             raise InvalidInput(f"face {self.face.label} has nothing inside its loops: give loops that enclose a part "
                                "of the surface")
         while len(level.rect):
+            breathe()
             centre, ready = self.centred(level)
             self.levels.append(level)
             self.centres.append(centre)

@@ -62,12 +62,14 @@ class Source:
         progress : toolaxis.progress.Progress
         """
         from toolaxis.cad.freecad import part_from
+        from toolaxis.progress import heard
 
         progress.report("reading the part", 0, 1)
         whole = self.shapes[0] if len(self.shapes) == 1 else list(self.shapes)
-        part = replace(part_from(whole), source=", ".join(self.labels))
-        bodies = tuple(replace(part_from(shape), source=label)
-                       for shape, label in zip(self.obstacles, self.obstacle_labels, strict=True))
+        with heard(progress):
+            part = replace(part_from(whole), source=", ".join(self.labels))
+            bodies = tuple(replace(part_from(shape), source=label)
+                           for shape, label in zip(self.obstacles, self.obstacle_labels, strict=True))
         return part, bodies
 
 
