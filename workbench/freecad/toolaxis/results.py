@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import FreeCAD
 
+from .faces import facts_of
 from .objects.belongings import child, frame_of
 from .objects.frames import add_frame, place_frame
 from .objects.operation import Operation, mark, set_inputs, set_results
@@ -130,7 +131,8 @@ def _keep(operation, inputs, op, label):
 
     number = int("".join(c for c in label if c.isdigit()) or 0)
     operation.AxisMap = json.dumps(orientation_document(op.orientation))
-    operation.Details = json.dumps({"face": number, "label": label, "region": _region(op, number)})
+    operation.Details = json.dumps({"face": number, "label": label, "region": _region(op, number),
+                                    "about": facts_of(*inputs.faces[0])})
     operation.PlannedWith = digest(inputs)
     operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
     operation.Motions = [] if op.path is None else [int(kind) for kind in op.path.kind]

@@ -123,6 +123,7 @@ def why_stale(operation):
     from toolaxis.errors import ToolAxisError
 
     from .bridge import inputs_of
+    from .faces import what_became
     from .objects.belongings import missing
 
     if not operation.PlannedWith:
@@ -133,19 +134,22 @@ def why_stale(operation):
     planned = json.loads(operation.PlannedWith)
     now = json.loads(digest(inputs))
     reasons = []
-    if now["faces"] != planned["faces"]:
-        reasons.append("another face was chosen")
     gone = [name for name in planned["obstacles"] if name not in now["obstacles"]]
     if gone:
         reasons.append(f"{', '.join(gone)}: no longer avoided")
     changed = [name for name in planned if name not in ("faces", "obstacles") and planned[name] != now[name]]
     reasons += [f"{name} was changed" for name in changed]
+    reasons += missing(operation)
     try:
         found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
     except ToolAxisError as reason:
-        return [*reasons, str(reason), *missing(operation)]
-    reasons += missing(operation)
-    return reasons + _what_changed(list(operation.Signature), found, len(inputs.obstacles))
+        return [*reasons, str(reason)]
+    (thing, name), (part, planned_name) = inputs.faces[0], planned["faces"][0]
+    if thing.Name != part:
+        return [*reasons, f"a face of another part was chosen, of {thing.Label}"]
+    changed = _what_changed(list(operation.Signature), found, len(inputs.obstacles))
+    then = json.loads(operation.Details).get("about")
+    return reasons + changed + what_became(thing, (planned_name, name), then, bool(changed))
 
 
 def _what_changed(planned, found, obstacles):
