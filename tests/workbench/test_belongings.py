@@ -49,6 +49,7 @@ def test_what_is_deleted_is_told_at_once_and_made_again(document, operation, kin
     assert operation.Stale and any(words in reason for reason in operation.StaleReasons)
     assert bridge.is_stale(operation)
     document.recompute()
+    assert not [other.Name for other in document.Objects if "Invalid" in other.State]
     assert operation.Stale and [words in reason for reason in operation.StaleReasons] == [True]
     assert bridge.recompute(operation) == [operation]
     assert whole(operation)
@@ -88,6 +89,9 @@ def test_undo_brings_what_was_deleted_back_with_the_mark(document, operation, un
         assert names(document) == before and not operation.Stale and not bridge.is_stale(operation)
         document.redo()
         assert operation.Stale and frame_of(operation) is None
+        document.undo()
+        document.recompute()
+        assert whole(operation)
 
 
 def test_an_operation_takes_with_it_what_belongs_to_it(document, parts, part, operation):

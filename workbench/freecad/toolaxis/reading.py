@@ -99,6 +99,26 @@ def numbered(inputs, shapes):
     return found
 
 
+def titles_of(inputs):
+    """What the chosen faces are called, by their numbers, counted through all parts; in the order of planning.
+
+    Parameters
+    ----------
+    inputs : freecad.toolaxis.bridge.Inputs
+
+    Returns
+    -------
+    dict of int to str
+        "Face 7"; with the part before it where there are several.
+    """
+    from toolaxis.cad.freecad import shape_of
+
+    found = numbered(inputs, [shape_of(thing) for thing in inputs.things])
+    several = len(inputs.things) > 1
+    return {number: f"{thing.Label}: Face {own}" if several else f"Face {own}"
+            for number, (thing, _, own) in found.items()}
+
+
 def number_in(thing, shape, name):
     """The number of a face in the shape of an object.
 

@@ -79,7 +79,19 @@ def note(operation, without=None):
     """
     new = [reason for reason in missing(operation, without) if reason not in operation.StaleReasons]
     if new:
+        _untie(operation, without)
         assign(operation, StaleReasons=[*operation.StaleReasons, *new], Stale=True)
+
+
+def _untie(operation, without):
+    """Let what stood on something that is gone stay where it is, else FreeCAD complains at every recompute."""
+    own = [thing for thing in belongings(operation) if without is None or thing.Name != without.Name]
+    tied = [] if any(map(_is_frame, own)) else [thing for thing in own if _is_passes(thing)]
+    if not any(map(_is_passes, own)):
+        tied += [thing for thing in own if not _is_frame(thing)]
+    for thing in tied:
+        if any(name == "Placement" for name, _ in thing.ExpressionEngine):
+            thing.setExpression("Placement", None)
 
 
 class Keeper:

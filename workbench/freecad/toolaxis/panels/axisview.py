@@ -36,7 +36,7 @@ class AxisView(QtCore.QObject):
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)
         self.plan = self.found = None
-        self.pictures = {}
+        self.pictures, self.titles = {}, {}
         self.tried = None
         self.work = None
         self.map.hovered.connect(form.pointer.setText)
@@ -60,7 +60,7 @@ class AxisView(QtCore.QObject):
         self.form.operation.clear()
         self._show_operation()
 
-    def show(self, plan, pictures):
+    def show(self, plan, pictures, titles=None):
         """Show a plan.
 
         Parameters
@@ -68,28 +68,38 @@ class AxisView(QtCore.QObject):
         plan : toolaxis.plan.plan.Plan
         pictures : dict of int to AxisPicture or None
             By the operations' numbers.
+        titles : dict of int to str, optional
+            What the faces are called, by their numbers.
         """
+        self.titles = titles or {}
         self.plan, self.found, self.pictures = plan, plan, pictures
         combo = self.form.operation
         blocked = combo.blockSignals(True)
         combo.clear()
-        combo.addItems([_title(op) for op in plan.operations])
+        combo.addItems([self._title(op) for op in plan.operations])
         undone = [k for k, op in enumerate(plan.operations) if not op.done]
         combo.setCurrentIndex(undone[0] if undone else 0)
         combo.blockSignals(blocked)
         self._show_operation()
 
-    def show_growing(self, picture):
+    def show_growing(self, picture, title):
         """Show the map of a search that goes on; the last plan's numbers disappear.
 
         Parameters
         ----------
         picture : AxisPicture or None
+        title : str
+            Which face it is of.
         """
         if self.plan is not None:
             self.clear()
+        self.form.cost.setText(translate("ToolAxis", "{}: the axes looked at so far").format(title))
         self.map.show_picture(picture)
         self.legend.show_picture(picture)
+
+    def _title(self, op):
+        title = title_of(op.face, self.titles)
+        return title if op.done else translate("ToolAxis", "{}: no axis").format(title)
 
     def leave(self):
         """Stop trying an axis."""
@@ -215,9 +225,17 @@ class AxisView(QtCore.QObject):
         self.changed.emit()
 
 
-def _title(op):
-    text = translate("ToolAxis", "Face {}") if op.done else translate("ToolAxis", "Face {}: no axis")
-    return text.format(op.face.label)
+def title_of(face, titles):
+    """What a face or a sub-surface is called.
+
+    Parameters
+    ----------
+    face : toolaxis.shape.face.Face
+    titles : dict of int to str
+        By the faces' numbers.
+    """
+    piece = face.label.removeprefix(str(face.number))
+    return titles.get(face.number, translate("ToolAxis", "Face {}").format(face.number)) + piece
 
 
 def _percent(value, base):

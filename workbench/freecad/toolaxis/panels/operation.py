@@ -12,13 +12,13 @@ from .axisview import fill, measures
 from .fields import load_form, tell
 from .hemisphere import HemisphereMap
 from .legend import Legend
-from .watching import Watch
+from .panel import Panel
 
 translate = FreeCAD.Qt.translate
 
 
-class OperationPanel:
-    """FreeCAD calls reject and getStandardButtons.
+class OperationPanel(Panel):
+    """FreeCAD calls getStandardButtons.
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ class OperationPanel:
     def __init__(self, document, operation):
         from toolaxis.plan.document import orientation_from
 
-        self.document, self.operation, self.over = document, operation, False
-        self.form = load_form("operation")
+        super().__init__(document, load_form("operation"))
+        self.operation = operation
         self.form.setWindowTitle(operation.Label)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form), Legend(self.form)
@@ -40,23 +40,13 @@ class OperationPanel:
         self.tool = next((one for one in operation.Group
                           if getattr(getattr(one, "Proxy", None), "Type", "") == "ToolAxisTool"), None)
         self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
-        self.work = None
         self._fill()
-        self._connect(document)
+        self._connect()
         self._draw_map()
 
     def getStandardButtons(self):
         """Close."""
         return QtWidgets.QDialogButtonBox.Close
-
-    def isAllowedAlterDocument(self):
-        """Other commands may change the document meanwhile."""
-        return True
-
-    def reject(self):
-        """Close; the tool stays where it was put."""
-        self._close()
-        return True
 
     def _fill(self):
         form, operation = self.form, self.operation
@@ -72,14 +62,13 @@ class OperationPanel:
             form.slide.setValue(round(self.tool.Position * form.slide.maximum()))
         form.verify.setEnabled(self.tool is not None)
 
-    def _connect(self, document):
+    def _connect(self):
         form = self.form
         form.slide.valueChanged.connect(self._move)
         form.again.clicked.connect(self._plan_again)
         form.verify.clicked.connect(self._verify)
         self.map.hovered.connect(form.pointer.setText)
-        self.watch = Watch(document, self)
-        form.destroyed.connect(self._close)
+        self._follow()
 
     def _move(self, value):
         if self.tool is not None:
@@ -111,14 +100,14 @@ class OperationPanel:
     def _plan_again(self):
         from .planning import PlanPanel
 
-        self._follow(lambda: PlanPanel(self.document, bridge.inputs_of(self.operation), self.operation))
+        self._open(lambda: PlanPanel(self.document, bridge.inputs_of(self.operation), self.operation))
 
     def _verify(self):
         from .verifying import VerifyPanel
 
-        self._follow(lambda: VerifyPanel(self.document, [self.operation]))
+        self._open(lambda: VerifyPanel(self.document, [self.operation]))
 
-    def _follow(self, make):
+    def _open(self, make):
         """Close this panel and open another one."""
         self._close()
         FreeCADGui.Control.closeDialog()
@@ -133,11 +122,6 @@ class OperationPanel:
 
         QtCore.QTimer.singleShot(0, show)
 
-    def document_closed(self):
-        """The document is about to close: close the panel."""
-        self._close()
-        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
-
     def object_deleted(self, name):
         """The operation or its tool is about to be deleted: close the panel."""
         if name == self.operation.Name:
@@ -145,6 +129,7 @@ class OperationPanel:
         elif self.tool is not None and name == self.tool.Name:
             self.tool = None
             self.form.slide.setEnabled(False)
+        QtCore.QTimer.singleShot(0, self._refresh)  # it may be one of what belongs to the operation
 
     def object_changed(self, name):
         """The part has changed: the marks may have."""
@@ -154,16 +139,6 @@ class OperationPanel:
     def _refresh(self):
         if not self.over:
             self._fill()
-
-    def _close(self, *_):
-        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
-        if self.over:
-            return
-        self.over = True
-        self.watch.end()
-        if self.work is not None:
-            self.work.leave()
-            self.work = None
 
 
 def _picture(source, number, found, progress):

@@ -8,13 +8,14 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..cam import speeds
+from ..reading import titles_of
 from ..tasks import Work, sentence
-from .axisview import AxisView
+from .axisview import AxisView, title_of
 from .fields import load_form, tell
+from .panel import Panel
 from .planform import PlanForm
 from .preview import Preview
 from .selected import bodies_in, selected_faces, tools_in
-from .watching import Watch
 
 translate = FreeCAD.Qt.translate
 
@@ -23,8 +24,8 @@ _TYPED = 0
 _ENOUGH = 40
 
 
-class PlanPanel:
-    """FreeCAD calls accept, reject and the functions about buttons; everything else is the panel's own.
+class PlanPanel(Panel):
+    """FreeCAD calls accept and the functions about buttons; everything else is the panel's own.
 
     Parameters
     ----------
@@ -36,19 +37,16 @@ class PlanPanel:
     """
 
     def __init__(self, document, inputs=None, operation=None):
+        super().__init__(document, load_form("plan"))
         self.operation = operation
-        self.document = document
-        self.form = load_form("plan")
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "plan.svg")))
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
-        self.work = self.computed = self.buttons = None
-        self.over = False
+        self.computed = self.buttons = None
         self._fill(inputs)
         self._connect()
-        self.watch = Watch(document, self)
-        self.form.destroyed.connect(self._close)
+        self._follow()
         self._changed()
 
     # what FreeCAD calls
@@ -62,10 +60,6 @@ class PlanPanel:
         self.buttons = box
         self._show_state()
 
-    def isAllowedAlterDocument(self):
-        """Other commands may change the document meanwhile; the panel notices."""
-        return True
-
     def accept(self):
         """Put the plan into the document, as one undo step; refused without a plan."""
         if not self.ready:
@@ -77,11 +71,6 @@ class PlanPanel:
             self._tell(sentence(reason), bad=True)
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return False
-        self._close()
-        return True
-
-    def reject(self):
-        """Stop what runs and leave the document as it is."""
         self._close()
         return True
 
@@ -206,10 +195,11 @@ class PlanPanel:
             self.problem = sentence(reason)
             self._show_state()
             return
-        self.work = Work(lambda progress: _planned(task, progress), None, _growing)
-        self.work.interim.connect(self._growing)
+        titles = titles_of(inputs)
+        self.work = Work(lambda progress: _planned(task, progress), None, lambda found: _growing(found, titles))
+        self.work.interim.connect(lambda found: self._growing(*found))
         self.work.progressed.connect(self._progressed)
-        self.work.done.connect(lambda found: self._computed(inputs, *found))
+        self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(self._not_computed)
         self.work.cancelled.connect(lambda: self._not_computed(""))
         self.form.progress.setMaximum(0)
@@ -231,21 +221,21 @@ class PlanPanel:
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
         self._tell(f"{stage[:1].upper()}{stage[1:]}")
 
-    def _growing(self, picture):
-        """The map of the axes looked at so far."""
+    def _growing(self, picture, title):
+        """The map of the axes looked at so far for one of the faces."""
         if self.work is not None:
             if self.view.plan is not None or self.view.map.picture is None:
                 self.form.tabs.setCurrentWidget(self.form.resultTab)
-            self.view.show_growing(picture)
+            self.view.show_growing(picture, title)
 
-    def _computed(self, inputs, plan, pictures):
+    def _computed(self, inputs, plan, pictures, titles):
         self.work = None
         if not plan.operations:
             self._not_computed("")
             return
         self.computed = inputs
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
-        self.view.show(plan, pictures)
+        self.view.show(plan, pictures, titles)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
         self._show_state()
 
@@ -261,19 +251,13 @@ class PlanPanel:
 
     # what happens to the document meanwhile
 
-    def document_closed(self):
-        """The document is about to close: stop, and close the panel."""
-        self.preview.forget()
-        self._close()
-        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
-
     def object_deleted(self, name):
         """A part is about to be deleted: take its faces off the list, and stop what is computed for them."""
+        if self.operation is not None and self.operation.Name == name:
+            self.operation = None  # what is planned again becomes a new one
         if not self.fields.faces.remove_object(name):
             return
-        if self.work is not None:
-            self.work.leave()
-            self.work = None
+        self._leave()
         self.computed = None
         self.view.clear()
         self.problem = translate("ToolAxis", "The part was deleted: select other faces")
@@ -284,25 +268,27 @@ class PlanPanel:
         if any(thing.Name == name for thing, _ in self.fields.faces.faces) and self.work is None:
             self._changed()
 
-    def _close(self, *_):
-        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
-        if self.over:
-            return
-        self.over = True
-        self.watch.end()
-        if self.work is not None:
-            self.work.leave()
-            self.work = None
+    def _forget_view(self):
+        self.preview.forget()
+
+    def _let_go(self):
         self.view.leave()
         self.preview.clear()
 
 
-def _growing(offered):
-    """The picture of an intermediate result, None while it is too coarse; runs off the GUI thread."""
+def _growing(offered, titles):
+    """Picture and title of an intermediate result, None while it is too coarse; runs off the GUI thread."""
     from .axispicture import picture_of
 
     face, found = offered
-    return picture_of(face, found) if len(found.axis) >= _ENOUGH else None
+    picture = picture_of(face, found) if len(found.axis) >= _ENOUGH else None
+    if picture is None:
+        return None
+    title = title_of(face, titles)
+    if len(titles) > 1:
+        which = list(titles).index(face.number) + 1
+        title = translate("ToolAxis", "{} ({} of {})").format(title, which, len(titles))
+    return picture, title
 
 
 def _planned(task, progress):

@@ -12,9 +12,9 @@ from ..tasks import Work, sentence
 from .axisview import fill
 from .fields import fine_text, length_text, load_form, tell
 from .paint import WHAT, Paint, skins_of
+from .panel import Panel
 from .preview import view_of
 from .scale import Scale
-from .watching import Watch
 
 translate = FreeCAD.Qt.translate
 
@@ -22,8 +22,8 @@ translate = FreeCAD.Qt.translate
 _FAR = 100.0
 
 
-class VerifyPanel:
-    """FreeCAD calls reject and getStandardButtons.
+class VerifyPanel(Panel):
+    """FreeCAD calls getStandardButtons.
 
     Parameters
     ----------
@@ -33,32 +33,26 @@ class VerifyPanel:
     """
 
     def __init__(self, document, operations):
-        self.document, self.operations = document, list(operations)
-        self.form = load_form("verify")
+        super().__init__(document, load_form("verify"))
+        self.operations = list(operations)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "verify.svg")))
         self.scale = Scale(self.form)
         self.form.scalePlace.layout().addWidget(self.scale)
         self.paint = Paint(view_of(document.Name))
-        self.work, self.found, self.over, self.meshes = None, None, False, []
+        self.found, self.meshes = None, []
         self.form.verify.clicked.connect(self.verify)
         self.form.stop.clicked.connect(self.stop)
         self.form.operation.currentIndexChanged.connect(self._show)
         self.form.what.currentIndexChanged.connect(self._show)
         self.form.worst.currentRowChanged.connect(self._zoom)
         self.form.worst.itemClicked.connect(lambda item: self._zoom(self.form.worst.row(item)))
-        self.watch = Watch(document, self)
-        self.form.destroyed.connect(self._close)
+        self._follow()
         self._show()
         self.verify()
 
     def getStandardButtons(self):
         """Close."""
         return QtWidgets.QDialogButtonBox.Close
-
-    def reject(self):
-        """Take the colours off and close."""
-        self._close()
-        return True
 
     def verify(self):
         """Judge off the GUI thread."""
@@ -171,35 +165,20 @@ class VerifyPanel:
             size = max(0.12 * float(np.sqrt(self.chosen[0].area)), 2.0)
             self.paint.point_at(self.places[row].point, size)
 
-    def document_closed(self):
-        """The document is about to close: stop, and close the panel."""
-        self.paint.root, self.meshes = None, []
-        self._close()
-        QtCore.QTimer.singleShot(0, FreeCADGui.Control.closeDialog)
-
     def object_deleted(self, name):
         """An operation is about to be deleted: stop and say so."""
         if all(operation.Name != name for operation in self.operations):
             return
         self.operations = [operation for operation in self.operations if operation.Name != name]
-        if self.work is not None:
-            self.work.leave()
-            self.work = None
+        self._leave()
         self.found = None
         self._ended(translate("ToolAxis", "The operation was deleted"))
 
-    def object_changed(self, name):
-        """Changes of other objects do not matter: the verdict is on what was planned."""
+    def _forget_view(self):
+        self.paint.root, self.meshes = None, []
 
-    def _close(self, *_):
-        """Let go of everything, once; also when FreeCAD takes the panel away without asking."""
-        if self.over:
-            return
-        self.over = True
-        self.watch.end()
-        if self.work is not None:
-            self.work.leave()
-            self.work = None
+    def _let_go(self):
+        """Take the colours off, and show the meshes that stay in the document."""
         self.paint.clear()
         for mesh in self.meshes:
             with suppress(ReferenceError, RuntimeError):  # deleted meanwhile
