@@ -216,23 +216,38 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
 @compiled
 def _root(job: Job, lengths: Lengths, inside: float, outside: float,
           bench: tuple[Road, Memory]) -> float:
-    """The zero of m between a covered and an uncovered s, by the Illinois method with bisections."""
+    """The zero of m between a covered and an uncovered s.
+
+    Newton's method while it gains, with steps that close the bracket; where m has kinks the Illinois method goes on,
+    with bisections.
+    """
     road, memory = bench
     low, _, _ = swept_distance(job, lengths, inside, road, memory)
-    high, _, _ = swept_distance(job, lengths, outside, road, memory)
+    high, _, slope = swept_distance(job, lengths, outside, road, memory)
     point = memory[2]
     pace = sqrt(point[1, 0] ** 2 + point[1, 1] ** 2 + point[1, 2] ** 2)
+    near = 5e-11 * lengths[1] / pace
+    s, m = outside, high
+    newton = True
     for step in range(100):
-        s = inside - low * (outside - inside) / (high - low)
-        if step % 4 == 3 or not min(inside, outside) < s < max(inside, outside):
-            s = 0.5 * (inside + outside)
-        m, _, _ = swept_distance(job, lengths, s, road, memory)
+        before = m
+        if newton:
+            ahead = s - m / slope if slope * (outside - inside) > 0.0 else s
+            if abs(ahead - s) <= near:
+                ahead += near if (outside > inside) == (m < 0.0) else -near
+        else:
+            ahead = inside - low * (outside - inside) / (high - low)
+        if (step % 4 == 3 and not newton) or not min(inside, outside) < ahead < max(inside, outside):
+            ahead = 0.5 * (inside + outside)
+        s = ahead
+        m, _, slope = swept_distance(job, lengths, s, road, memory)
         if m < 0.0:
             inside, low, high = s, m, 0.5 * high
         else:
             outside, high, low = s, m, 0.5 * low
-        if abs(m) <= 1e-13 * lengths[1] or abs(outside - inside) * pace <= 1e-11 * lengths[1]:
+        if abs(m) <= 1e-13 * lengths[1] or abs(outside - inside) <= 2.0 * near:
             return s
+        newton = newton and abs(m) <= 0.25 * abs(before)
     return outside
 
 
