@@ -1,6 +1,10 @@
 """Deleting by hand with the Del key, undo and redo by the toolbar, and panels whose operation goes away."""
 
+from pathlib import Path
+
 import pytest
+
+ICONS = Path(__file__).resolve().parents[3] / "resources" / "icons"
 
 
 @pytest.fixture
@@ -23,6 +27,22 @@ def operation_in(document):
 
 def names(document):
     return sorted(thing.Name for thing in document.Objects)
+
+
+def colours(thing):
+    """How many parts of a mesh's scene have a colour at each point."""
+    from pivy import coin
+
+    search = coin.SoSearchAction()
+    search.setType(coin.SoMaterialBinding.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.setSearchingAll(True)
+    search.apply(thing.ViewObject.RootNode)
+    return sum(str(path.getTail().value.get()) == "PER_VERTEX_INDEXED" for path in search.getPaths())
+
+
+def picture(icon):
+    return icon.pixmap(32, 32).toImage()
 
 
 def pick(desk, *things):
@@ -69,6 +89,8 @@ def test_delete_takes_the_whole_operation_and_undo_brings_it_back(desk, operatio
     verified(desk)
     desk.press(desk.standard_button("Close"))
     before, name = names(document), operation.Name
+    maps = [thing.Name for thing in operation.Group if thing.TypeId == "Mesh::Feature"]
+    assert len(maps) == 2 and all(colours(document.getObject(one)) for one in maps)
     desk.shot("50-verified-tree")
     pick(desk, operation)
     assert run(desk, "Std_Delete") == ""
@@ -80,6 +102,7 @@ def test_delete_takes_the_whole_operation_and_undo_brings_it_back(desk, operatio
         assert names(document) == before
         again = operation_in(document)
         assert not again.Stale and len(again.Group) == 5 and again.Verdict == "passed"
+        assert all(colours(document.getObject(one)) for one in maps), "the maps keep their colours"
         run(desk, "Std_Redo")
         assert names(document) == left
     run(desk, "Std_Undo")
@@ -106,10 +129,14 @@ def test_deleted_passes_are_told_in_the_tree_and_in_the_panel(desk, operation):
     operation.ViewObject.doubleClicked()
     desk.wait(lambda: desk.form("ToolAxisOperation") is not None, "the panel opens")
     form = desk.form("ToolAxisOperation")
+    assert picture(operation.ViewObject.Icon) == picture(desk.gui.getIcon(str(ICONS / "operation.svg")))
+    assert form.slide.isEnabled() and form.verify.isEnabled()
     pick(desk, next(thing for thing in operation.Group if thing.TypeId == "Path::Feature"))
     run(desk, "Std_Delete")
     assert operation.Stale and "its passes are missing" in operation.StaleReasons
+    assert picture(operation.ViewObject.Icon) == picture(desk.gui.getIcon(str(ICONS / "operation-stale.svg")))
     desk.wait(lambda: "its passes are missing" in form.message.text(), "the panel says so")
+    assert not form.slide.isEnabled() and not form.verify.isEnabled()
     desk.shot("53-passes-deleted")
     desk.press(desk.standard_button("Close"))
     run(desk, "Std_Undo")

@@ -1,6 +1,7 @@
 """What belongs to an operation: frame, passes, tool and maps; what of it is missing, and what goes with it."""
 
 from . import is_operation
+from .maps import colour
 from .properties import assign
 
 #: FreeCAD's own coordinate systems, the newer first; documents of either kind are opened in both.
@@ -36,6 +37,10 @@ def _is_passes(thing):
     return thing.TypeId == "Path::Feature"
 
 
+def _is_map(thing):
+    return thing.TypeId == "Mesh::Feature" and "Shows" in thing.PropertiesList
+
+
 def belongings(operation):
     """The objects in an operation that it was given here; what a user has put there is not among them.
 
@@ -43,9 +48,8 @@ def belongings(operation):
     ----------
     operation : App.DocumentObject
     """
-    return [thing for thing in operation.Group
-            if _is_frame(thing) or _is_passes(thing) or getattr(getattr(thing, "Proxy", None), "Type", "") ==
-            "ToolAxisTool" or (thing.TypeId == "Mesh::Feature" and "Shows" in thing.PropertiesList)]
+    return [thing for thing in operation.Group if _is_frame(thing) or _is_passes(thing) or _is_map(thing)
+            or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
 
 
 def missing(operation, without=None):
@@ -114,6 +118,13 @@ class Keeper:
         for above in thing.InList:
             if is_operation(above) and above.Name not in self.going and thing in above.Group:
                 note(above, thing)
+
+    def slotUndoDocument(self, document):
+        """Called by FreeCAD after a step was undone."""
+        for thing in filter(_is_map, document.Objects):
+            colour(thing)
+
+    slotRedoDocument = slotUndoDocument
 
     def _take(self, document, operation):
         self.going.add(operation.Name)

@@ -47,7 +47,22 @@ def keep(operation, verdict, frame):
         thing.setExpression("Placement", f"{passes.Name}.Placement")
         thing.Visibility = what == "remaining"
     operation.Document.recompute([*meshes, operation])
+    for thing in meshes:
+        colour(thing)
     return meshes
+
+
+def colour(thing):
+    """Show the colours of a map: FreeCAD drops them whenever it draws the mesh anew.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+        The mesh.
+    """
+    if thing.ViewObject is not None and hasattr(thing.ViewObject, "Coloring"):
+        thing.ViewObject.Coloring = False
+        thing.ViewObject.Coloring = True
 
 
 def _figures(operation, verdict, back):
@@ -88,8 +103,6 @@ def _paint(thing, maps, what, back):
     thing.VertexColors = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, limit).tolist()]
     assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
         "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached"])
-    if thing.ViewObject is not None and hasattr(thing.ViewObject, "Coloring"):
-        thing.ViewObject.Coloring = True
 
 
 def _rows_of(mesh, points):

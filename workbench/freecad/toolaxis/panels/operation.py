@@ -7,6 +7,7 @@ import FreeCADGui
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
+from ..objects.belongings import child
 from ..tasks import Work, sentence
 from .axisview import fill, measures
 from .fields import load_form, tell
@@ -57,10 +58,11 @@ class OperationPanel(Panel):
             tell(form.message, translate("ToolAxis", "Results hold; verdict: {}").format(operation.Verdict))
         fill(form.results, [("", measures(self.found))] if self.found is not None else [])
         form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in operation.Reasons))
-        form.slide.setEnabled(self.tool is not None)
+        passes = child(operation, "Path::Feature") is not None
+        form.slide.setEnabled(self.tool is not None and passes)
         if self.tool is not None:
             form.slide.setValue(round(self.tool.Position * form.slide.maximum()))
-        form.verify.setEnabled(self.tool is not None)
+        form.verify.setEnabled(passes)
 
     def _connect(self):
         form = self.form

@@ -3,7 +3,7 @@
 import FreeCAD
 import FreeCADGui
 
-from .. import RESOURCES
+from . import icon
 
 translate = FreeCAD.Qt.translate
 
@@ -29,7 +29,7 @@ class OperationView:
     def getIcon(self):
         """Another icon while the results are stale."""
         stale = getattr(getattr(self, "thing", None), "Stale", False)
-        return str(RESOURCES / "icons" / ("operation-stale.svg" if stale else "operation.svg"))
+        return icon("operation-stale.svg" if stale else "operation.svg")
 
     def updateData(self, thing, name):
         """Show a changed mark, and say so in the status bar."""

@@ -1,6 +1,6 @@
 """The tool on its passes in the 3D view: cutter bright, holder see-through."""
 
-from .. import RESOURCES
+from . import icon
 
 _CLEAR = 30
 
@@ -24,7 +24,7 @@ class ToolView:
 
     def getIcon(self):
         """The icon in the tree."""
-        return str(RESOURCES / "icons" / "tool.svg")
+        return icon("tool.svg")
 
     def getDisplayModes(self, view):
         """No modes besides FreeCAD's own."""
