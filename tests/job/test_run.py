@@ -8,6 +8,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.spec import chosen_faces, parse_faces
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
@@ -114,6 +115,18 @@ def test_obstacles_are_kept_clear_of() -> None:
     assert made.outcome == "complete" and found.clearance["holder"] >= 1.0
     assert "obstacles other than the part" not in made.not_checked
     assert ta.verify(made).passed
+
+
+def test_the_number_of_orientations_is_chosen_from_their_curve(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.linspace(0, 40, 7), np.linspace(0, 30, 7), indexing="ij")
+    face = ta.Face.from_bspline(np.stack([x, y, 6 * np.sin(np.pi * x / 20)], -1))
+    made = ta.plan(face, "torus:8x1", 0.1, orientations="auto", regions=3)
+    assert made.outcome == "complete" and sum(option.chosen for option in made.options) == 1
+    chosen = next(option for option in made.options if option.chosen)
+    axes = np.unique([op.orientation.axis for op in made.operations], axis=0)
+    assert len(axes) == chosen.orientations and len(made.operations) == chosen.sub_surfaces
+    write_plan(made, tmp_path)
+    assert read_plan(tmp_path).options == made.options
 
 
 @pytest.mark.parametrize("change, said", [

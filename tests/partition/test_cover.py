@@ -1,13 +1,13 @@
 """Few axes for many sub-surfaces: the integer programme against enumeration, and the joint division."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
 
 import toolaxis as ta
 from toolaxis.orient.indexed import task
-from toolaxis.partition.cover import cover, shared
+from toolaxis.partition.cover import cover, knee, shared, trade
 from toolaxis.partition.divider import Divider
 
 
@@ -44,11 +44,17 @@ def test_what_no_axis_serves_is_said() -> None:
         cover([[1.0, np.inf], [np.inf, 1.0]], 1)
 
 
-def test_two_faces_share_axes() -> None:
+@pytest.fixture(scope="module")
+def dividers() -> list[Divider]:
+    """Two strongly waved faces beside each other."""
     x, y = np.meshgrid(np.linspace(0, 60, 7), np.linspace(0, 60, 7), indexing="ij")
     faces = [ta.Face.from_bspline(np.stack([x + 70 * k, y, 10 * np.sin(np.pi * x / 30) * np.cos(np.pi * y / 30)], -1))
              for k in (0, 1)]
-    dividers = [Divider(task(face, ta.Tool.torus(12, 1), 0.05), cells=(12, 12), most=4) for face in faces]
+    return [Divider(task(face, ta.Tool.torus(12, 1), 0.05), cells=(12, 12), most=4) for face in faces]
+
+
+def test_two_faces_share_axes(dividers: list[Divider]) -> None:
+    faces = [divider.job.worth.face for divider in dividers]
     lengths = []
     for most in (1, 4):
         found = shared(dividers, most)
@@ -59,3 +65,20 @@ def test_two_faces_share_axes() -> None:
             assert sum(piece.area for piece in one) == pytest.approx(face.area, rel=1e-6)
         lengths.append(found.length)
     assert lengths[1] < 0.97 * lengths[0]
+
+
+def test_more_axes_cut_less_and_the_knee_is_where_little_is_gained_beyond(dividers: list[Divider]) -> None:
+    options, chosen = trade(dividers, 4)
+    counts, lengths = [one.orientations for one in options], [one.length for one in options]
+    assert len(options) >= 3 and counts[0] == 1 and counts == sorted(set(counts)) and counts[-1] <= 4
+    assert all(after < before for before, after in pairwise(lengths))
+    assert lengths[0] == pytest.approx(shared(dividers, 1, 0.0).length, rel=0.02)
+    assert chosen == knee(counts, lengths)
+    for one in options:
+        assert one.pieces == sum(len(regions) for regions in one.regions)
+        assert len(np.unique(np.concatenate([r.axes for r in one.regions]), axis=0)) == one.orientations
+
+
+def test_the_knee_lies_farthest_below_the_line_between_the_ends() -> None:
+    assert knee([1, 2, 3, 4, 5], [100.0, 50, 40, 35, 30]) == 1
+    assert knee([1, 4, 8], [10.0, 9, 1]) == 0 and knee([1, 2], [9.0, 8]) == 1 and knee([3], [5.0]) == 0

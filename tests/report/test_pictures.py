@@ -12,7 +12,7 @@ from toolaxis.contact.placing import tips
 from toolaxis.machine.setup import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
@@ -20,6 +20,7 @@ from toolaxis.report.plots import (
     cutting_lines,
     map_picture,
     operation_picture,
+    options_picture,
     study_picture,
     widths_picture,
 )
@@ -80,6 +81,15 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
     assert "1 of 2 sub-surfaces" in ax.get_title()
     assert len(colours_of(made, tmp_path / "plan.png")) > 10
+
+
+def test_the_curve_of_orientations_marks_the_chosen_one(tmp_path: Path) -> None:
+    made = options_picture([Option(1, 1, 900.0, False), Option(2, 3, 700.0, True), Option(4, 5, 680.0, False)])
+    ax = made.axes[0]
+    assert [text.get_text() for text in ax.texts] == ["1 sub-surface", "3 sub-surfaces", "5 sub-surfaces"]
+    ring = next(line for line in ax.lines if line.get_label() == "chosen")
+    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == (2, 700.0)
+    assert len(colours_of(made, tmp_path / "orientations.png")) > 5
 
 
 def test_cutting_lines_are_the_uninterrupted_cuts() -> None:

@@ -60,10 +60,11 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")
     sub.add_argument("--obstacles", metavar="FILE", action="append", default=[],
                      help="STEP file of bodies to keep clear of; may be repeated")
-    sub.add_argument("--regions", type=_regions, metavar="N|auto",
+    sub.add_argument("--regions", type=_count, metavar="N|auto",
                      help="sub-surfaces for each face, an axis each; auto: as many as pay")
-    sub.add_argument("--orientations", type=int, metavar="N",
-                     help="at most N different axes in all, shared by the sub-surfaces of all faces")
+    sub.add_argument("--orientations", type=_count, metavar="N|auto",
+                     help="at most N different axes in all, shared by the sub-surfaces of all faces; auto: as many as "
+                          "the curve of cutting length over their number bends at")
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
@@ -83,7 +84,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.set_defaults(module="toolaxis.cli.plan")
 
 
-def _regions(text: str) -> int | str:
+def _count(text: str) -> int | str:
     return text if text == "auto" else int(text)
 
 

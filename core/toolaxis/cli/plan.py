@@ -87,8 +87,10 @@ def _told(made: Plan, given: Namespace) -> int:
     if given.json:
         print_json(read_json(Path(given.out) / PLAN))
     else:
-        from toolaxis.report.tables import plan_table
+        from toolaxis.report.tables import options_table, plan_table
 
+        if made.options:
+            print_table(options_table(made.options))
         print_table(plan_table(made))
     for op in made.operations:
         if not op.done:

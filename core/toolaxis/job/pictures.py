@@ -22,7 +22,14 @@ from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.hemisphere import hemisphere_picture
 from toolaxis.report.overview import overview_picture
-from toolaxis.report.plots import WidthStudy, map_picture, operation_picture, study_picture, widths_picture
+from toolaxis.report.plots import (
+    WidthStudy,
+    map_picture,
+    operation_picture,
+    options_picture,
+    study_picture,
+    widths_picture,
+)
 from toolaxis.report.raster import mean_direction
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -38,6 +45,8 @@ _POINTS = 60
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
     """Draw the whole part where it has several operations, and every operation: passes and tool, axes, strip widths.
 
+    A choice between numbers of orientations is drawn as their curve.
+
     The operation on the largest face also gets what takes longer: the study of estimate and count, and the axis of the
     paper's sectors marked on its hemisphere.
 
@@ -49,6 +58,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     """
     if len(plan.operations) > 1:
         overview_picture(plan).savefig(folder / "plan.png", dpi=DPI)
+    if plan.options:
+        options_picture(plan.options).savefig(folder / "orientations.png", dpi=DPI)
     done = [op for op in plan.operations if op.done]
     largest = max(done, key=lambda op: op.face.area, default=None)
     for index, op in enumerate(plan.operations):

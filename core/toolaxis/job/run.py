@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,13 @@ from toolaxis.machine.limits import AxisLimits, parse_limits, written
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
-from toolaxis.partition.cover import shared
+from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider
 from toolaxis.partition.regions import checked_count
 from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -32,10 +32,13 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
+Target: TypeAlias = tuple[Face, Array | None]
+"""A sub-surface, and the axis that it shares with others."""
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
-         faces: Sequence[int] | str | None = None, regions: int | str | None = None, orientations: int | None = None,
+         faces: Sequence[int] | str | None = None, regions: int | str | None = None,
+         orientations: int | str | None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
@@ -56,9 +59,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     regions : int or "auto", optional
         Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
         unless given.
-    orientations : int, optional
-        Greatest number of different axes: faces are divided so that sub-surfaces share them; each has its own unless
-        given.
+    orientations : int or "auto", optional
+        Greatest number of different axes: faces are divided so that sub-surfaces share them; "auto" tries all numbers,
+        gives them as the plan's options and takes the one at the knee; each has its own unless given.
     strategy : str
         "indexed": every sub-surface has one fixed axis; others are not part of this version.
     objective : str
@@ -127,22 +130,25 @@ class _Job:
     bodies: tuple[Part, ...]
     datum: Array
     regions: int | str | None = None
-    orientations: int | None = None
+    orientations: int | str | None = None
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         done: list[Operation] = []
         outcome = "complete"
+        options: tuple[Option, ...] = ()
         try:
-            targets = self._sharing(faces, progress) if self.orientations else \
-                [(piece, None) for face in faces for piece in self._divided(face, progress)]
+            if self.orientations:
+                targets, options = self._sharing(faces, progress)
+            else:
+                targets = [(piece, None) for face in faces for piece in self._divided(face, progress)]
             for index, (face, axis) in enumerate(targets):
                 done.append(self._operation(face, axis, (index, len(targets)), progress))
         except Cancelled:
             outcome = "cancelled"
         if outcome == "complete" and not all(op.done for op in done):
             outcome = "incomplete"
-        return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome)
+        return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome, options)
 
     def _divided(self, face: Face, progress: Progress) -> tuple[Face, ...]:
         if self.regions is None:
@@ -150,14 +156,21 @@ class _Job:
         task = self._task(face, progress)
         return regions_of(task, self.regions, progress=progress.within(f"face {face.label}")).faces
 
-    def _sharing(self, faces: Sequence[Face], progress: Progress) -> list[tuple[Face, Array | None]]:
-        """Sub-surfaces of all faces with the few axes that they share."""
-        assert self.orientations is not None
+    def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
+        """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from."""
         most = MOST if self.regions is None else checked_count(self.regions) or MOST
         dividers = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
                     for face in faces]
-        found = shared(dividers, self.orientations, progress=progress)
-        return [(piece, axis) for one in found.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
+        options: tuple[Option, ...] = ()
+        count = checked_count(self.orientations, "orientations")
+        if count is None:
+            found, knee = trade(dividers, progress=progress)
+            options = tuple(Option(one.orientations, one.pieces, one.length, k == knee) for k, one in enumerate(found))
+            chosen = found[knee]
+        else:
+            chosen = shared(dividers, count, progress=progress)
+        return [(piece, axis) for one in chosen.regions
+                for piece, axis in zip(one.faces, one.axes, strict=True)], options
 
     def _operation(self, face: Face, axis: Array | None, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a given axis where that may be used."""

@@ -34,7 +34,7 @@ class Spec:
         Paths of STEP files.
     regions : int, "auto" or None
         Sub-surfaces for each face; None leaves faces whole.
-    orientations : int or None
+    orientations : int, "auto" or None
         Greatest number of different axes.
     """
 
@@ -46,7 +46,7 @@ class Spec:
     stickout: float | None = None
     obstacles: tuple[str, ...] = ()
     regions: int | str | None = None
-    orientations: int | None = None
+    orientations: int | str | None = None
 
     def resolved_tool(self) -> Tool:
         """The tool with its holder.

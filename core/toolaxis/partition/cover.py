@@ -1,7 +1,7 @@
 """Fewest orientations: axes that serve several sub-surfaces, and what that costs in cutting length."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Boxes: TypeAlias = list[list[Corners]]
 
 #: What one more sub-surface costs where its axis is there already, mm: retract, approach and a mark on the border.
 PIECE_COST = 20.0
@@ -98,6 +99,22 @@ class Shared(NamedTuple):
     length: float
     orientations: int
 
+    @property
+    def pieces(self) -> int:
+        """Number of sub-surfaces."""
+        return sum(len(one) for one in self.regions)
+
+
+class Trade(NamedTuple):
+    """Cutting length against the number of different axes.
+
+    options : one Shared for each number of axes for which more of them cut less;  knee : index of the one from which on
+    further axes gain little.
+    """
+
+    options: tuple[Shared, ...]
+    knee: int
+
 
 def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COST,
            progress: Progress = NO_PROGRESS) -> Shared:
@@ -125,22 +142,84 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
     From the best divisions into 1, 2, … sub-surfaces in turn: the best choice of axes for these sub-surfaces (exact),
     the best division for these axes (exact), and so on until nothing changes; the cheapest of all.
     """
-    pool = np.unique(np.concatenate([divider.candidates() for divider in dividers]), axis=0)
-    prices = [divider.priced(pool) for divider in dividers]
+    prices = _priced(dividers)
     best: _Try | None = None
-    seen: list[list[list[Corners]]] = []
+    seen: list[Boxes] = []
     for count in range(1, MOST + 1):
         progress.report("fewest orientations", count - 1, MOST)
         boxes = [_division(divider, count) for divider in dividers]
-        if boxes in seen:
-            continue
-        seen.append(boxes)
-        found = _settled(list(zip(dividers, prices, boxes, strict=True)), most, index_cost) if all(boxes) else None
-        if found is not None and (best is None or found.cost < best.cost - 1e-6):
-            best = found
+        if boxes not in seen:
+            seen.append(boxes)
+            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), most, index_cost))
     if best is None:
         raise InvalidInput(f"no division was found that {most} {'axis' if most == 1 else 'axes'} can machine: allow "
                            "more orientations, or take a smaller tool")
+    return _told(dividers, best)
+
+
+def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO_PROGRESS) -> Trade:
+    """Cutting length against the number of different axes, each as `shared` with no cost of an axis.
+
+    Parameters
+    ----------
+    dividers : sequence of Divider
+        One a face.
+    most : int
+        Greatest number of different axes that is looked at.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When no division was found that so many axes serve.
+    Cancelled
+        When the user asked to stop.
+
+    Notes
+    -----
+    For each number from three starts: the divisions into as many and into twice as many sub-surfaces, and what was best
+    with one axis less.  The knee is the option that lies farthest below the line from the first to the last one.
+    """
+    prices = _priced(dividers)
+    options: list[Shared] = []
+    best: _Try | None = None
+    for count in range(1, most + 1):
+        progress.report("orientations against length", count - 1, most)
+        before = best
+        starts = [[_division(divider, pieces) for divider in dividers] for pieces in (count, 2 * count)]
+        for boxes in starts if best is None else [*starts, best.boxes]:
+            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), count, 0.0))
+        if best is None:
+            continue
+        if before is best:
+            break
+        options.append(_told(dividers, best))
+    if not options:
+        raise InvalidInput(f"no division was found that {most} axes can machine: take a smaller tool")
+    return Trade(tuple(options), knee([one.orientations for one in options], [one.length for one in options]))
+
+
+def knee(count: ArrayLike, length: ArrayLike) -> int:
+    """Index of the point of a falling curve that lies farthest below the line from its first to its last point.
+
+    Parameters
+    ----------
+    count, length : (n,) array_like
+        Rising numbers, and what falls with them.
+    """
+    x, y = np.asarray(count, dtype=float), np.asarray(length, dtype=float)
+    if len(x) < 3 or y[0] == y[-1]:
+        return len(x) - 1
+    return int(np.argmax((y[0] - y) / (y[0] - y[-1]) - (x - x[0]) / (x[-1] - x[0])))
+
+
+def _priced(dividers: Sequence[Divider]) -> list[Prices]:
+    """Prices of all faces' candidates on every face."""
+    pool = np.unique(np.concatenate([divider.candidates() for divider in dividers]), axis=0)
+    return [divider.priced(pool) for divider in dividers]
+
+
+def _told(dividers: Sequence[Divider], best: "_Try") -> Shared:
     regions = tuple(divider.named(found, boxes)
                     for divider, found, boxes in zip(dividers, best.solutions, best.boxes, strict=True))
     used = np.unique(np.concatenate([one.axes for one in regions]), axis=0)
@@ -152,7 +231,12 @@ class _Try(NamedTuple):
 
     cost: float
     solutions: list[Solution]
-    boxes: list[list[Corners]]
+    boxes: Boxes
+
+
+def _cheaper(one: _Try | None, other: _Try | None) -> _Try | None:
+    """The cheaper one; the first where they cost the same."""
+    return other if one is None or (other is not None and other.cost < one.cost - 1e-6) else one
 
 
 def _division(divider: Divider, count: int) -> list[Corners]:
@@ -162,8 +246,10 @@ def _division(divider: Divider, count: int) -> list[Corners]:
 
 
 def _settled(faces: list[tuple[Divider, Prices, list[Corners]]], most: int, index_cost: float) -> _Try | None:
-    """Axes for pieces and pieces for axes in turn, until the cost falls no more."""
+    """Axes for pieces and pieces for axes in turn, until the cost falls no more; None where a face is not divided."""
     best: _Try | None = None
+    if not all(boxes for _, _, boxes in faces):
+        return None
     for _ in range(_ROUNDS):
         costs = np.array([divider.costs(prices, box) for divider, prices, boxes in faces for box in boxes])
         try:

@@ -130,17 +130,16 @@ def checked_count(count: int | str | None, what: str = "sub-surfaces") -> int | 
     ----------
     count : int, "auto" or None
     what : str
-        What is counted; only sub-surfaces can be "auto".
+        What is counted.
 
     Raises
     ------
     InvalidInput
         When it is neither, or out of range.
     """
-    auto = what == "sub-surfaces"
-    if count is None or (auto and count == "auto"):
+    if count is None or count == "auto":
         return None
     if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 1 <= count <= MOST:
-        raise InvalidInput(f"number of {what} is {count!r}: it must be a whole number from 1 to {MOST}"
-                           + (", or auto" if auto else ""))
+        raise InvalidInput(f"number of {what} is {count!r}: it must be a whole number from 1 to {MOST}, "
+                           "or auto")
     return int(count)

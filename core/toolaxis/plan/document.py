@@ -11,7 +11,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -154,6 +154,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
         "length": plan.length,
+        "options": [asdict(option) for option in plan.options],
         "operations": [_operation_document(op, plan.part, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
     }
@@ -191,4 +192,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     operations = tuple(_operation_from(record, part, path)
                        for record, path in zip(document["operations"], paths, strict=True))
     return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),
-                np.array(document["datum"], dtype=float), document["outcome"])
+                np.array(document["datum"], dtype=float), document["outcome"],
+                tuple(Option(**option) for option in document.get("options", ())))

@@ -93,6 +93,26 @@ class Inputs:
                                "give a smaller scallop height")
 
 
+@dataclass(frozen=True)
+class Option:
+    """One way to share axes between the sub-surfaces of a plan.
+
+    Attributes
+    ----------
+    orientations, sub_surfaces : int
+        Numbers of different axes and of pieces.
+    length : float
+        Reckoned cutting length, mm.
+    chosen : bool
+        Whether the plan's operations follow it.
+    """
+
+    orientations: int
+    sub_surfaces: int
+    length: float
+    chosen: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """Operations that machine faces of a part, each with a fixed axis.
@@ -110,6 +130,8 @@ class Plan:
         Origin of every work coordinate system, mm.
     outcome : str
         "complete" (every sub-surface has an axis), "incomplete" (one or more have none) or "cancelled".
+    options : tuple of Option
+        Cutting length against the number of different axes, where that was asked for.
     """
 
     part: Part
@@ -119,6 +141,7 @@ class Plan:
     obstacles: tuple[Part, ...]
     datum: Array
     outcome: str
+    options: tuple[Option, ...] = ()
 
     @property
     def not_checked(self) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Option, Plan
 from toolaxis.report.raster import (
     Camera,
     Canvas,
@@ -308,6 +308,34 @@ def study_picture(study: WidthStudy, name: str) -> Figure:
     below.plot(degrees, 100 * (study.estimate / study.made - 1), "--", color=VERMILION)
     below.set_xlabel("angle between the axis and the mean normal, degrees (dotted: the chosen axis)")
     below.set_ylabel("error, %")
+    return made
+
+
+def options_picture(options: Sequence[Option]) -> Figure:
+    """Cutting length against the number of different axes, the chosen one marked.
+
+    Parameters
+    ----------
+    options : sequence of Option
+    """
+    made = figure(7.5, 4.6)
+    ax = made.subplots()
+    count, length = [one.orientations for one in options], [one.length for one in options]
+    ax.plot(count, length, "o-", color=BLUE, markersize=5)
+    for one in options:
+        ax.annotate(f"{one.sub_surfaces} sub-surface{'s' if one.sub_surfaces > 1 else ''}",
+                    (one.orientations, one.length), textcoords="offset points", xytext=(6, 6), fontsize=8, color=GREY)
+        if one.chosen:
+            ax.plot(one.orientations, one.length, "o", color=VERMILION, markersize=12, fillstyle="none",
+                    markeredgewidth=1.8, label="chosen")
+    ax.set_xlabel("different tool axes")
+    ax.set_ylabel("reckoned cutting length, mm")
+    ax.set_title("cutting length against the number of orientations", fontsize=10)
+    ax.set_xticks(count)
+    ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))
+    ax.margins(y=0.12)
+    ax.grid(alpha=0.25)
+    ax.legend(frameon=False, fontsize=9)
     return made
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from rich.table import Table
 
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Option, Plan
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -81,6 +81,22 @@ def plan_table(plan: Plan) -> Table:
     rows = [[*_operation_row(op), op.orientation.outcome] for op in plan.operations]
     title = f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, cutting length {plan.length:.1f} mm"
     return table(title, [*_COLUMNS, ("outcome", "left")], rows, _BOUNDS)
+
+
+def options_table(options: Sequence[Option]) -> Table:
+    """One row per number of different axes: sub-surfaces, cutting length, and what it saves over one axis.
+
+    Parameters
+    ----------
+    options : sequence of Option
+    """
+    first = options[0].length
+    rows = [[str(one.orientations), str(one.sub_surfaces), number(one.length, 1),
+             f"{100 * (1 - one.length / first):.1f}", "chosen" if one.chosen else ""] for one in options]
+    columns: tuple[Column, ...] = (("different\naxes", "right"), ("sub-\nsurfaces", "right"),
+                                   ("reckoned cutting\nlength mm", "right"), ("less than\nthe first %", "right"),
+                                   ("", "left"))
+    return table("cutting length against the number of orientations", columns, rows)
 
 
 def _measured(found: Mapping[str, Clearance | str]) -> str:
