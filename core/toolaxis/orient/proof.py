@@ -44,6 +44,9 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
           progress: Progress = NO_PROGRESS) -> Proof:
     """Judge every motion of a path with one fixed axis.
 
+    Measuring ends with what is known where a motion needs too many cells, and may then fall short of what deciding has
+    proven before: figures are never worse than the distances to keep.
+
     Parameters
     ----------
     path : ToolPath
@@ -78,11 +81,11 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role == SKIN:
             depth = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
-            gouge = max(allowance - float(depth), 0.0)
+            gouge = max(allowance - max(float(depth), float(group.required[0])), 0.0)
         asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
-            clearance[name] = min(clearance.get(name, most), value)
+            clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
     return Proof(None, gouge, clearance)
 
 
