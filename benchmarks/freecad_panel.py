@@ -1,13 +1,15 @@
 """The planning panel in the real FreeCAD: time to open it, to the first map, to try an axis, and the longest pauses.
 
-Run it in FreeCAD's Python with a display, for instance by a script that TOOLAXIS_FREECAD names:
-`$TOOLAXIS_FREECAD python3 benchmarks/freecad_panel.py [PART.step [FACE [TOOL [SCALLOP]]]]`.
+It needs a display, and runs in the FreeCAD that TOOLAXIS_FREECAD names, or where FreeCAD can be imported; for another
+face there: `python3 -m benchmarks.freecad_panel [PART.step [FACE [TOOL [SCALLOP]]]]`.
 """
 
 import os
 import sys
 import time
 from pathlib import Path
+
+from benchmarks._freecad import in_freecad
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -90,7 +92,7 @@ def measured(path, face, tool, scallop):
     yield panel.form.message.text(), 0.0, 0.0
 
 
-def main():
+def printed():
     """Print the table and leave before the window closes."""
     arguments = dict(enumerate(sys.argv[1:]))
     try:
@@ -105,6 +107,11 @@ def main():
         status = 1
     sys.__stdout__.flush()
     os._exit(status)
+
+
+def main():
+    """Print the table by whichever FreeCAD there is."""
+    in_freecad("freecad_panel", printed)
 
 
 if __name__ == "__main__":

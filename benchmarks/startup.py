@@ -4,15 +4,14 @@ Runs in the FreeCAD that TOOLAXIS_FREECAD names (see CONTRIBUTING.md), or in thi
 """
 
 import os
-import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
-from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
+
+from benchmarks._freecad import in_freecad
 
 ROOT = Path(__file__).resolve().parents[1]
 ROUNDS = 7
@@ -91,16 +90,7 @@ def measured() -> None:
 
 def main() -> None:
     """Print the table by whichever FreeCAD there is."""
-    if find_spec("FreeCAD") is not None:
-        measured()
-        return
-    prefix = shlex.split(os.environ.get("TOOLAXIS_FREECAD", ""))
-    if not prefix:
-        print("not measured: no FreeCAD (TOOLAXIS_FREECAD names one, see CONTRIBUTING.md)")
-        return
-    began = time.perf_counter()
-    subprocess.run([*prefix, "python3", "benchmarks/startup.py"], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
-    print(f"in all {time.perf_counter() - began:.0f} s")
+    in_freecad("startup", measured)
 
 
 if __name__ == "__main__":
