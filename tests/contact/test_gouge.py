@@ -9,6 +9,7 @@ from toolaxis.contact.gouge import RESOLUTION, gouge, gouges, penetration, segme
 from toolaxis.contact.placing import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
+from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.cells import forest
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -227,3 +228,16 @@ def test_bad_input():
         penetration(TOOLS[0], np.zeros((3, 3)), [[0, 0, 1]] * 2, (_plane(),))
     with pytest.raises(InvalidInput, match="gouge limit"):
         gouges(TOOLS[0], [[0, 0, 0]], [0, 0, 1], (_plane(),), np.nan)
+
+
+@pytest.mark.parametrize("radius", [1.0, 3.0])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_a_ball_touches_the_pole_of_a_sphere_without_gouge(radius, swapped):
+    """Derivatives vanish along the border that is the pole: their bounds have to as well."""
+    cap = Sphere(7.0, v_range=(0.3, np.pi / 2)).nurbs()
+    face = Face(cap.swapped(), flip=True) if swapped else Face(cap)
+    (_, _), (v0, v1) = cap.domain
+    uv = np.array([[2.0, v0 + share * (v1 - v0)] for share in (1.0, 1 - 1e-6, 1 - 1e-3, 0.99, 0.9)])
+    uv = uv[:, ::-1] if swapped else uv
+    for row in uv:
+        assert gouge(face, Tool.ball(2 * radius), [row], face.normal([row])[0])[0] <= 0.0004

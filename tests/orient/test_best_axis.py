@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.contact.descent import BUDGET
 from toolaxis.contact.gouge import segment_penetration
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.orient import impossible
 from toolaxis.orient.indexed import best_axis, evaluate_axis, task
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.proof import Proof, prove
@@ -99,6 +101,17 @@ def test_a_corner_too_large_is_proven_infeasible(make):
     found = best_axis(make.bowl(3.0, size=5), Tool.ball(8), H)
     assert found.outcome == "infeasible" and "corner radius 4 mm gouges" in found.reasons[0]
     assert best_axis(make.bowl(9.0, size=5), Tool.ball(8), H).outcome == "feasible"
+
+
+def test_no_proof_is_drawn_from_a_search_that_was_given_up(make, monkeypatch):
+    measured = impossible.bounded
+
+    def given_up(*asked):
+        found = measured(*asked)
+        return found._replace(lower=found.lower - 5.0, looked=found.looked + BUDGET)
+
+    monkeypatch.setattr(impossible, "bounded", given_up)
+    assert impossible.corner_too_large(task(make.bowl(9.0, size=5), Tool.ball(8), H).feasibility) == ""
 
 
 def test_limits_without_an_axis_are_proven_infeasible(make):

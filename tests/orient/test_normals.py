@@ -7,6 +7,7 @@ import pytest
 
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.orient.normals import NormalField, smallest_cap
+from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 
 
@@ -88,3 +89,15 @@ def test_a_plane_has_one_normal():
     np.testing.assert_allclose(field.mean, [0, 0, -1], atol=1e-12)
     found = field.range_of_angles([0, 0, -1.0], 0.01, 1.0)
     assert found.low == 0.0 and found.high < 1e-7
+
+
+def test_a_pole_does_not_multiply_cells(monkeypatch):
+    """Normals have no bound there: the range is wide, and soon told."""
+    face = Face(Sphere(7.0, v_range=(0.3, pi / 2)).nurbs())
+    field, counts = NormalField(face), []
+    looked = NormalField._looked
+    monkeypatch.setattr(NormalField, "_looked",
+                        lambda self, t, cells, bounds: counts.append(len(cells)) or looked(self, t, cells, bounds))
+    found = field.range_of_angles([0, 0, 1.0], 0.0, pi / 2)
+    assert sum(counts) < 1_000_000
+    assert found.low <= 1e-3 and found.high >= pi / 2 - 0.3

@@ -9,7 +9,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
 from toolaxis.shape.cells import cells, forest
 from toolaxis.shape.face import Face
-from toolaxis.shape.subdivision import grid_lines
+from toolaxis.shape.gridlines import grid_lines
 
 RING = np.linspace(0, 2 * np.pi, 90, endpoint=False)
 

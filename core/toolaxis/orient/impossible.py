@@ -4,6 +4,7 @@ from math import degrees
 
 import numpy as np
 
+from toolaxis.contact.descent import BUDGET
 from toolaxis.contact.distances import bounded, motions
 from toolaxis.orient.feasible import FINE, Feasibility
 from toolaxis.orient.reasons import place
@@ -41,7 +42,8 @@ def corner_too_large(feasibility: Feasibility) -> str:
 
     Notes
     -----
-    Whatever the axis, the cutter contains the ball of the corner radius that touches the surface at the contact.
+    Whatever the axis, the cutter contains the ball of the corner radius that touches the surface at the contact.  Where
+    the search for the depth was given up, its bound says nothing and no proof is drawn from it.
     """
     tool, skin = feasibility.tool, feasibility.groups[0]
     radius, limit = tool.corner_radius, feasibility.tolerance.gouge
@@ -52,7 +54,7 @@ def corner_too_large(feasibility: Feasibility) -> str:
     ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
     slack = max(face.tolerance for face in skin.faces) + 2 * FINE
     found = bounded(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE)
-    depth = -found.lower[:, 0] - slack
+    depth = np.where(found.looked > BUDGET, 0.0, -found.lower[:, 0] - slack)
     i = int(np.argmax(depth))
     if depth[i] <= limit:
         return ""

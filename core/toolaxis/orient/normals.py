@@ -25,6 +25,8 @@ _ROUNDS = 13
 _AT_ONCE = 4096
 #: Cells are not divided further once their normals are known to this angle, rad.
 _FINE = 1e-4
+#: More cells than this are not divided further: at a pole, where the normal has no bound, they would only multiply.
+_MOST = 100_000
 
 
 class Cap(NamedTuple):
@@ -163,7 +165,8 @@ class NormalField:
     def range_of_angles(self, axis: ArrayLike, least: float, greatest: float) -> Range:
         """Range of the angle between an axis and all normals of the face, proven between the samples too.
 
-        Cells are halved until both limits are decided, or the normals in the cells in question are known to 1e-4 rad.
+        Cells are halved until both limits are decided, or the normals in the cells in question are known to 1e-4 rad,
+        or (around a pole) too many cells are in question; the range is wider then.
 
         Parameters
         ----------
@@ -197,6 +200,7 @@ class NormalField:
             doubtful = ((angle - spread < min(least, seen[0])) & (seen[0] >= least)) | (
                 (angle + spread > max(greatest, seen[1])) & (seen[1] <= greatest))
             doubtful &= (spread > _FINE) & (rounds < _ROUNDS)
+            doubtful &= np.count_nonzero(doubtful) <= _MOST
             low = min(low, float((angle - spread)[~doubtful].min(initial=np.inf)))
             high = max(high, float((angle + spread)[~doubtful].max(initial=-np.inf)))
             if not doubtful.any():

@@ -9,6 +9,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
+from toolaxis.shape.gridlines import graded, grid_lines
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -60,22 +61,6 @@ class _Level(NamedTuple):
         """Some of the nodes, with other rectangles."""
         place = np.where(kept, np.cumsum(kept) - 1, -1)[self.owner]
         return _Level(self.base[kept], rect[kept], self.parent[kept], place[place >= 0], self.edge[place >= 0])
-
-
-def grid_lines(knots: Array, degree: int, low: float, high: float) -> Array:
-    """Lines of the base cells: the knots, and spans of curved directions divided until there are 8 or more.
-
-    Parameters
-    ----------
-    knots : (m,) array
-    degree : int
-    low, high : float
-        Range to be covered.
-    """
-    ends = np.unique(np.concatenate([[low], knots[(knots > low) & (knots < high)], [high]]))
-    parts = np.maximum(1, np.ceil(np.diff(ends) / (high - low) * (1 if degree == 1 else 8) - 1e-9)).astype(int)
-    pieces = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], parts, strict=True)]
-    return np.concatenate([*pieces, [high]])
 
 
 def margin_of(face: Face) -> Array:
@@ -176,7 +161,8 @@ class _Builder:
             raise InvalidInput(f"face {face.label} has loops around u {u0:g} to {u1:g}, v {v0:g} to {v1:g}, outside "
                                f"its surface's domain {d0:g} to {d1:g}, {e0:g} to {e1:g}: trim it inside")
         ku, kv, _, pu, pv, _ = face.surface.data
-        self.lines = (grid_lines(ku, pu, *self.rect[0, :2]), grid_lines(kv, pv, *self.rect[0, 2:]))
+        lines = (grid_lines(ku, pu, *self.rect[0, :2]), grid_lines(kv, pv, *self.rect[0, 2:]))
+        self.lines = (graded(face, lines, 0, fineness), graded(face, lines, 1, fineness))
         self.bounds = self._second_derivatives()
         self.edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in face.trims]
                                     or [np.empty((0, 4))])
