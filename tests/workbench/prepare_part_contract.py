@@ -1,7 +1,8 @@
 """Run outside FreeCAD before test_part_contract.py: what Open CASCADE's adapter says of each part, and the parts.
 
 ``python prepare_part_contract.py FOLDER`` leaves in FOLDER, for each part, its geometry (.step or .brep) and the record
-(.pickle).  Real parts by others come from the folder that TOOLAXIS_SHARED names, where it is there.
+(.pickle), and in kernel.txt the kernel's release.  Real parts by others come from the folder that TOOLAXIS_SHARED
+names, where it is there.
 """
 
 import importlib.util
@@ -67,11 +68,13 @@ def mesh_face():
 
 
 def write(folder):
+    import OCP
     from OCP.BRepTools import BRepTools
 
     from toolaxis.cad.ocp import shape_record
     from toolaxis.cad.transfer import convert
 
+    (folder / "kernel.txt").write_text(OCP.__version__)
     shared = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
     for path in [*sorted((ROOT / "examples").glob("*.step")), *sorted(shared.glob("*.st*p"))]:
         done, record, *_ = convert(str(path))

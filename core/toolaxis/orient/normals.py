@@ -27,6 +27,8 @@ _AT_ONCE = 4096
 _FINE = 1e-4
 #: More cells than this are not divided further: at a pole, where the normal has no bound, they would only multiply.
 _MOST = 100_000
+#: Size, mm, of a cell at a pole, where normals have no bound, below which it counts with the normal in its middle.
+_SPECK = 0.01
 
 
 class Cap(NamedTuple):
@@ -182,8 +184,9 @@ class NormalField:
 
         Notes
         -----
-        **Properties**: 1. no normal of the face has an angle outside; 2. low and high are met to 1e-4 rad by a normal
-        of the face where they decide against the limits.
+        **Properties**: 1. no normal of the face has an angle outside, but within 0.01 mm of a pole, where the normals
+        in the middles of cells stand for all; 2. low and high are met to 1e-4 rad by a normal of the face where they
+        decide against the limits.
         """
         t = np.asarray(axis, dtype=float)
         rectangles, bounds = self._cells
@@ -221,6 +224,8 @@ class NormalField:
         size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), pi)
+        across = 2 * (su * hu + sv * hv) + off_u * hu + off_v * hv
+        spread[(share >= 1) & (across < _SPECK) & (np.linalg.norm(n, axis=1) > 0.5)] = 0.0
         return middle, self.face.contains(middle), angle_between(np.broadcast_to(t, n.shape), n), spread
 
 
