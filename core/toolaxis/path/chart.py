@@ -19,6 +19,9 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
+#: Share of the range across passes that is kept from a pole, where they have no direction.
+_POLE = 1e-3
+
 #: Lines are kept this share of the range off its ends: there the noise of a loop along the end, and no more than that,
 #: would decide which parts of a line are inside.
 _EDGE = 1e-5
@@ -140,9 +143,20 @@ class IsoChart:
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
-        """Range of the face: along0, along1, step0, step1."""
+        """Range of the face: along0, along1, step0, step1; where passes shrink to a pole, up to shortly before."""
         u0, u1, v0, v1 = self.face.bounds
-        return (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        a0, a1, s0, s1 = (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        return a0, a1, max(s0, self._poles[0]), min(s1, self._poles[1])
+
+    @cached_property
+    def _poles(self) -> tuple[float, float]:
+        """Steps shortly after a lower and before an upper border that is a point; infinite where there is none."""
+        u0, u1, v0, v1 = self.face.bounds
+        a0, a1, s0, s1 = (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        low, high = (np.ptp(self.face.evaluate(self.uv(np.linspace(a0, a1, 5), np.full(5, s))).point, axis=0).max()
+                     < 1e-9 * self.face.diagonal for s in (s0, s1))
+        near = _POLE * (s1 - s0)
+        return s0 + near if low else -np.inf, s1 - near if high else np.inf
 
     @cached_property
     def loops(self) -> tuple[Array, ...]:
@@ -174,7 +188,8 @@ class IsoChart:
         return np.stack([along, step], axis=1)[:, self._order]
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
-        """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
+        """Half widths (n, 2) in the step parameter, towards its lower and its upper end; at a pole those before it."""
+        step = np.clip(step, *self._poles)
         return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
                                       cut.allowance))
 
