@@ -13,8 +13,12 @@ def _flat(*rows: list[float]) -> ta.Face:
 
 
 def test_a_refusal_for_want_of_room_adds_up() -> None:
-    floor, wall = _flat([0, 0, 0], [14, 0, 0], [0, 8, 0]), _flat([-20, -20, 4.105], [0, 60, 0], [60, 0, 0])
-    found = ta.best_axis(floor, ta.Tool.ball(diameter=4, flute_length=4), 0.2, "cone:0,0,1,0.5", obstacles=[wall])
+    """Plates all around, 1.005 mm below the holder's lower face."""
+    tool = ta.Tool.ball(diameter=4, flute_length=4, stickout=10, holder=[(10, 0), (10, 30)])
+    plates = [_flat([x, -40, 8.995], [0, 90, 0], [30, 0, 0]) for x in (-34, 18)]
+    plates += [_flat([-40, y, 8.995], [0, 30, 0], [90, 0, 0]) for y in (-34, 12)]
+    floor = _flat([0, 0, 0], [14, 0, 0], [0, 8, 0])
+    found = ta.best_axis(floor, tool, 0.2, "cone:0,0,1,0.5", obstacles=plates)
     text = next(why for why in found.reasons if "comes within" in why)
     told = re.search(r"within ([\d.]+) mm of face \d+, less than the required ([\d.]+) mm and ([\d.]+) mm to", text)
     distance, required, margin = map(float, told.groups())
