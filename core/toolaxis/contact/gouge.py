@@ -50,7 +50,8 @@ def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | 
     Returns
     -------
     (n,) array, mm: never below the true depth, and at most `RESOLUTION` (and the faces' tolerance) above it;
-    for depths beyond 0.1 mm, at most a twentieth of what is beyond.
+    for depths beyond 0.1 mm, at most a twentieth of what is beyond.  Coarser, never too low, where 100,000 cells are
+    not enough: next to cracks and spikes of the skin.
 
     Notes
     -----

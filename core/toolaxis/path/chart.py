@@ -144,15 +144,18 @@ class IsoChart:
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """Range of the face: along0, along1, step0, step1; where passes shrink to a pole, up to shortly before."""
-        u0, u1, v0, v1 = self.face.bounds
-        a0, a1, s0, s1 = (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        a0, a1, s0, s1 = self._range
         return a0, a1, max(s0, self._poles[0]), min(s1, self._poles[1])
+
+    @property
+    def _range(self) -> tuple[float, float, float, float]:
+        u0, u1, v0, v1 = self.face.bounds
+        return (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
 
     @cached_property
     def _poles(self) -> tuple[float, float]:
         """Steps shortly after a lower and before an upper border that is a point; infinite where there is none."""
-        u0, u1, v0, v1 = self.face.bounds
-        a0, a1, s0, s1 = (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        a0, a1, s0, s1 = self._range
         low, high = (np.ptp(self.face.evaluate(self.uv(np.linspace(a0, a1, 5), np.full(5, s))).point, axis=0).max()
                      < 1e-9 * self.face.diagonal for s in (s0, s1))
         near = _POLE * (s1 - s0)
