@@ -16,7 +16,9 @@ from toolaxis.contact.clearance import (
 from toolaxis.contact.surroundings import IGNORED, Surroundings
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
+from toolaxis.shape.adjacency import Edge
 from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
@@ -82,15 +84,10 @@ def test_public_form():
 
 def test_part_leaves_its_skin_to_gouge():
     floor, wall = _floor(), _wall(20, -1, 30)
-
-    class Pair:
-        faces = (floor, wall)
-
-        def skin(self, number):
-            return (floor, wall) if number == 1 else ()
-
+    edge = Edge((1, 2), "tangent", np.array([[20, -30, 0], [20, 30, 0.0]]))
+    pair = Part.from_faces([floor, wall], [edge])
     uv, axis = np.array([[0.5, 0.5]]), UP
-    assert clearance(floor, TOOL, uv, axis, Pair())[0] == pytest.approx(CUTOFF)  # holder 25 - 20 over the wall
+    assert clearance(floor, TOOL, uv, axis, pair)[0] == pytest.approx(CUTOFF)  # holder 25 - 20 over the wall
     assert clearance(floor, TOOL, uv, axis, [floor, wall])[0] == pytest.approx(20 - 6, abs=4.1)
 
 

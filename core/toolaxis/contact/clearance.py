@@ -1,7 +1,7 @@
 """How far cutter, shank and holder stay from everything else: a lower bound that holds between all points."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol, TypeAlias, TypeGuard, runtime_checkable
+from typing import NamedTuple, TypeAlias, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import axis_rows
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
+from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import COMPONENTS
 
@@ -23,19 +24,7 @@ RESOLUTION = 0.001
 CUTOFF = 10.0
 
 
-@runtime_checkable
-class PartLike(Protocol):
-    """What `clearance` asks of a part."""
-
-    @property
-    def faces(self) -> Sequence[Face]:
-        """All faces."""
-
-    def skin(self, number: int) -> Sequence[Face]:
-        """The face of that number with its tangent-continuous neighbours."""
-
-
-Obstacles: TypeAlias = PartLike | Face | Sequence[Face] | None
+Obstacles: TypeAlias = Part | Face | Sequence[Face] | None
 
 
 class Clearances(NamedTuple):
@@ -109,16 +98,16 @@ def _faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
         return ()
     if isinstance(obstacles, Face):
         return (obstacles,)
-    faces = obstacles.faces if isinstance(obstacles, PartLike) else obstacles
+    faces = obstacles.faces if isinstance(obstacles, Part) else obstacles
     if isinstance(faces, Sequence) and all(isinstance(one, Face) for one in faces):
         return tuple(faces)
     raise InvalidInput(f"obstacles are {type(obstacles).__name__}: give a part, a face or a sequence of faces "
                        "(toolaxis.load reads them from a file)")
 
 
-def _is_own(obstacles: Obstacles, face: Face) -> TypeGuard[PartLike]:
+def _is_own(obstacles: Obstacles, face: Face) -> TypeGuard[Part]:
     """Whether obstacles are the part that a face belongs to: numbers alone do not tell, each part has a face 1."""
-    if not isinstance(obstacles, PartLike):
+    if not isinstance(obstacles, Part):
         return False
     named = next((one for one in obstacles.faces if one.number == face.number), None)
     if named is None or named.surface is face.surface:
