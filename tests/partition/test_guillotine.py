@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
+from toolaxis.partition.cuts import least_costs, least_costs_numpy
 from toolaxis.partition.guillotine import Corners, Division, each_axis, offers, proper
 
 
@@ -52,6 +53,21 @@ def test_division_is_the_cheapest(seed: int) -> None:
                 covered[u0:u1, v0:v1] += 1
             assert covered.max(initial=0) <= 1 and cells[covered == 0].all()
             assert sum(cost[box] for box in pieces) == pytest.approx(found.curve[count], rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_compiled_and_plain_costs_agree_to_the_last_bit(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    nu, nv, most = (7, 5, 6) if seed % 2 else (3, 8, 4)
+    least = np.full((*shapes(nu, nv), most + 1), np.inf)
+    kinds = np.where(rng.random(shapes(nu, nv)) < 0.1, 0, 1)
+    cost = np.where(rng.random(shapes(nu, nv)) < 0.3, np.inf, rng.uniform(1, 9, shapes(nu, nv)) ** 2)
+    for box in np.argwhere(proper(nu, nv)):
+        least[(*box, kinds[tuple(box)])] = 0.0 if kinds[tuple(box)] == 0 else cost[tuple(box)]
+    plain = least.copy()
+    least_costs(least)
+    least_costs_numpy(plain)
+    assert np.array_equal(least, plain) and np.isfinite(least[0, -1, 0, -1]).sum() > 2
 
 
 def test_offers_are_integrals_over_the_narrowest_places() -> None:

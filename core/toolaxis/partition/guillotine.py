@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.partition.cuts import least_costs
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -150,20 +152,7 @@ class Division:
         self.least = np.full((*cost.shape, most + 1), np.inf)
         self.least[..., 1] = np.where(empty, np.inf, cost)
         self.least[empty, 0] = 0.0
-        nu, nv = cost.shape[0] - 1, cost.shape[2] - 1
-        for w in range(1, nu + 1):
-            for h in range(1, nv + 1):
-                self._solve(w, h, nu, nv)
-
-    def _solve(self, w: int, h: int, nu: int, nv: int) -> None:
-        """Fill in all rectangles of w x h cells, smaller ones being known."""
-        u, v = np.arange(nu - w + 1)[:, None], np.arange(nv - h + 1)[None]
-        best = self.least[u, u + w, v, v + h]
-        for c in range(1, w):
-            best = _merged(best, self.least[u, u + c, v, v + h], self.least[u + c, u + w, v, v + h])
-        for c in range(1, h):
-            best = _merged(best, self.least[u, u + w, v, v + c], self.least[u, u + w, v + c, v + h])
-        self.least[u, u + w, v, v + h] = best
+        least_costs(self.least)
 
     @property
     def curve(self) -> Array:
@@ -192,13 +181,6 @@ class Division:
                     yield from self._followed(other, count - k)
                     return
         yield box
-
-
-def _merged(best: Array, one: Array, other: Array) -> Array:
-    """The least of what is known and of all shares of pieces between two sides, (…, most + 1)."""
-    for k in range(best.shape[-1]):
-        best[..., k:] = np.minimum(best[..., k:], one[..., k, None] + other[..., : best.shape[-1] - k])
-    return best
 
 
 def _cuts(box: Corners) -> Iterator[tuple[Corners, Corners]]:
