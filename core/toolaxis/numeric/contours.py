@@ -1,0 +1,110 @@
+"""Closed lines around the places where a function is above zero, by marching squares on a grid."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_STEPS = 24
+#: Corners of a cell, anticlockwise, and the edges between them: (di, dj) of a corner; edge k runs from k to k + 1.
+_CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
+
+
+def contours(values: Array, lines: tuple[Array, Array],
+             function: Callable[[Array], Array] | None = None) -> tuple[Array, ...]:
+    """Closed polygons around the places where a function is above zero.
+
+    Parameters
+    ----------
+    values : (m, n) array
+        The function at the nodes of a grid; what is above zero on the grid's border is closed along the border.
+    lines : pair of (m,) and (n,) arrays
+        Coordinates of the grid.
+    function : callable, optional
+        Takes (k, 2) points and returns (k,) values: vertices are put where it vanishes, by bisection, instead of where
+        a straight line between the nodes does.
+
+    Returns
+    -------
+    tuple of (k, 2) arrays
+        Points inside an odd number of them are above zero; features smaller than a cell may be missed.
+
+    **Properties**: 1. no two polygons cross; 2. every vertex lies on a line of the grid.
+    """
+    x, y = (np.concatenate([line[:1], line, line[-1:]]) for line in lines)
+    f = np.full((len(x), len(y)), -1.0)
+    f[1:-1, 1:-1] = values
+    above = f > 0
+    cells = np.argwhere((above[:-1, :-1] != above[1:, :-1]) | (above[1:, :-1] != above[1:, 1:])
+                        | (above[1:, 1:] != above[:-1, 1:]))
+    at = _vertices(f, (x, y), function)
+    joined: dict[tuple[int, int, int], list[tuple[int, int, int]]] = {}
+    for i, j in cells.tolist():
+        for one, other in _segments(f, above, i, j):
+            joined.setdefault(one, []).append(other)
+            joined.setdefault(other, []).append(one)
+    return _traced(joined, at)
+
+
+def _vertices(f: Array, lines: tuple[Array, Array],
+              function: Callable[[Array], Array] | None) -> dict[tuple[int, int, int], Array]:
+    """Where edges of the grid cross zero, by axis along which the edge runs and its lower node."""
+    keys, ends = [], []
+    for axis in (0, 1):
+        g = np.moveaxis(f, axis, 0)
+        along, across = np.nonzero((g[1:] > 0) != (g[:-1] > 0))
+        for a, c in zip(along.tolist(), across.tolist(), strict=True):
+            low, high = ((a, c), (a + 1, c)) if axis == 0 else ((c, a), (c, a + 1))
+            keys.append((axis, *low))
+            ends.append((low, high) if f[low] > 0 else (high, low))
+    if not keys:
+        return {}
+    node = np.array(ends)
+    good, bad = (np.column_stack([lines[0][node[:, k, 0]], lines[1][node[:, k, 1]]]) for k in (0, 1))
+    value = f[node[:, 0, 0], node[:, 0, 1]], f[node[:, 1, 0], node[:, 1, 1]]
+    share = (value[0] / (value[0] - value[1]))[:, None]
+    outer = ((node[:, 1] == 0) | (node[:, 1] == np.array(f.shape) - 1)).any(axis=1)
+    points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
+    if function is not None and not outer.all():
+        points[~outer] = _bisected(function, good[~outer], bad[~outer])
+    return dict(zip(keys, points, strict=True))
+
+
+def _bisected(function: Callable[[Array], Array], good: Array, bad: Array) -> Array:
+    for _ in range(_STEPS):
+        middle = (good + bad) / 2
+        holds = (function(middle) > 0)[:, None]
+        good, bad = np.where(holds, middle, good), np.where(holds, bad, middle)
+    return (good + bad) / 2
+
+
+def _segments(f: Array, above: NDArray[np.bool_], i: int,
+              j: int) -> list[tuple[tuple[int, int, int], tuple[int, int, int]]]:
+    """Pieces of the line through one cell; where all four edges are crossed, the mean of the corners decides."""
+    edges = ((0, i, j), (1, i + 1, j), (0, i, j + 1), (1, i, j))
+    corner = [bool(above[i + a, j + b]) for a, b in _CORNERS]
+    crossed = [k for k in range(4) if corner[k] != corner[(k + 1) % 4]]
+    if len(crossed) == 2:
+        return [(edges[crossed[0]], edges[crossed[1]])]
+    middle = float(f[i:i + 2, j:j + 2].sum()) > 0
+    first = (0, 1) if middle != corner[1] else (3, 0)
+    second = (2, 3) if first == (0, 1) else (1, 2)
+    return [(edges[first[0]], edges[first[1]]), (edges[second[0]], edges[second[1]])]
+
+
+def _traced(joined: dict[tuple[int, int, int], list[tuple[int, int, int]]],
+            at: dict[tuple[int, int, int], Array]) -> tuple[Array, ...]:
+    loops, left = [], dict.fromkeys(joined)
+    while left:
+        key, line = next(iter(left)), []
+        while key in left:
+            del left[key]
+            line.append(at[key])
+            key = next((other for other in joined[key] if other in left), key)
+        loop = np.array(line)
+        loop = loop[(loop != np.roll(loop, 1, axis=0)).any(axis=1)]
+        if len(loop) > 2:
+            loops.append(loop)
+    return tuple(loops)

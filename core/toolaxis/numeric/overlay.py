@@ -1,0 +1,140 @@
+"""Polygons with holes divided by other polygons: what lies inside them, and what outside."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.polygons import inside, slabs
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Loops = tuple[Array, ...]
+
+#: Rows of one polygon's edges that are held against all of the other's at a time.
+_ROWS = 256
+
+
+class _Chain(NamedTuple):
+    """A stretch of a loop between two crossings, or a whole loop (ends -1): its points, and where it begins and ends."""
+
+    points: Array
+    first: int
+    last: int
+
+
+def divided(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
+    """A polygon divided by another one.
+
+    Parameters
+    ----------
+    loops, by : tuple of (m, 2) arrays
+        Closed loops without repeated end points; points inside an odd number of them belong to the polygon.
+
+    Returns
+    -------
+    inside, outside : tuples of (k, 2) arrays
+        What of the first lies in the second, and the rest; both have the very same points on the border between them.
+
+    Raises
+    ------
+    InvalidInput
+        When a corner of the one lies on the border of the other, so that rounding would decide: move one of them a
+        little.
+
+    Notes
+    -----
+    Where two borders cross, one of the two stretches of each lies inside the other polygon: so two stretches that
+    belong to a result meet at every crossing, and loops close without regard to their sense.
+
+    **Properties**: 1. the areas of both results add up to the whole; 2. what is divided by nothing lies outside.
+    """
+    if not loops or not by:
+        return (), loops
+    one, other, points = _crossings(loops, by)
+    own, cutting = _chains(loops, one, points), _chains(by, other, points)
+    own_in, cutting_in = _within(own, by), _within(cutting, loops)
+    within = [chain for chain, kept in zip(cutting, cutting_in, strict=True) if kept]
+    return (_closed([chain for chain, kept in zip(own, own_in, strict=True) if kept] + within, len(points)),
+            _closed([chain for chain, kept in zip(own, own_in, strict=True) if not kept] + within, len(points)))
+
+
+def _edges(loops: Loops) -> tuple[Array, Array]:
+    return np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) - loop for loop in loops])
+
+
+def _crossings(loops: Loops, by: Loops) -> tuple[Array, Array, Array]:
+    """Where borders cross: edge and share of it, (n, 2), on each, edges counted through all loops; and the points."""
+    (a, p), (b, q) = _edges(loops), _edges(by)
+    found = []
+    for low in range(0, len(a), _ROWS):
+        start, way = a[low:low + _ROWS, None], p[low:low + _ROWS, None]
+        turn = way[..., 0] * q[:, 1] - way[..., 1] * q[:, 0]
+        gap = b - start
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = (gap[..., 0] * q[:, 1] - gap[..., 1] * q[:, 0]) / turn
+            t = (gap[..., 0] * way[..., 1] - gap[..., 1] * way[..., 0]) / turn
+        i, j = np.nonzero((s >= 0) & (s < 1) & (t >= 0) & (t < 1))
+        found.append(np.column_stack([i + low, s[i, j], j, t[i, j]]))
+    table = np.concatenate(found)
+    edge = table[:, 0].astype(np.intp)
+    return table[:, :2], table[:, 2:], a[edge] + table[:, 1:2] * p[edge]
+
+
+def _chains(loops: Loops, crossings: Array, points: Array) -> list[_Chain]:
+    """The stretches of loops between crossings."""
+    chains, before = [], 0
+    for loop in loops:
+        on = np.flatnonzero((crossings[:, 0] >= before) & (crossings[:, 0] < before + len(loop)))
+        place = crossings[on].sum(axis=1) - before
+        before += len(loop)
+        if not len(on):
+            chains.append(_Chain(loop, -1, -1))
+            continue
+        order = np.argsort(place, kind="stable")
+        on, place = on[order], place[order]
+        for k in range(len(on)):
+            start, end = place[k], place[(k + 1) % len(on)] + (len(loop) if k + 1 == len(on) else 0)
+            between = np.arange(int(np.floor(start)) + 1, int(np.ceil(end))) % len(loop)
+            first, last = int(on[k]), int(on[(k + 1) % len(on)])
+            chains.append(_Chain(np.concatenate([points[[first]], loop[between], points[[last]]]), first, last))
+    return chains
+
+
+def _within(chains: list[_Chain], loops: Loops) -> list[bool]:
+    """Whether chains lie inside loops that they do not cross: the middle of the longest edge of each decides."""
+    middles = []
+    for chain in chains:
+        start = chain.points if chain.first < 0 else chain.points[:-1]
+        end = np.roll(chain.points, -1, axis=0)[:len(start)]
+        k = int(np.argmax(np.abs(end - start).sum(axis=1)))
+        middles.append((start[k] + end[k]) / 2)
+    return list(inside(slabs(loops), np.array(middles)))
+
+
+def _closed(chains: list[_Chain], crossings: int) -> Loops:
+    """Loops from chains of which two meet at every crossing."""
+    loops = [chain.points for chain in chains if chain.first < 0]
+    open_ = [chain for chain in chains if chain.first >= 0]
+    at: list[list[tuple[int, int]]] = [[] for _ in range(crossings)]
+    for k, chain in enumerate(open_):
+        at[chain.first].append((k, 0))
+        at[chain.last].append((k, 1))
+    if any(len(ends) not in (0, 2) for ends in at):
+        raise InvalidInput("a corner of one polygon lies on the border of the other: move one of them a little")
+    free = dict.fromkeys(range(len(open_)))
+    while free:
+        k, end, parts = next(iter(free)), 0, []
+        while k in free:
+            del free[k]
+            points = open_[k].points
+            parts.append((points if end == 0 else points[::-1])[:-1])
+            away = open_[k].last if end == 0 else open_[k].first
+            k, end = at[away][1] if at[away][0] == (k, 1 - end) else at[away][0]
+        loops.append(_without_repeats(np.concatenate(parts)))
+    return tuple(loop for loop in loops if len(loop) > 2)
+
+
+def _without_repeats(loop: Array) -> Array:
+    return np.asarray(loop[(loop != np.roll(loop, 1, axis=0)).any(axis=1)])

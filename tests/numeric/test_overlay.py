@@ -1,0 +1,98 @@
+"""Polygons divided by polygons, and contours: areas add up, and another library's boolean operations agree."""
+
+import numpy as np
+import pytest
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.contours import contours
+from toolaxis.numeric.overlay import divided
+from toolaxis.numeric.polygons import inside, signed_area, slabs
+
+SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+
+
+def circle(x: float, y: float, radius: float, count: int = 101) -> np.ndarray:
+    t = np.linspace(0, 2 * np.pi, count, endpoint=False) + 0.1234
+    return np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
+
+
+def area(loops: tuple[np.ndarray, ...]) -> float:
+    """Even-odd area of loops that do not cross, each counted by how many others hold it."""
+    total = 0.0
+    for k, loop in enumerate(loops):
+        others = [other for i, other in enumerate(loops) if i != k]
+        depth = sum(int(inside(slabs((other,)), (loop[:1] + loop[1:2]) / 2)[0]) for other in others)
+        total += (-1) ** depth * abs(signed_area(loop))
+    return total
+
+
+@pytest.mark.parametrize("other", [circle(0, 0, 2), circle(2, 2, 1), circle(2, 2, 5), circle(9, 9, 1),
+                                   circle(2, 2, 2.4), circle(4, 2, 0.5)])
+def test_two_sides_are_the_whole(other: np.ndarray) -> None:
+    hole = circle(2.7, 1.9, 0.8)
+    within, beyond = divided((SQUARE, hole), (other,))
+    assert area(within) + area(beyond) == pytest.approx(16 - abs(signed_area(hole)), rel=1e-12)
+    uv = np.random.default_rng(1).uniform(-1, 5, (2000, 2))
+    whole, cut = inside(slabs((SQUARE, hole)), uv), inside(slabs((other,)), uv)
+    for loops, wanted in ((within, whole & cut), (beyond, whole & ~cut)):
+        assert (inside(slabs(loops), uv) == wanted).all() if loops else not wanted.any()
+
+
+def test_random_polygons_agree_with_shapely() -> None:
+    shapely = pytest.importorskip("shapely")
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        loops = []
+        for centre in rng.uniform(-0.6, 0.6, (2, 2)):
+            t = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(5, 40)))
+            if np.diff(np.append(t, t[0] + 2 * np.pi)).max() > np.pi:
+                continue
+            loops.append(centre + rng.uniform(0.3, 1.2, len(t))[:, None] * np.column_stack([np.cos(t), np.sin(t)]))
+        if len(loops) < 2:
+            continue
+        one, other = map(shapely.Polygon, loops)
+        within, beyond = divided((loops[0],), (loops[1],))
+        assert area(within) == pytest.approx(one.intersection(other).area, rel=1e-9)
+        assert area(beyond) == pytest.approx(one.difference(other).area, rel=1e-9)
+
+
+def test_nothing_divides_into_nothing() -> None:
+    assert divided((), (SQUARE,)) == ((), ())
+    assert divided((SQUARE,), ()) == ((), (SQUARE,))
+
+
+def test_a_corner_on_a_border_is_refused_or_right() -> None:
+    wedge = np.array([[2.0, 4.0], [1.0, 6.0], [3.0, 6.0]])
+    try:
+        within, beyond = divided((SQUARE,), (wedge,))
+    except InvalidInput:
+        return
+    assert area(within) == pytest.approx(0, abs=1e-9)
+    assert area(beyond) == pytest.approx(16)
+
+
+def test_contours_of_a_ring_lie_on_both_circles() -> None:
+    def ring(uv: np.ndarray) -> np.ndarray:
+        return 0.6 - np.abs(np.hypot(*uv.T) - 1.5)
+
+    line = np.linspace(-3, 3, 40)
+    values = ring(np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)).reshape(40, 40)
+    loops = contours(values, (line, line), ring)
+    assert sorted(float(np.hypot(*loop.T).mean()) for loop in loops) == pytest.approx([0.9, 2.1], abs=1e-3)
+    assert max(float(np.abs(ring(loop)).max()) for loop in loops) < 1e-6
+    assert area(loops) == pytest.approx(np.pi * (2.1**2 - 0.9**2), rel=0.01)
+
+
+def test_contours_are_closed_along_the_border_of_the_grid() -> None:
+    line = np.linspace(0, 1, 5)
+    (loop,) = contours(np.ones((5, 5)), (line, line))
+    assert abs(signed_area(loop)) == pytest.approx(1)
+    assert contours(-np.ones((5, 5)), (line, line)) == ()
+
+
+def test_a_saddle_gives_lines_that_do_not_cross() -> None:
+    line = np.arange(4.0)
+    values = np.where((np.indices((4, 4)).sum(axis=0) % 2) == 0, 1.0, -0.5)
+    loops = contours(values, (line, line))
+    centre = np.array([[1.5, 1.5]])
+    assert sum(int(inside(slabs((loop,)), centre)[0]) for loop in loops) % 2 == 1
