@@ -17,7 +17,7 @@ _ROWS = 256
 
 
 class _Chain(NamedTuple):
-    """A stretch of a loop between two crossings, or a whole loop (ends -1): its points, and where it begins and ends."""
+    """A stretch of a loop between two crossings, or a whole loop (ends -1): its points, and its two crossings."""
 
     points: Array
     first: int
