@@ -105,6 +105,10 @@ class Worth:
         """
         if unreached <= 0 or not np.isfinite(length):
             return 1.0
+        return 1 - unreached + unreached * (self.face.area / length) / self.clean_up_strip
+
+    @property
+    def clean_up_strip(self) -> float:
+        """Strip width of the clean-up tool on a plane, mm: a ball of the corner radius, or a quarter of the radius."""
         radius = max(self.tool.corner_radius, self.tool.radius / 4)
-        strip = 2 * float(np.sqrt(2 * radius * self.scallop - min(self.scallop, radius) ** 2))
-        return 1 - unreached + unreached * (self.face.area / length) / strip
+        return 2 * float(np.sqrt(2 * radius * self.scallop - min(self.scallop, radius) ** 2))

@@ -163,7 +163,7 @@ class Divider:
         piece_cost : float
             What each sub-surface costs besides, mm.
         """
-        found = offers(prices.rates, self._gaps, self._pitch, self._ends)
+        found = offers(prices.rates, self._gaps, self._pitch, self._ends, prices.extra)
         cost = np.where(self._narrow, np.inf, found.cost + piece_cost)
         empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
         return Solution(prices, found, Division(cost, empty, self.most))
@@ -180,7 +180,7 @@ class Divider:
         rates = prices.rates[:, :, u0:u1 + 1, v0:v1 + 1]
         gaps = self._gaps[0][u0:u1, v0:v1 + 1], self._gaps[1][u0:u1 + 1, v0:v1]
         pitch = self._pitch[0][u0:u1], self._pitch[1][v0:v1]
-        return each_axis(rates, gaps, pitch, self._ends)
+        return each_axis(rates, gaps, pitch, self._ends, prices.extra[:, :, u0:u1, v0:v1])
 
     def regions(self, count: int) -> Regions:
         """The cheapest division into a number of sub-surfaces, with an axis each.

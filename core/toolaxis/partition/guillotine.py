@@ -28,7 +28,8 @@ class Offers(NamedTuple):
     feed: Index
 
 
-def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0) -> Offers:
+def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0,
+           extra: Array | None = None) -> Offers:
     """The cheapest axis and feed of every rectangle of a lattice.
 
     A rectangle's passes run from side to side, each as far from the next as the narrowest place on it allows: with
@@ -45,6 +46,8 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
         Distances of neighbouring lines in u and in v.
     ends : float
         By how much a pass is longer than its line on the face, mm.
+    extra : (k, 2, nu, nv) array, optional
+        What each cell costs besides with feed u and v, mm: what is left to a clean-up tool.
     """
     nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
     cost = np.full((nu + 1, nu + 1, nv + 1, nv + 1), np.inf)
@@ -57,6 +60,8 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
                 table = _lengths(rates[part, 0], rows[0], pitch[1])
             else:
                 table = _lengths(rates[part, 1].swapaxes(1, 2), rows[1], pitch[0]).transpose(0, 3, 4, 1, 2)
+            if extra is not None and extra[part, number].any():
+                table = table + _boxes(extra[part, number])
             best = table.argmin(axis=0)
             least = np.take_along_axis(table, best[None], axis=0)[0]
             better = least < np.minimum(cost, _TOO_MUCH)
@@ -66,12 +71,20 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
     return Offers(cost, axis, feed)
 
 
-def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0) -> Array:
+def _boxes(cells: Array) -> Array:
+    """Sums over all rectangles of cells (k, nu, nv), (k, first, last, first, last)."""
+    total = np.pad(np.cumsum(np.cumsum(cells, axis=1), axis=2), ((0, 0), (1, 0), (1, 0)))
+    across = total[:, None, :, :] - total[:, :, None, :]
+    return np.asarray(across[:, :, :, None, :] - across[:, :, :, :, None])
+
+
+def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0,
+              extra: Array | None = None) -> Array:
     """What a whole lattice costs as one piece with each axis and its better feed, (k,) mm; inf where one is forbidden.
 
     Parameters
     ----------
-    rates, gaps, pitch, ends
+    rates, gaps, pitch, ends, extra
         As for `offers`.
     """
     both = []
@@ -80,6 +93,7 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
         row = _ended(gaps[along].sum(axis=along), ends)
         middle = (most[:, 1:] * row[1:] + most[:, :-1] * row[:-1]) / 2
         cost = (middle * pitch[step]).sum(axis=1) + row.mean() / 2
+        cost += 0.0 if extra is None else extra[:, along].sum(axis=(1, 2))
         both.append(np.where(most.max(axis=1) < _TOO_MUCH, cost, np.inf))
     return np.minimum(*both)
 

@@ -98,6 +98,14 @@ class Lattice:
                                   for piece in pieces)
         return found / size
 
+    @cached_property
+    def areas(self) -> Array:
+        """Area of the face in each cell, (nu, nv) mm^2, from the middle of the cell."""
+        u, v = ((line[1:] + line[:-1]) / 2 for line in self.lines)
+        d = self.face.evaluate(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+        size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(self.cells)
+        return np.asarray(size * np.diff(self.lines[0])[:, None] * np.diff(self.lines[1]) * self.filled)
+
     def _clipped(self, loops: tuple[Array, ...], axis: int, first: int, last: int) -> tuple[Array, ...]:
         """The part of loops between two lines."""
         line = self.lines[axis]

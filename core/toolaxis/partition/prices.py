@@ -34,11 +34,14 @@ class Prices:
         the axis may not be used.
     left : (k, nu + 1, nv + 1) array of bool
         Whether the node lies at a wall and is left to a clean-up tool.
+    extra : (k, 2, nu, nv) array
+        What it costs to clean up in each cell, beyond the passes that are reckoned through it with feed u and v, mm.
     """
 
     axes: Array
     rates: Array
     left: Bools
+    extra: Array
 
     def of(self, places: NDArray[np.intp]) -> "Prices":
         """The prices of some of the axes.
@@ -47,7 +50,7 @@ class Prices:
         ----------
         places : (m,) array of int
         """
-        return Prices(self.axes[places], self.rates[places], self.left[places])
+        return Prices(self.axes[places], self.rates[places], self.left[places], self.extra[places])
 
     def joined(self, other: "Prices") -> "Prices":
         """The prices of more axes after these.
@@ -57,7 +60,7 @@ class Prices:
         other : Prices
         """
         return Prices(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
-                      np.concatenate([self.left, other.left]))
+                      np.concatenate([self.left, other.left]), np.concatenate([self.extra, other.extra]))
 
 
 def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array,
@@ -100,7 +103,24 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     shape = lattice.material.shape
     everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)
     everywhere[:, nodes] = left
-    return Prices(axes, rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape))
+    rates, everywhere = rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape)
+    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, rates, everywhere))
+
+
+def _clean_up(lattice: Lattice, worth: Worth, rates: Array, left: Bools) -> Array:
+    """What cells cost for the clean-up tool besides the passes reckoned through them, (k, 2, nu, nv) mm.
+
+    The share of a cell is that of its corners; the clean-up tool's strip is that of `Worth.charge`.
+    """
+    d = lattice.face.evaluate(lattice.uv.reshape(-1, 2))
+    speed = np.stack([np.linalg.norm(step, axis=1) for step in (d.sv, d.su)]).reshape(2, *lattice.material.shape)
+    priced_ = (rates > 0) & (rates < FORBIDDEN)
+    density = np.where(priced_, rates / np.maximum(speed, np.finfo(float).tiny), 0.0).sum(axis=(2, 3))
+    usual = density / np.maximum(priced_.sum(axis=(2, 3)), 1)
+    dearer = np.maximum(1 / worth.clean_up_strip - usual, 0.0)
+    share = left.astype(float)
+    share = (share[:, 1:, 1:] + share[:, :-1, 1:] + share[:, 1:, :-1] + share[:, :-1, :-1]) / 4
+    return np.asarray(dearer[:, :, None, None] * (share * lattice.areas)[:, None])
 
 
 def _usable(lattice: Lattice, feasibility: Feasibility, axes: Array, nodes: NDArray[np.intp],
