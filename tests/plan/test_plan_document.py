@@ -3,6 +3,7 @@
 import copy
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,12 @@ import pytest
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.setup import work_coordinates
+from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.part_document import part_document, part_from
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
 from toolaxis.plan.schema import check
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -75,6 +77,28 @@ def test_written_and_read_back_is_the_same() -> None:
     assert back.tool.name == "torus:12x1" and back.not_checked == plan.not_checked
 
 
+def test_times_are_lengths_over_their_rates_and_survive() -> None:
+    plan = example()
+    axis, path = plan.operations[0].orientation.axis, plan.operations[0].path
+    assert axis is not None and path is not None
+    assert path.length(Motion.CUT) == pytest.approx(2 * 2**0.5) and plan.travel == 0
+    whole = np.concatenate([path.cl, [[0.0, 0, 4], [0, 0, 104.0]]])
+    longer = ToolPath(whole, whole, np.tile([0.0, 0, 1], (5, 1)), np.tile([0.0, 0, 1], (5, 1)),
+                      np.array([Motion.LINK, Motion.CUT, Motion.CUT, Motion.EXIT, Motion.LINK], dtype=np.int8),
+                      np.array([0, 5]))
+    one = replace(plan.operations[0], path=longer)
+    slow = 2 * 2**0.5 + 3
+    assert one.travel == pytest.approx(103) and one.seconds(600, 6000) == pytest.approx(slow / 10 + 1)
+    other = replace(one, orientation=replace(one.orientation, axis=-axis))
+    several = replace(plan, operations=(one, other, other, one), inputs=Inputs(0.02, feedrate=600, rapid=6000))
+    assert several.orientations == 2 and several.travel == pytest.approx(412)
+    assert several.seconds == pytest.approx(4 * (slow / 10 + 1) + 2 * INDEX_SECONDS)
+    row = Baseline("ball", "ball:12", 4, 3, 1, 31, 100.5, 20.25, 33.0, "no axis found")
+    document = json.loads(json.dumps(plan_document(replace(plan, baselines=(row,)), FILES)))
+    assert document["baselines"][0]["tool"] == "ball:12" and document["operations"][0]["seconds"] > 0
+    assert plan_from(document, plan.part, (), [path, None]).baselines == (row,) and not row.complete
+
+
 def test_what_was_not_given_is_named() -> None:
     assert example().not_checked == ("obstacles other than the part", "machine")
     bare = Plan(example().part, Tool.ball(8), Inputs(0.02), (), (), np.zeros(3), "complete")
@@ -123,7 +147,7 @@ def test_a_broken_document_is_refused(change: Callable[[dict[str, Any]], None], 
     ({"scallop": 0.0}, "scallop is 0.0 mm"), ({"scallop": -0.1}, "scallop"), ({"scallop": np.nan}, "scallop is nan"),
     ({"scallop": 0.02, "allowance": -1.0}, "allowance is -1.0"), ({"scallop": 0.02, "feedrate": 0.0}, "feedrate"),
     ({"scallop": 0.02, "spindle": np.inf}, "spindle"),
-    ({"scallop": 0.02, "method": "guess"}, "sphere, sectors, roman or normal"),
+    ({"scallop": 0.02, "method": "guess"}, "sphere, sectors, roman, normal, one or ball"),
     ({"scallop": 0.02, "direction": "up"}, "zigzag, climb or conventional"),
     ({"scallop": 0.02, "objective": "time"}, "length or passes"),
 ])

@@ -145,3 +145,13 @@ def test_a_tool_carried_on_is_as_wide_as_its_upper_end(tool, wide, component):
     below = np.random.default_rng(1).uniform([-9, -9, -2], [9, 9, 0.8 * tool.height], (200, 3))
     assert (longer.distance(below).value <= tool.distance(below).value + 1e-12).all()
     assert longer.carried_on(5.0) is longer and longer.height == pytest.approx(tool.height + 25)
+
+
+def test_a_ball_end_of_the_same_radius_stays_in_the_same_holder() -> None:
+    body = {"stickout": 50, "holder": [(10, 0), (10, 40)]}
+    tool = Tool.torus(12, 1, flute_length=20, **body)
+    ball = tool.with_ball_end()
+    assert (ball.name, ball.flute_length, ball.stickout) == ("ball:12", 20, 50)
+    assert ball.holder is not None and np.array_equal(ball.holder, tool.holder)
+    assert Tool.torus(12, 1, flute_length=4).with_ball_end().flute_length > 6
+    assert Tool.ball(8).with_ball_end().name == "ball:8"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
@@ -122,15 +123,16 @@ def _smooth_piece(part: Part, number: int, label: str) -> Face:
     return next((piece for piece in split_at_kinks(face) if piece.label == label), face)
 
 
-def _operation_document(op: Operation, part: Part, cl_file: str | None) -> Document:
-    whole = _smooth_piece(part, op.face.number, op.face.label)
+def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Document:
+    whole = _smooth_piece(plan.part, op.face.number, op.face.label)
     same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "label": op.face.label,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
-            "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel}
+            "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel,
+            "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid)}
 
 
 def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
@@ -154,8 +156,12 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
         "length": plan.length,
+        "travel": plan.travel,
+        "orientations": plan.orientations,
+        "seconds": plan.seconds,
+        "baselines": [asdict(one) for one in plan.baselines],
         "options": [asdict(option) for option in plan.options],
-        "operations": [_operation_document(op, plan.part, name)
+        "operations": [_operation_document(op, plan, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
     }
 
@@ -193,4 +199,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                        for record, path in zip(document["operations"], paths, strict=True))
     return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),
                 np.array(document["datum"], dtype=float), document["outcome"],
-                tuple(Option(**option) for option in document.get("options", ())))
+                tuple(Option(**option) for option in document.get("options", ())),
+                tuple(Baseline(**one) for one in document.get("baselines", ())))

@@ -46,3 +46,18 @@ class Operation:
     def travel(self) -> float:
         """Length of the tip's motion off the cut (entries, exits and links), mm."""
         return 0.0 if self.path is None else self.path.length(Motion.ENTRY, Motion.EXIT, Motion.LINK)
+
+    def seconds(self, feedrate: float, rapid: float) -> float:
+        """Time that the path takes, s: cutting, entries and exits at the feed rate, links at the rapid rate.
+
+        Every motion at its full rate: a lower bound of what a machine takes.
+
+        Parameters
+        ----------
+        feedrate, rapid : float
+            mm/min
+        """
+        if self.path is None:
+            return 0.0
+        slow = self.path.length(Motion.CUT, Motion.ENTRY, Motion.EXIT)
+        return 60 * (slow / feedrate + self.path.length(Motion.LINK) / rapid)

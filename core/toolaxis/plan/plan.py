@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
@@ -14,9 +15,11 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-METHODS = ("sphere", "sectors", "roman", "normal")
+METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
 OBJECTIVES = ("length", "passes")
 DIRECTIONS = ("zigzag", "climb", "conventional")
+#: What a change of the tool axis between operations is reckoned to take, s.
+INDEX_SECONDS = 6.0
 
 
 def _one_of(name: str, value: str, choices: tuple[str, ...]) -> None:
@@ -43,6 +46,8 @@ class Inputs:
     spindle : float
         rev/min
     tolerance : Tolerance
+    rapid : float
+        Rate of rapid traverse in links, mm/min; for times only.
 
     Raises
     ------
@@ -59,9 +64,11 @@ class Inputs:
     feedrate: float = 1000.0
     spindle: float = 10000.0
     tolerance: Tolerance = field(default_factory=Tolerance)
+    rapid: float = 10000.0
 
     def __post_init__(self) -> None:
-        for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min")):
+        for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
+                           ("rapid", "mm/min")):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0):
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
@@ -132,6 +139,8 @@ class Plan:
         "complete" (every sub-surface has an axis), "incomplete" (one or more have none) or "cancelled".
     options : tuple of Option
         Cutting length against the number of different axes, where that was asked for.
+    baselines : tuple of Baseline
+        What other methods come to on the same faces, this plan first, where that was asked for.
     """
 
     part: Part
@@ -142,6 +151,7 @@ class Plan:
     datum: Array
     outcome: str
     options: tuple[Option, ...] = ()
+    baselines: tuple[Baseline, ...] = ()
 
     @property
     def not_checked(self) -> tuple[str, ...]:
@@ -156,3 +166,26 @@ class Plan:
     def length(self) -> float:
         """Length of the cutting motion of all operations, mm."""
         return float(sum(op.orientation.length for op in self.operations if op.done))
+
+    @property
+    def travel(self) -> float:
+        """Length of entries, exits and links of all operations, mm."""
+        return float(sum(op.travel for op in self.operations))
+
+    @property
+    def axes(self) -> Array:
+        """The axes of the operations in their order, (n, 3)."""
+        found = [op.orientation.axis for op in self.operations if op.orientation.axis is not None]
+        return np.array(found, dtype=float).reshape(-1, 3)
+
+    @property
+    def orientations(self) -> int:
+        """Number of different axes."""
+        return len(np.unique(np.round(self.axes, 9) + 0.0, axis=0))
+
+    @property
+    def seconds(self) -> float:
+        """Time of all operations, s: see `Operation.seconds`; each change of axis between them `INDEX_SECONDS` more."""
+        changes = int((np.abs(np.diff(self.axes, axis=0)) > 1e-9).any(axis=1).sum())
+        return INDEX_SECONDS * changes + sum(op.seconds(self.inputs.feedrate, self.inputs.rapid)
+                                             for op in self.operations)

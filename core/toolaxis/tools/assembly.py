@@ -280,6 +280,18 @@ class Tool:
         end = self.outlines.get("shank", np.array([[self.profile.top_radius, self.flute_length]]))
         return replace(self, shank=_carried(end, height - self.height))
 
+    def with_ball_end(self) -> "Tool":
+        """A ball end mill of the same radius in the same holder: what 3-axis machining takes.
+
+        Raises
+        ------
+        InvalidInput
+            When a ball of that radius does not fit below the stick-out.
+        """
+        flute = self.flute_length if self.flute_length > self.radius else None
+        return Tool.ball(2 * self.radius, flute_length=flute, stickout=self.stickout, shank=self.shank,
+                         holder=self.holder)
+
     def distance(self, points: ArrayLike, component: str | None = None) -> Distance:
         """Exact signed distance of points from the whole rotating solid, or from one component.
 

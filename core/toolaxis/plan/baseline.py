@@ -1,0 +1,43 @@
+"""What a method comes to on a part's faces, to be set beside what others do."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """One method and what it costs, as one row of [zhu2016] Table 4.
+
+    Attributes
+    ----------
+    method : str
+        One of `toolaxis.plan.plan.METHODS`, or "plan" for the plan itself where its division chose the axes.
+    tool : str
+        Short form of the tool that it takes: a ball end for the method "ball".
+    sub_surfaces, machined : int
+        How many there are, and on how many of them it found an axis.
+    orientations : int
+        Different axes.
+    passes : int
+    length, travel : float
+        Of the cutting motion, and of entries, exits and links, mm; of what is machined.
+    seconds : float
+        Time of all, s, as `Plan.seconds` reckons it.
+    reason : str
+        Why something is not machined; empty where all is.
+    """
+
+    method: str
+    tool: str
+    sub_surfaces: int
+    machined: int
+    orientations: int
+    passes: int
+    length: float
+    travel: float
+    seconds: float
+    reason: str = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether every sub-surface is machined."""
+        return self.machined == self.sub_surfaces
