@@ -1,6 +1,7 @@
 """Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder, lists of faces and bodies."""
 
 from math import ceil, floor, log10
+from xml.etree import ElementTree
 
 import FreeCAD
 import FreeCADGui
@@ -13,17 +14,32 @@ from . import palette
 translate = FreeCAD.Qt.translate
 
 _DATA = QtCore.Qt.UserRole
+#: How often a layout is loaded until all its widgets are of their own class.
+_LOADINGS = 5
 
 
 def load_form(name):
     """The widget of a layout file.
+
+    Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
+    is of another class (seen: a QWidget instead of a slider).  Then the layout is loaded again, elsewhere in memory.
 
     Parameters
     ----------
     name : str
         Without its ending.
     """
-    return FreeCADGui.PySideUic.loadUi(str(RESOURCES / "ui" / f"{name}.ui"))
+    file = RESOURCES / "ui" / f"{name}.ui"
+    expected = {widget.get("name"): getattr(QtWidgets, widget.get("class"), QtWidgets.QWidget)
+                for widget in ElementTree.parse(file).iter("widget")}
+    spoilt = []
+    for _ in range(_LOADINGS):
+        form = FreeCADGui.PySideUic.loadUi(str(file))
+        if all(isinstance(getattr(form, child, None), kind)
+               for child, kind in expected.items() if child != form.objectName()):
+            break
+        spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
+    return form
 
 
 def length_text(value):
