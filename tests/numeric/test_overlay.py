@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided
+from toolaxis.numeric.overlay import divided, without
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
@@ -96,3 +96,13 @@ def test_a_saddle_gives_lines_that_do_not_cross() -> None:
     loops = contours(values, (line, line))
     centre = np.array([[1.5, 1.5]])
     assert sum(int(inside(slabs((loop,)), centre)[0]) for loop in loops) % 2 == 1
+
+
+def test_a_polygon_without_a_piece_of_it_is_the_rest() -> None:
+    hole = circle(2.7, 1.9, 0.8)
+    within, beyond = divided((SQUARE, hole), (circle(4, 2, 1.7),))
+    rest = without((SQUARE, hole), within)
+    assert area(rest) == pytest.approx(area(beyond), rel=1e-12)
+    uv = np.random.default_rng(7).uniform(-1, 5, (2000, 2))
+    assert (inside(slabs(rest), uv) == inside(slabs(beyond), uv)).all()
+    assert without((SQUARE,), (SQUARE[::-1],)) == ()

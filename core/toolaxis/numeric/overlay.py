@@ -11,6 +11,8 @@ from toolaxis.numeric.polygons import inside, slabs
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Loops = tuple[Array, ...]
+Corner = tuple[float, float]
+Edge = tuple[Corner, Corner]
 
 #: Rows of one polygon's edges that are held against all of the other's at a time.
 _ROWS = 256
@@ -138,3 +140,67 @@ def _closed(chains: list[_Chain], crossings: int) -> Loops:
 
 def _without_repeats(loop: Array) -> Array:
     return np.asarray(loop[(loop != np.roll(loop, 1, axis=0)).any(axis=1)])
+
+
+def without(loops: Loops, zone: Loops) -> Loops:
+    """A polygon less a piece of it that has been cut out of it: edges that both have cancel out.
+
+    Parameters
+    ----------
+    loops, zone : tuple of (m, 2) arrays
+        Closed loops; corners and edges of the piece that lie on the border are the border's own, as `divided` and
+        `toolaxis.numeric.clipping.clipped` leave them.
+    """
+    edges: dict[Edge, None] = {}
+    for loop in (*_with_corners(loops, zone), *_with_corners(zone, loops)):
+        rows = [(float(x), float(y)) for x, y in loop]
+        for a, b in zip(rows, [*rows[1:], rows[0]], strict=True):
+            if (a, b) in edges:
+                del edges[a, b]
+            elif (b, a) in edges:
+                del edges[b, a]
+            else:
+                edges[a, b] = None
+    return _chained(list(edges))
+
+
+def _with_corners(loops: Loops, others: Loops) -> list[Array]:
+    """Loops with those corners of others put in that lie on their edges."""
+    points = np.concatenate(others)
+    made = []
+    for loop in loops:
+        ends = np.roll(loop, -1, axis=0)
+        rows = []
+        for a, b in zip(loop, ends, strict=True):
+            way = b - a
+            share = (points - a) @ way / max(float(way @ way), np.finfo(float).tiny)
+            off = np.abs((points - a)[:, 0] * way[1] - (points - a)[:, 1] * way[0])
+            on = (share > 0) & (share < 1) & (off <= 1e-12 * float(way @ way) ** 0.5 * float(np.abs(loop).max()))
+            on &= (points != a).any(axis=1) & (points != b).any(axis=1)
+            rows += [a[None], points[on][np.argsort(share[on])]]
+        made.append(np.concatenate(rows))
+    return made
+
+
+def _chained(edges: list[Edge]) -> Loops:
+    """Closed loops from edges in any order."""
+    beside: dict[Corner, list[int]] = {}
+    for k, pair in enumerate(edges):
+        for end in pair:
+            beside.setdefault(end, []).append(k)
+    free, loops = dict.fromkeys(range(len(edges))), []
+    while free:
+        k = next(iter(free))
+        start, here = edges[k]
+        line = [start]
+        del free[k]
+        while here != start:
+            line.append(here)
+            step = next((m for m in beside[here] if m in free), None)
+            if step is None:
+                break
+            del free[step]
+            here = edges[step][1] if edges[step][0] == here else edges[step][0]
+        if len(line) > 2:
+            loops.append(np.array(line))
+    return tuple(loops)

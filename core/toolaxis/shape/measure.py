@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.polygons import chords, stations, walk
+from toolaxis.numeric.polygons import stations, walk
 from toolaxis.numeric.roots import least_between
 
 if TYPE_CHECKING:
@@ -22,30 +22,65 @@ SAMPLES = 48
 
 
 def area(face: "Face") -> float:
-    """Area, mm^2, by Gauss points on the chords that lines v = const cut out of the trim loops.
+    """Area, mm^2, as the integral along the trim loops of the area between them and one end of the u range.
 
-    The relative error is below 1e-5 where the loops have corners or smooth ends, and much below on smooth surfaces
-    with straight borders.
+    The relative error is below 1e-6 on smooth surfaces, however many corners the loops have; and areas of pieces add
+    up to that of the whole to rounding where their loops share edges.
 
     Parameters
     ----------
     face : Face
     """
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     u0, u1, v0, v1 = face.bounds
-    lines = _breaks(v0, v1, face.surface.knots_v, face.outline)
-    cuts_u = _cuts(face.surface.knots_u, np.linspace(u0, u1, PIECES + 1))
-    table = []
-    for low, high in pairwise(lines.tolist()):
-        for node, weight in zip(nodes, weights, strict=True):
-            v = 0.5 * (low + high) + 0.5 * (high - low) * node
-            table += [(v, 0.5 * (high - low) * weight, a, b) for x0, x1 in chords(face.outline, v)
-                      for a, b in _pieces(cuts_u, x0, x1)]
-    v, share, a, b = np.array(table).T
-    u = 0.5 * (a + b)[:, None] + 0.5 * (b - a)[:, None] * nodes
-    d = face.evaluate(np.stack([u, np.broadcast_to(v[:, None], u.shape)], axis=-1).reshape(-1, 2))
-    size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(u.shape)
-    return float(np.sum(size * weights * (0.5 * (b - a) * share)[:, None]))
+    cuts = (_cuts(face.surface.knots_u, np.linspace(u0, u1, PIECES + 1)),
+            _breaks(v0, v1, face.surface.knots_v, face.outline[:1]))
+    sizes = [abs(_enclosed(face, loop, cuts)) for loop in face.outline]
+    return float(sizes[0] - sum(sizes[1:]))
+
+
+def _enclosed(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
+    """Area inside a closed polygon, positive where it runs anticlockwise in the parameters."""
+    start, end = _parted(loop, cuts)
+    moved = start[:, 1] != end[:, 1]
+    start, end = start[moved], end[moved]
+    short = np.abs(end - start)[:, 1] < (cuts[1][-1] - cuts[1][0]) / 256
+    total = 0.0
+    for rows, points in ((short, 2), (~short, POINTS)):
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        a, b = start[rows, None], end[rows, None]
+        uv = (a + b) / 2 + (b - a) / 2 * nodes[:, None]
+        height = (b - a)[..., 1] / 2 * weights
+        total += float((_up_to(face, uv.reshape(-1, 2), cuts[0]).reshape(height.shape) * height).sum())
+    return total
+
+
+def _parted(loop: Array, cuts: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Starts and ends of the parts of a closed polygon between lines of constant u and of constant v."""
+    way = np.roll(loop, -1, axis=0) - loop
+    edges, shares = [np.arange(len(loop))], [np.zeros(len(loop))]
+    for axis in (0, 1):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = (cuts[axis] - loop[:, axis, None]) / way[:, axis, None]
+        edge, at = np.nonzero((share > 0) & (share < 1))
+        edges.append(edge)
+        shares.append(share[edge, at])
+    place = np.sort(np.concatenate(edges) + np.concatenate(shares))
+    edge = np.minimum(place.astype(np.intp), len(loop) - 1)
+    points = loop[edge] + (place - edge)[:, None] * way[edge]
+    return points, np.roll(points, -1, axis=0)
+
+
+def _up_to(face: "Face", uv: Array, cuts: Array) -> Array:
+    """Integral of the area for a unit of v, from the first of the cuts along u to places, (n,)."""
+    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    width = np.clip(uv[:, :1] - cuts[:-1], 0.0, np.diff(cuts))
+    row, piece = np.nonzero(width > 0)
+    half = width[row, piece] / 2
+    u = cuts[piece] + half
+    d = face.evaluate(np.stack([u[:, None] + half[:, None] * nodes,
+                                np.broadcast_to(uv[row, 1:], (len(row), POINTS))], axis=-1).reshape(-1, 2))
+    size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(len(row), POINTS)
+    return np.asarray(np.bincount(row, weights=(size * weights).sum(axis=1) * half, minlength=len(uv)))
 
 
 def _cuts(knots: Array, extra: Array) -> Array:
@@ -63,12 +98,6 @@ def _breaks(v0: float, v1: float, knots: Array, loops: tuple[Array, ...]) -> Arr
         parts.append(0.5 * (a + b) - 0.5 * (b - a) * np.cos(np.linspace(0.0, np.pi, count + 1)))
     corners = np.concatenate([loop[:, 1] for loop in loops])
     return _cuts(knots, np.unique(np.clip(np.concatenate([*parts, corners if len(corners) <= 64 else []]), v0, v1)))
-
-
-def _pieces(cuts: Array, low: float, high: float) -> list[tuple[float, float]]:
-    inner = cuts[(cuts > low) & (cuts < high)]
-    ends = [low, *inner.tolist(), high]
-    return list(pairwise(ends))
 
 
 def box(face: "Face") -> Array:

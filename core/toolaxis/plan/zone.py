@@ -1,0 +1,30 @@
+"""A zone of a sub-surface that its operation leaves to a clean-up tool."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Zone:
+    """A connected piece of a sub-surface that is left higher than the scallop limit.
+
+    Attributes
+    ----------
+    loops : tuple of (m, 2) arrays
+        Closed loops in (u, v) of the sub-surface, the outer one first.
+    area : float
+        mm^2
+    at_wall : bool
+        Whether the tool may not stand there, for a wall or an obstacle; else it is an undercut at the border.
+    elsewhere : float
+        Area of it that other operations of the plan machine, mm^2.
+    """
+
+    loops: tuple[Array, ...]
+    area: float
+    at_wall: bool = True
+    elsewhere: float = 0.0

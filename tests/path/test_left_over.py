@@ -1,0 +1,126 @@
+"""Zones that passes leave: against dense points and the cutter's plain formula, and against what the judge finds."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.removed import distance_to_removed, distance_to_removed_numpy
+from toolaxis.numeric.polygons import inside, slabs
+from toolaxis.orient.indexed import Task, task
+from toolaxis.path.left_over import FACTOR, left_over, machined
+from toolaxis.tolerances import Tolerance
+from toolaxis.verify.verdict import Task as Judged
+from toolaxis.verify.verdict import judge
+
+TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30)
+SCALLOP = 0.05
+
+
+def waved(trims: tuple = ()) -> ta.Face:
+    x, y = np.meshgrid(np.linspace(0, 30, 5), np.linspace(0, 24, 5), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 0.8 * np.sin(x / 7) * np.cos(y / 9)], axis=-1), trims=trims)
+
+
+def post(x: float, y: float, radius: float, height: float = 9.0) -> ta.Face:
+    t = np.linspace(0, 2 * np.pi, 41)
+    ring = np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
+    return ta.Face.from_bspline([[[*p, z] for z in (height, -3.0)] for p in ring], degree=(1, 1))
+
+
+@pytest.fixture(scope="module")
+def made() -> tuple[Task, ToolPath]:
+    job = task(waved(), TOOL, SCALLOP, surroundings=(post(16, 11, 3.0),))
+    return job, job.made(np.array([0.0, np.sin(0.12), np.cos(0.12)]), "v")
+
+
+def dense_distance(path: ToolPath, points: np.ndarray) -> np.ndarray:
+    """Least distance to a torus cutter at places 0.02 mm apart, from the torus' plain formula."""
+    at = np.flatnonzero(path.kind[1:] == Motion.CUT)
+    ways = [path.cl[i + 1] - path.cl[i] for i in at]
+    tips = np.concatenate([path.cl[i] + np.linspace(0, 1, max(2, int(np.linalg.norm(way) / 0.02)))[:, None] * way
+                           for i, way in zip(at, ways, strict=True)])
+    axis, best = path.axis[0], np.full(len(points), np.inf)
+    for k, p in enumerate(points):
+        gap = p - tips
+        z = gap @ axis
+        rho = np.linalg.norm(gap - z[:, None] * axis, axis=1)
+        tube = np.hypot(np.maximum(rho - 2, 0), z - 1) - 1
+        body = np.maximum(rho - 3, 1 - z)
+        best[k] = np.where(z > 1, body, np.where(rho > 2, tube, -z)).min()
+    return best
+
+
+def test_zones_hold_what_dense_points_find(made: tuple[Task, ToolPath]) -> None:
+    job, path = made
+    face = job.worth.face
+    zones = left_over(face, TOOL, path, SCALLOP)
+    assert len(zones) == 1 and 30 < zones[0].area < 200
+    uv = np.random.default_rng(2).uniform(0, 1, (700, 2))
+    raised = face.evaluate(uv).point + FACTOR * SCALLOP * face.normal(uv)
+    distance = dense_distance(path, raised)
+    within = np.any([inside(slabs(zone.loops), uv) for zone in zones], axis=0)
+    clear = np.abs(distance) > 2e-3
+    assert (within == (distance > 0))[clear].all()
+    assert within.sum() > 50 and clear.sum() > 350
+
+
+def test_zones_and_machined_area_are_the_face(made: tuple[Task, ToolPath]) -> None:
+    job, path = made
+    half = np.array([[0.0, 0.0], [0.55, 0.0], [0.5, 1.0], [0.0, 1.0]])
+    for face in (job.worth.face, job.worth.face.trimmed((half,))):
+        zones = left_over(face, TOOL, path, SCALLOP)
+        rest = machined(face, zones)
+        areas = sum(zone.area for zone in zones), sum(piece.area for piece in rest)
+        assert sum(areas) == pytest.approx(face.area, rel=1e-9) and min(areas) > 0
+        uv = np.random.default_rng(3).random((3000, 2))
+        hits = sum(inside(slabs(zone.loops), uv).astype(int) for zone in zones)
+        hits = hits + sum(piece.contains(uv).astype(int) for piece in rest)
+        assert (hits == face.contains(uv)).all()
+
+
+def test_the_judge_finds_the_same_area_left(made: tuple[Task, ToolPath]) -> None:
+    job, path = made
+    face = job.worth.face
+    given = Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (face,), SCALLOP, clean_up=1.0)
+    seen = judge(given, spacing=0.12)
+    share = sum(zone.area for zone in left_over(face, TOOL, path, SCALLOP)) / face.area
+    assert 1 - seen.share_within == pytest.approx(share, abs=1.5e-3)
+    assert sum(zone.area for zone in seen.zones if zone.area > 0.5) / face.area == pytest.approx(share, abs=1.5e-3)
+
+
+def test_a_face_without_walls_has_no_zones() -> None:
+    job = task(waved(), TOOL, SCALLOP)
+    assert left_over(waved(), TOOL, job.made(np.array([0.0, 0.2, 0.98]), "u"), SCALLOP) == ()
+
+
+def test_a_missing_pass_end_is_an_undercut_at_the_border_and_no_wall() -> None:
+    job = task(waved(), TOOL, SCALLOP)
+    path = job.made(np.array([0.0, 0.2, 0.98]), "v")
+    short = path.cl[:, 1] < 21
+    kind = np.where(short, path.kind, Motion.LINK).astype(np.int8)
+    cut = ToolPath(path.cc, path.cl, path.axis, path.normal, kind, path.breaks)
+    zones = left_over(waved(), TOOL, cut, SCALLOP, walls=lambda uv: np.zeros(len(uv), dtype=bool))
+    assert zones and not any(zone.at_wall for zone in zones)
+
+
+def test_compiled_and_plain_distances_agree() -> None:
+    rng = np.random.default_rng(4)
+    starts, ends = rng.uniform(-8, 8, (2, 30, 3))
+    points = rng.uniform(-9, 9, (60, 3))
+    axis = np.array([0.2, -0.3, 0.9]) / np.linalg.norm([0.2, -0.3, 0.9])
+    one = distance_to_removed(TOOL, axis, starts, ends, points, 4.0)
+    other = distance_to_removed_numpy(TOOL, axis, starts, ends, points, 4.0)
+    assert one == pytest.approx(other, abs=3e-6)
+    assert (distance_to_removed(TOOL, axis, starts, ends, points, 4.0)
+            <= distance_to_removed(TOOL, axis, starts[:9], ends[:9], points, 4.0)).all()
+    assert (distance_to_removed(TOOL, axis, starts[:0], ends[:0], points) == np.inf).all()
+
+
+def test_allowance_raises_what_is_asked_for() -> None:
+    face = waved()
+    job = task(face, TOOL, SCALLOP, allowance=0.3, tolerance=Tolerance())
+    path = job.made(np.array([0.0, 0.2, 0.98]), "u")
+    assert left_over(face, TOOL, path, SCALLOP, 0.3) == ()
+    (zone, *_) = left_over(face, TOOL, path, SCALLOP, 0.0)
+    assert zone.area > 0.9 * face.area
