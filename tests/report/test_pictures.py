@@ -10,9 +10,11 @@ from matplotlib.figure import Figure
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.placing import tips
 from toolaxis.machine.setup import work_coordinates
+from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.report.bars import baselines_picture
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
@@ -179,3 +181,15 @@ def test_study_and_widths(tmp_path: Path) -> None:
     made = widths_picture(lines, (face, TOOL), "op01")
     made.savefig(tmp_path / "widths.png", dpi=50)
     assert made.axes[1].get_ylabel() == "strip width, mm"
+
+
+def test_bars_show_methods_that_machine_all_and_name_those_that_do_not(tmp_path: Path) -> None:
+    rows = [Baseline("plan", "torus:12x1", 4, 4, 3, 120, 5000.0, 900.0, 400.0),
+            Baseline("ball", "ball:12", 4, 4, 1, 210, 8000.0, 1500.0, 650.0),
+            Baseline("one", "torus:12x1", 4, 1, 1, 30, 900.0, 150.0, 65.0, "face 1b: no axis found")]
+    made = baselines_picture(rows)
+    widths = sorted(bar.get_width() for bar in made.axes[0].patches)
+    assert widths == [0, 0, 900, 1500, 5000, 8000]
+    words = " ".join(text.get_text() for text in made.axes[0].texts)
+    assert "no axis for 3 of 4" in words and "5000 mm, 120 passes, 3 axes, 6:40 min" in words
+    assert len(colours_of(made, tmp_path / "bars.png")) > 8

@@ -20,6 +20,7 @@ from toolaxis.path.isoparametric import layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.report.bars import baselines_picture
 from toolaxis.report.hemisphere import hemisphere_picture
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
@@ -45,7 +46,7 @@ _POINTS = 60
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
     """Draw the whole part where it has several operations, and every operation: passes and tool, axes, strip widths.
 
-    A choice between numbers of orientations is drawn as their curve.
+    A choice between numbers of orientations is drawn as their curve, a comparison of methods as bars.
 
     The operation on the largest face also gets what takes longer: the study of estimate and count, and the axis of the
     paper's sectors marked on its hemisphere.
@@ -60,6 +61,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
         overview_picture(plan).savefig(folder / "plan.png", dpi=DPI)
     if plan.options:
         options_picture(plan.options).savefig(folder / "orientations.png", dpi=DPI)
+    if plan.baselines:
+        baselines_picture(plan.baselines).savefig(folder / "baselines.png", dpi=DPI)
     done = [op for op in plan.operations if op.done]
     largest = max(done, key=lambda op: op.face.area, default=None)
     for index, op in enumerate(plan.operations):

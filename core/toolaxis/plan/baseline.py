@@ -2,6 +2,11 @@
 
 from dataclasses import dataclass
 
+#: What each method of a comparison stands for.
+METHOD_NAMES = {"plan": "this plan", "sphere": "best of the hemisphere", "sectors": "sectors of zhu2016",
+                "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis",
+                "ball": "ball end, mean normal"}
+
 
 @dataclass(frozen=True)
 class Baseline:
@@ -10,7 +15,7 @@ class Baseline:
     Attributes
     ----------
     method : str
-        One of `toolaxis.plan.plan.METHODS`, or "plan" for the plan itself where its division chose the axes.
+        One of `toolaxis.plan.plan.METHODS`, or "plan" for the plan itself.
     tool : str
         Short form of the tool that it takes: a ball end for the method "ball".
     sub_surfaces, machined : int
@@ -41,3 +46,14 @@ class Baseline:
     def complete(self) -> bool:
         """Whether every sub-surface is machined."""
         return self.machined == self.sub_surfaces
+
+
+def clock(seconds: float) -> str:
+    """A time as minutes and seconds.
+
+    Parameters
+    ----------
+    seconds : float
+    """
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"

@@ -7,8 +7,9 @@ from typing import TypeAlias
 import numpy as np
 from rich.table import Table
 
+from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Option, Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -78,9 +79,51 @@ def plan_table(plan: Plan) -> Table:
     plan : Plan
         Gouge is an upper bound, clearance a lower one.
     """
-    rows = [[*_operation_row(op), op.orientation.outcome] for op in plan.operations]
-    title = f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, cutting length {plan.length:.1f} mm"
-    return table(title, [*_COLUMNS, ("outcome", "left")], rows, _BOUNDS)
+    rows = [[*_operation_row(op), *_links(op, plan.inputs), op.orientation.outcome] for op in plan.operations]
+    title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
+             f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, different axes {plan.orientations}")
+    columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("outcome", "left")]
+    return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan.inputs)}")
+
+
+def _links(op: Operation, inputs: Inputs) -> list[str]:
+    if not op.done:
+        return ["-", "-"]
+    return [number(op.orientation.length + op.travel, 1), clock(op.seconds(inputs.feedrate, inputs.rapid))]
+
+
+def _assumed(inputs: Inputs) -> str:
+    """What times are reckoned with."""
+    return (f"time: {inputs.feedrate:g} mm/min in the cut and on its ramps, {inputs.rapid:g} mm/min between, without "
+            f"accelerations; {INDEX_SECONDS:g} s for each change of axis")
+
+
+def baselines_table(plan: Plan) -> Table:
+    """One row per method: tool, sub-surfaces, axes, passes, lengths and time, as [zhu2016] Table 4.
+
+    Parameters
+    ----------
+    plan : Plan
+        With baselines.
+    """
+    first = plan.baselines[0]
+    rows = [_baseline_row(one, first) for one in plan.baselines]
+    columns: tuple[Column, ...] = (
+        ("method", "left"), ("tool", "left"), ("sub-surfaces\nmachined", "right"), ("different\naxes", "right"),
+        ("passes", "right"), ("cutting\nlength mm", "right"), ("to this\nplan's", "right"), ("with links\nmm", "right"),
+        ("time\nmin:s", "right"))
+    notes = [f"{METHOD_NAMES.get(one.method, one.method)}: {one.reason}" for one in plan.baselines if one.reason]
+    return table("the same faces by other methods, each with the same proofs", columns, rows,
+                 "\n".join([_assumed(plan.inputs), *notes]))
+
+
+def _baseline_row(one: Baseline, first: Baseline) -> list[str]:
+    ratio = f"{one.length / first.length:.3f}" if one.complete and first.complete and first.length > 0 else "-"
+    shown = [METHOD_NAMES.get(one.method, one.method), one.tool, f"{one.machined} of {one.sub_surfaces}"]
+    if not one.machined:
+        return [*shown, *["-"] * 6]
+    return [*shown, str(one.orientations), str(one.passes), number(one.length, 1), ratio,
+            number(one.length + one.travel, 1), clock(one.seconds)]
 
 
 def options_table(options: Sequence[Option]) -> Table:

@@ -1,0 +1,65 @@
+"""What other methods come to on the same faces with the same proofs, beside a plan: [zhu2016] Table 4."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from toolaxis.plan.baseline import Baseline
+from toolaxis.plan.plan import Plan
+from toolaxis.shape.face import Face
+
+#: Rules that choose an axis for each sub-surface of the plan.
+BY_SUB_SURFACE = ("sectors", "roman", "normal")
+#: What takes the faces whole: one axis for all of them, and a ball end along their mean normals.
+WHOLE = ("one", "ball")
+
+
+def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
+    """A plan with what other methods come to.
+
+    Sectors, Roman's rule and mean normals on the same sub-surfaces; one fixed axis for all faces; and a ball end of the
+    same radius along each face's mean normal.
+
+    Parameters
+    ----------
+    made : Plan
+        Not cancelled.
+    faces : sequence of Face
+        What was asked for, before it was divided.
+    again : callable
+        Plans faces as they are by a method, under the same limits and proofs.
+
+    Returns
+    -------
+    Plan
+        With `baselines`, itself the first; those that were finished where the user stopped it.
+
+    Notes
+    -----
+    **Source**: [zhu2016] Table 4 and Sec. 6.2; its five-axis row has no counterpart here.
+    """
+    rows = [baseline("plan", made)]
+    pieces = [op.face for op in made.operations]
+    for method in (*BY_SUB_SURFACE, *WHOLE):
+        whole = method in WHOLE
+        if method == made.inputs.method and (not whole or len(pieces) == len(faces)):
+            continue
+        other = again(method, faces if whole else pieces)
+        if other.outcome == "cancelled":
+            break
+        rows.append(baseline(method, other))
+    return replace(made, baselines=tuple(rows))
+
+
+def baseline(method: str, made: Plan) -> Baseline:
+    """One row of the comparison.
+
+    Parameters
+    ----------
+    method : str
+    made : Plan
+    """
+    done = [op for op in made.operations if op.done]
+    refused = [op for op in made.operations if not op.done]
+    reason = f"face {refused[0].face.label}: {next(iter(refused[0].orientation.reasons), '')}" if refused else ""
+    return Baseline(method, made.tool.name, len(made.operations), len(done), made.orientations,
+                    sum(op.orientation.passes for op in done), made.length, made.travel, made.seconds, reason)
