@@ -25,6 +25,10 @@ SMALL = 0.01
 MOST, PATTERN = 100, 0.6
 
 
+class NoPattern(UnsupportedGeometry):
+    """The part is not one with blades."""
+
+
 @dataclass(frozen=True)
 class Blade:
     """The faces of one blade, by number.
@@ -98,8 +102,10 @@ def blades_of(part: Part) -> Bladed:
 
     Raises
     ------
+    NoPattern
+        When no axis has a pattern of faces around it, or what stands around it has no two sides.
     UnsupportedGeometry
-        When no axis has a pattern of faces around it, or the pattern has faces missing or out of place.
+        When the pattern has faces missing or out of place, or blades touch.
 
     Notes
     -----
@@ -113,7 +119,7 @@ def blades_of(part: Part) -> Bladed:
     samples = _sampled(part)
     sculptured = [face.number for face in part.sculptured]
     if not sculptured:
-        raise UnsupportedGeometry("the part has no sculptured face: blades are looked for among those")
+        raise NoPattern("the part has no sculptured face: blades are looked for among those")
     point, axis, count, strangers = _pattern(part, samples, sculptured)
     if strangers:
         raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
@@ -121,6 +127,8 @@ def blades_of(part: Part) -> Bladed:
     turned = [face.number for face in part.faces if _of_revolution(samples, face.number, point, axis)]
     groups = _groups(part, [face.number for face in part.faces if face.number not in turned], samples)
     groups = [group for group in groups if _has_like(samples, group[0], sculptured)]
+    if not groups:
+        raise NoPattern(f"nothing but faces of revolution stands around an axis of {count} equal parts: no blades")
     if len(groups) != count:
         raise UnsupportedGeometry(f"{len(groups)} groups of faces stand around an axis of {count} equal parts: one "
                                   "blade each is needed; blades that touch each other cannot be told apart")
@@ -163,7 +171,7 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
                 line = (point, axis) if exact else _refined(samples, pairs, point, axis)
                 found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
     if found is None:
-        raise UnsupportedGeometry("no axis has a pattern of like faces around it: blades cannot be found on this part")
+        raise NoPattern("no axis has a pattern of like faces around it: blades cannot be found on this part")
     return found
 
 
@@ -271,6 +279,8 @@ def _blade(part: Part, group: list[int], turned: list[int], samples: _Samples, l
     fillets = [n for n in group if any(m in turned for m in part.neighbours(n, "tangent"))]
     tip = [n for n in turned if part.neighbours(n) and own.issuperset(part.neighbours(n))]
     body = [n for n in group if n not in fillets]
+    if len(body) < 2:
+        raise NoPattern(f"face {group[0]} stands around the axis with its like, but has no second side: no blades")
     suction, pressure = sorted(body[:2], key=lambda n: -samples.bulge[n])
     leading, trailing = _edges(part, body[2:], (suction, pressure), samples, line)
     named = {suction, pressure, *leading, *trailing}

@@ -1,0 +1,145 @@
+"""The least distance between two groups of faces, and the widest cutter that it lets pass."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+_GRID, _ROUNDS, _STARTS = 16, 60, 3
+#: Two points see each other straight along a normal within this angle, rad.
+STRAIGHT = np.radians(0.5)
+
+
+class Nearness(NamedTuple):
+    """The two nearest points of a face and of others.
+
+    distance : mm;  here, there : (3,) their places, mm;  number : of the other's face;  straight : whether `there`
+    lies straight along the normal of the face at `here`.
+    """
+
+    distance: float
+    here: Array
+    there: Array
+    number: int
+    straight: bool
+
+
+def nearness(face: Face, others: Sequence[Face]) -> Nearness:
+    """The two nearest points of a face and of others, by walking downhill from the nearest samples.
+
+    Parameters
+    ----------
+    face : Face
+    others : sequence of Face
+        At least one.
+
+    Notes
+    -----
+    **Properties**: 1. never below the true distance; 2. exact for planes and spheres; 3. moves with the faces.
+    """
+    from scipy.spatial import cKDTree
+
+    mine = _samples(face)
+    points = face.evaluate(mine).point
+    best: Nearness | None = None
+    for other in others:
+        theirs = _samples(other)
+        away, index = cKDTree(other.evaluate(theirs).point).query(points)
+        if best is not None and away.min() > best.distance + 0.5 * (face.diagonal + other.diagonal) / _GRID:
+            continue
+        for k in np.argsort(away, kind="stable")[:_STARTS]:
+            found = _walked(face, other, (mine[k], theirs[index[k]]))
+            if best is None or found.distance < best.distance:
+                best = found
+    assert best is not None
+    return best
+
+
+def _samples(face: Face) -> Array:
+    border = np.concatenate(face.outline)
+    return np.concatenate([face.grid(_GRID, _GRID), border[::max(1, len(border) // 64)]])
+
+
+def _walked(face: Face, other: Face, start: tuple[Array, Array]) -> Nearness:
+    """Downhill in the parameters of both faces from a place on each, and where trims end that, to and fro."""
+    here, there = _slid(face, other, start)
+    if not (face.contains(here[None])[0] and other.contains(there[None])[0]):
+        here, there = _to_and_fro(face, other, face.evaluate(start[0][None]).point)
+    a, b = face.evaluate(here[None]).point[0], other.evaluate(there[None]).point[0]
+    length = float(np.linalg.norm(b - a))
+    straight = length > 0 and float(face.normal(here[None])[0] @ (b - a)) >= length * np.cos(STRAIGHT)
+    return Nearness(length, a, b, other.number, straight)
+
+
+def _slid(face: Face, other: Face, start: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Parameters of two near points from those of a start, trims apart."""
+    from scipy.optimize import minimize
+
+    bounds = np.array([*np.reshape(face.bounds, (2, 2)), *np.reshape(other.bounds, (2, 2))])
+    low, span = bounds[:, 0], np.ptp(bounds, axis=1)
+
+    def _half_square(x: Array) -> tuple[float, Array]:
+        at = low + x * span
+        a, b = face.evaluate(at[None, :2]), other.evaluate(at[None, 2:])
+        gap = a.point[0] - b.point[0]
+        slope = np.array([gap @ a.su[0], gap @ a.sv[0], -gap @ b.su[0], -gap @ b.sv[0]])
+        return float(gap @ gap) / 2, slope * span
+
+    first = np.clip((np.concatenate(start) - low) / span, 0.0, 1.0)
+    found = minimize(_half_square, first, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * 4,
+                     options={"maxiter": 200, "ftol": 1e-15, "gtol": 1e-10})
+    at = low + found.x * span
+    return at[:2], at[2:]
+
+
+def _to_and_fro(face: Face, other: Face, start: Array) -> tuple[Array, Array]:
+    """Nearest points of each on the other until the distance does not fall any more: their parameters."""
+    here, last = nearest(face, start, 12), np.inf
+    there = nearest(other, here.point, 12)
+    for _ in range(_ROUNDS):
+        if there.distance[0] > last * (1 - 1e-6):
+            break
+        last = float(there.distance[0])
+        here = nearest(face, there.point, 12)
+        there = nearest(other, here.point, 12)
+    return here.uv[0], there.uv[0]
+
+
+def widest(gap: Nearness, clearance: float) -> float:
+    """Diameter of the widest cutter that can machine the place where a face is nearest to others, mm.
+
+    Parameters
+    ----------
+    gap : Nearness
+    clearance : float
+        What the cutter has to keep from the others, mm.
+
+    Returns
+    -------
+    float, inf where the gap does not tell: the nearest points do not see each other along the face's normal.
+
+    Notes
+    -----
+    A cutter in contact reaches its own diameter or more along the surface's normal, with every axis: from a contact at
+    radius a + r sin t of a torus (a = R - r, t the angle between axis and normal) the line along the normal leaves it
+    on the other side after (a + r sin t + R) / sin t >= 2 R.  So the point straight ahead at a smaller distance lies
+    inside the tool.
+    """
+    return gap.distance - clearance if gap.straight else float("inf")
+
+
+def reach_along_normal(tool: Tool) -> float:
+    """How far a cutter reaches at least along the normal from its contact, mm: its diameter, or what its flutes allow.
+
+    Parameters
+    ----------
+    tool : Tool
+    """
+    return min(2 * tool.radius, max(tool.flute_length - tool.corner_radius, 0.0))

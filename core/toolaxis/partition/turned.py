@@ -1,0 +1,235 @@
+"""Faces that a turn brings onto each other, matched through points: parameters, seam and sense may differ."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.polygons import signed_area
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+
+Array = NDArray[np.float64]
+
+#: Greatest distance between a turned face and its counterpart, as a share of the face's diagonal.
+NEAR = 0.02
+#: Two charts agree where points of equal parameters are this much closer than that, as a share of the diagonal.
+_AGREE = 1e-5
+#: Bounds of a piece and of its face closer than this share of the range are one.
+_AT_END = 1e-9
+_GRID, _DENSE = 5, 16
+
+
+class Chart(NamedTuple):
+    """Parameters of a counterpart from those of a face: uv' = uv @ linear + offset."""
+
+    linear: Array
+    offset: Array
+
+    def __call__(self, uv: Array) -> Array:
+        """Parameters on the counterpart, (n, 2)."""
+        return np.asarray(uv @ self.linear + self.offset)
+
+    @property
+    def swapped(self) -> bool:
+        """Whether u runs along the other's v."""
+        return bool(abs(self.linear[0, 1]) > abs(self.linear[0, 0]))
+
+
+class Counterpart(NamedTuple):
+    """A face of another blade, and how its parameters follow; chart is None where they do by no straight rule."""
+
+    face: Face
+    chart: Chart | None
+    away: float
+
+
+def moved(matrix: Array, points: Array) -> Array:
+    """Points under a rigid motion.
+
+    Parameters
+    ----------
+    matrix : (4, 4) array
+    points : (n, 3) array
+    """
+    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
+
+
+def turn_about(point: Array, axis: Array, angle: float) -> Array:
+    """The right-handed turn about a line, (4, 4).
+
+    Parameters
+    ----------
+    point, axis : (3,) array
+        A point of the line, mm, and its unit direction.
+    angle : float
+        rad
+    """
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    found = np.eye(4)
+    found[:3, :3] = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    found[:3, 3] = point - found[:3, :3] @ point
+    return found
+
+
+def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpart | None:
+    """The face that a motion brings a face onto.
+
+    Parameters
+    ----------
+    face : Face
+    matrix : (4, 4) array
+        Rigid motion.
+    others : sequence of Face
+        To choose from.
+
+    Returns
+    -------
+    Counterpart, the nearest of those within `NEAR` of the moved face; None where there is none.
+
+    Notes
+    -----
+    **Properties**: 1. reparametrising the other face (u and v exchanged, reversed, rescaled) changes the chart only;
+    2. a face is its own counterpart under the identity.
+    """
+    uv = _samples(face, _GRID)
+    points = moved(matrix, face.evaluate(uv).point)
+    close = [other for other in others
+             if np.linalg.norm(other.box.mean(axis=0) - points.mean(axis=0)) <= 0.2 * face.diagonal]
+    for how in (_laid, _searched):
+        found = [one for one in (how(face, uv, points, other) for other in close) if one is not None]
+        if found:
+            return min(found, key=lambda one: one.away)
+    return None
+
+
+def _samples(face: Face, count: int) -> Array:
+    """Parameters inside a face and on its border."""
+    border = np.concatenate(face.outline)
+    return np.concatenate([face.grid(count, count), border[::max(1, len(border) // (4 * count))]])
+
+
+def _laid(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
+    """Another face as the counterpart, where one of the eight ways to lay their parameters onto each other fits."""
+    charts = _eight(face.surface.domain, other.surface.domain)
+    away = [float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max()) for chart in charts]
+    k = int(np.argmin(away))
+    if away[k] > NEAR * face.diagonal or other.contains(charts[k](face.grid(_GRID, _GRID))).mean() <= 0.9:
+        return None
+    return Counterpart(other, charts[k], away[k])
+
+
+def _searched(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
+    """Another face as the counterpart by its nearest points, with the straight rule of parameters that fits them."""
+    found = nearest(other, points, 24)
+    distance = float(found.distance.max())
+    if distance > NEAR * face.diagonal:
+        return None
+    table = np.column_stack([uv, np.ones(len(uv))])
+    fit: Array = np.asarray(np.linalg.lstsq(table, found.uv, rcond=None)[0], dtype=float)
+    chart = Chart(fit[:2], fit[2])
+    off = float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max())
+    return Counterpart(other, chart if off <= distance + _AGREE * face.diagonal else None, distance)
+
+
+def _eight(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[Chart]:
+    """The ways to lay one rectangle of parameters onto another."""
+    found = []
+    for swap in (False, True):
+        for senses in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
+            linear, offset = np.zeros((2, 2)), np.zeros(2)
+            for i, (low, high) in enumerate(here):
+                j = 1 - i if swap else i
+                start, stop = there[j] if senses[i] > 0 else there[j][::-1]
+                linear[i, j] = (stop - start) / (high - low)
+                offset[j] = start - low * linear[i, j]
+            found.append(Chart(linear, offset))
+    return found
+
+
+def best_motion(matrix: Array, pairs: Sequence[tuple[Face, Counterpart]]) -> Array:
+    """The rigid motion that brings points of faces closest to those of their counterparts, (4, 4).
+
+    Parameters
+    ----------
+    matrix : (4, 4) array
+        Nearly that motion; the answer where no counterpart has a chart.
+    pairs : sequence of (Face, Counterpart)
+    """
+    here, there = [], []
+    for face, other in pairs:
+        if other.chart is not None:
+            uv = face.grid(_GRID, _GRID)
+            here.append(face.evaluate(uv).point)
+            there.append(other.face.evaluate(other.chart(uv)).point)
+    if sum(map(len, here)) < 3:
+        return matrix
+    a, b = np.concatenate(here), np.concatenate(there)
+    u, _, vt = np.linalg.svd((a - a.mean(axis=0)).T @ (b - b.mean(axis=0)))
+    turn = (vt.T * [1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+    found = np.eye(4)
+    found[:3, :3], found[:3, 3] = turn, b.mean(axis=0) - turn @ a.mean(axis=0)
+    return found
+
+
+def turned_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, label: str) -> tuple[Face, float]:
+    """The piece of a counterpart that a motion brings a piece of a face onto, and how far the two are apart, mm.
+
+    Parameters
+    ----------
+    piece, whole : Face
+        A piece of a face, and the face.
+    other : Counterpart
+        Of the whole face.
+    matrix : (4, 4) array
+    label : str
+
+    Notes
+    -----
+    A piece between iso-parametric lines is cut from the counterpart along its lines, so that pieces add up to it
+    whatever its loops are made of; any other piece takes its loops along.
+    """
+    target = other.face
+    if other.chart is None:
+        loops = tuple(nearest(target, moved(matrix, piece.evaluate(_fine(loop)).point)).uv for loop in piece.outline)
+        made = target.trimmed(loops, label)
+        uv = _samples(piece, _DENSE)
+        return made, float(nearest(target, moved(matrix, piece.evaluate(uv).point)).distance.max())
+    found = target if piece is whole else target.trimmed(_loops(piece, whole, target, other.chart), label)
+    uv = _samples(piece, _DENSE)
+    gap = target.evaluate(other.chart(uv)).point - moved(matrix, piece.evaluate(uv).point)
+    return found.trimmed(found.trims, label), float(np.linalg.norm(gap, axis=1).max())
+
+
+def _fine(loop: Array) -> Array:
+    """A loop with 16 points for each of its sides where it has few."""
+    share = np.linspace(0, 1, max(1, 64 // len(loop)), endpoint=False)[:, None, None]
+    following = np.roll(loop, -1, axis=0)
+    return np.asarray((loop + share * (following - loop)).swapaxes(0, 1).reshape(-1, 2))
+
+
+def _loops(piece: Face, whole: Face, target: Face, chart: Chart) -> tuple[Array, ...]:
+    """Loops of the counterpart of a piece."""
+    carried = tuple(chart(loop) for loop in piece.outline)
+    loops: tuple[Array, ...] = target.outline
+    bounds, ends = np.reshape(piece.bounds, (2, 2)), np.reshape(whole.bounds, (2, 2))
+    for i in range(2):
+        j = 1 - i if chart.swapped else i
+        for side in range(2):
+            if abs(bounds[i, side] - ends[i, side]) <= _AT_END * np.ptp(ends[i]):
+                continue
+            limit = float(chart(bounds[None, :, side])[0, j])
+            loops = clipped(loops, j, limit, (side == 0) == (chart.linear[i, j] > 0))
+    pieces = grouped(loops)
+    if len(pieces) == 1 and abs(_area(pieces[0]) / _area(carried) - 1) < 1e-4:
+        return pieces[0]
+    return carried
+
+
+def _area(loops: Sequence[Array]) -> float:
+    """Area inside an outer loop, which comes first, and outside its holes."""
+    sizes = [abs(float(signed_area(loop))) for loop in loops]
+    return 2 * sizes[0] - sum(sizes)
