@@ -34,6 +34,10 @@ class JobError(ToolAxisError):
         super().__init__(f"{stage}, {item}: {message}")
         self.stage = stage
         self.item = item
+        self.message = message
+
+    def __reduce__(self) -> tuple[type["JobError"], tuple[str, str, str]]:
+        return type(self), (self.stage, self.item, self.message)
 
 
 class Cancelled(ToolAxisError):

@@ -66,7 +66,8 @@ def test_cancelling_keeps_what_is_finished(small_plan: Plan) -> None:
     def cancelled() -> bool:
         return bool(seen) and seen[-1].startswith("face 2")
 
-    made = ta.plan(part, "torus:12x1", 0.1, progress=Progress(lambda stage, *_: seen.append(stage), cancelled))
+    progress = Progress(lambda stage, *_: seen.append(stage), cancelled)
+    made = ta.plan(part, "torus:12x1", 0.1, workers=1, progress=progress)
     assert made.outcome == "cancelled"
     assert [op.face.number for op in made.operations] == [1] and made.operations[0].done
 

@@ -75,6 +75,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="what is least: cutting length (default) or number of passes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")

@@ -41,8 +41,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
-                        orientations=spec.orientations,
-                        progress=progress)
+                        orientations=spec.orientations, workers=given.workers, progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")

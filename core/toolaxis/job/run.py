@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from itertools import zip_longest
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
+from toolaxis.job.abreast import abreast, checked_workers
 from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
@@ -18,7 +20,7 @@ from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.partition.cover import shared, trade
-from toolaxis.partition.divider import MOST, Divider
+from toolaxis.partition.divider import MOST, Divider, Regions
 from toolaxis.partition.regions import checked_count
 from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
@@ -32,8 +34,14 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
-Target: TypeAlias = tuple[Face, Array | None]
-"""A sub-surface, and the axis that it shares with others."""
+
+
+class Target(NamedTuple):
+    """A sub-surface, the axis that its division reckoned with, if any, and whether it shares that with others."""
+
+    face: Face
+    axis: Array | None = None
+    shared: bool = False
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
@@ -42,7 +50,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
-         progress: Progress = NO_PROGRESS) -> Plan:
+         workers: int | None = None, progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
 
     Parameters
@@ -79,6 +87,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     tolerance : Tolerance, optional
     datum : (3,) sequence of float
         Origin of the work coordinate systems, mm.
+    workers : int, optional
+        Processes that plan sub-surfaces side by side, on Linux and outside FreeCAD; as many as there are cores unless
+        given. The result is the same for any number.
     progress : Progress
 
     Returns
@@ -106,7 +117,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
     job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions,
-               orientations)
+               orientations, checked_workers(workers))
     with heard(progress):
         return job.carried_out(targets, progress)
 
@@ -131,30 +142,41 @@ class _Job:
     datum: Array
     regions: int | str | None = None
     orientations: int | str | None = None
+    workers: int = 1
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
-        done: list[Operation] = []
-        outcome = "complete"
         options: tuple[Option, ...] = ()
         try:
             if self.orientations:
                 targets, options = self._sharing(faces, progress)
             else:
-                targets = [(piece, None) for face in faces for piece in self._divided(face, progress)]
-            for index, (face, axis) in enumerate(targets):
-                done.append(self._operation(face, axis, (index, len(targets)), progress))
+                targets = self._divided(faces, progress)
         except Cancelled:
-            outcome = "cancelled"
-        if outcome == "complete" and not all(op.done for op in done):
-            outcome = "incomplete"
-        return Plan(self.part, self.tool, self.inputs, tuple(done), self.bodies, self.datum, outcome, options)
+            return self._plan((), "cancelled", options)
+        done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
+                       self.workers, progress)
+        operations = tuple(replace(op, face=targets[op.number - 1].face) for op in done.results)
+        complete = "complete" if all(op.done for op in operations) else "incomplete"
+        return self._plan(operations, "cancelled" if done.cancelled else complete, options)
 
-    def _divided(self, face: Face, progress: Progress) -> tuple[Face, ...]:
+    def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
+        return Plan(self.part, self.tool, self.inputs, operations, self.bodies, self.datum, outcome, options)
+
+    def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
+        """Sub-surfaces of each face by itself."""
         if self.regions is None:
-            return (face,)
-        task = self._task(face, progress)
-        return regions_of(task, self.regions, progress=progress.within(f"face {face.label}")).faces
+            return [Target(face) for face in faces]
+
+        def _division(k: int, inner: Progress) -> Regions:
+            named = inner.within(f"face {faces[k].label}")
+            return regions_of(self._task(faces[k], inner), self.regions, progress=named)
+
+        found = abreast(_division, len(faces), self.workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        return [Target(piece, axis) for one in found.results
+                for piece, axis in zip_longest(one.faces, one.axes)]
 
     def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
         """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from."""
@@ -169,19 +191,21 @@ class _Job:
             chosen = found[knee]
         else:
             chosen = shared(dividers, count, progress=progress)
-        return [(piece, axis) for one in chosen.regions
+        return [Target(piece, axis, True) for one in chosen.regions
                 for piece, axis in zip(one.faces, one.axes, strict=True)], options
 
-    def _operation(self, face: Face, axis: Array | None, place: tuple[int, int], progress: Progress) -> Operation:
-        """The operation of a sub-surface, with a given axis where that may be used."""
-        number = place[0] + 1
+    def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
+        """The operation of a sub-surface, with a shared axis where that may be used."""
+        face, axis, number = target.face, target.axis, place[0] + 1
         inner = progress.within(f"face {face.label} ({number} of {place[1]})")
         inner.report("search for the axis", 0, 1)
         try:
-            found, path = (Orientation(None), None) if axis is None else judged(self._task(face, inner), axis)
+            found, path = Orientation(None), None
+            if axis is not None and target.shared:
+                found, path = judged(self._task(face, inner), axis)
             if found.axis is None:
                 refused = found.reasons
-                found = self._searched(face, inner)
+                found = self._searched(face, axis, inner)
                 found = replace(found, reasons=(*(f"shared axis refused: {why}" for why in refused), *found.reasons))
                 path = None if found.axis is None else self._traced(face, found, inner)
         except Cancelled:
@@ -192,10 +216,11 @@ class _Job:
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
-    def _searched(self, face: Face, progress: Progress) -> Orientation:
+    def _searched(self, face: Face, start: Array | None, progress: Progress) -> Orientation:
         return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
                          self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
-                         tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
+                         tolerance=self.inputs.tolerance, direction=self.inputs.direction, starts=start,
+                         progress=progress)
 
     @property
     def _obstacles(self) -> tuple[Face, ...]:

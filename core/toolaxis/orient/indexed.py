@@ -167,7 +167,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
-              progress: Progress = NO_PROGRESS) -> Orientation:
+              starts: ArrayLike | None = None, progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, or in the fewest passes.
 
     Parameters
@@ -196,6 +196,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
         Further limits.
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
+    starts : (k, 3) array_like, optional
+        Axes that are worth a look before others, such as a division's; for the method "sphere".
     progress : Progress
 
     Returns
@@ -221,7 +223,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
                progress=progress)
-    ledger = Ledger(job.feasibility, job.worth, progress)
+    first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
+    ledger = Ledger(job.feasibility, job.worth, progress, first)
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:

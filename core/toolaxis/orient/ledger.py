@@ -27,6 +27,8 @@ class Ledger:
     feasibility : Feasibility
     worth : Worth
     progress : Progress
+    starts : (k, 3) array
+        Axes that are worth a look before others.
     axes : (n, 3) array
     reason : (n,) array of int8
     amount : (n,) array
@@ -48,6 +50,7 @@ class Ledger:
     feasibility: Feasibility
     worth: Worth
     progress: Progress = NO_PROGRESS
+    starts: Array = field(default_factory=lambda: np.empty((0, 3)))
     axes: Array = field(default_factory=lambda: np.empty((0, 3)))
     reason: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, dtype=np.int8))
     amount: Array = field(default_factory=lambda: np.empty(0))

@@ -27,6 +27,8 @@ SPACING = radians(10)
 _BEAM = (14, 10, 8)
 #: Fewer where normals and limits leave little: one for so many first axes, but not below the second number.
 _SHARE, _NARROWEST = 9, 6
+#: How often all free axes may be refused by closer looks before the search ends without one.
+_HUNTS = 3
 #: Lobes are at least so far apart, rad.
 APART = radians(12)
 _LOBES = 5
@@ -62,14 +64,22 @@ def search(ledger: Ledger) -> list[Candidate]:
     """
     field = ledger.feasibility.normals
     frame = frame_of(field)
-    ledger.look(np.stack([field.mean, frame[2]]))
+    ledger.look(np.concatenate([np.stack([field.mean, frame[2]]), ledger.starts]))
+    first = len(ledger.axes)
     ledger.lay(spiral(frame, SPACING))
-    if not np.isfinite(ledger.price).any():
-        ledger.proven = hunt(ledger, 2, COVER * SPACING)
-    if not np.isfinite(ledger.price).any():
-        return []
-    if indifferent(ledger):
-        return ties(ledger)
+    for _ in range(_HUNTS):
+        if not np.isfinite(ledger.price).any():
+            ledger.proven = hunt(ledger, first, COVER * SPACING)
+        if not np.isfinite(ledger.price).any():
+            return []
+        found = ties(ledger) if indifferent(ledger) else _refined(ledger)
+        if found:
+            return found
+    return []
+
+
+def _refined(ledger: Ledger) -> list[Candidate]:
+    """The best of each lobe from rings around the promising axes; none where a closer look refuses all of them."""
     spacing, most = SPACING, max(_NARROWEST, (len(ledger.axes) - ledger.excluded) // _SHARE)
     for width in np.minimum(_BEAM, most):
         probe(ledger, width // 2)
