@@ -19,6 +19,7 @@ from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
 from toolaxis.plan.schema import check
+from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
@@ -48,7 +49,7 @@ def example() -> Plan:
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), np.ones(3))
     return Plan(part, Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)]),
                 Inputs(0.02, tolerance=Tolerance(chord=0.001)),
-                (Operation(1, piece, best, path, frame),
+                (Operation(1, piece, best, path, frame, (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
                  Operation(2, part.faces[1], Orientation(None, outcome="infeasible", reasons=("no axis",)))),
                 (), np.zeros(3), "incomplete")
 
@@ -73,6 +74,9 @@ def test_written_and_read_back_is_the_same() -> None:
     first = back.operations[0].orientation
     assert first.map is not None and np.isinf(first.map.length[1]) and first.map.reason.tolist() == [0, 4, 0]
     assert first.clearance == {"cutter": 0.5, "holder": np.inf}
+    (zone,) = back.operations[0].zones
+    assert (zone.area, zone.at_wall, zone.elsewhere) == (12.25, True, 0.125) and back.operations[1].zones == ()
+    assert all(map(np.array_equal, zone.loops, plan.operations[0].zones[0].loops))
     assert back.inputs == plan.inputs and back.outcome == "incomplete"
     assert back.tool.name == "torus:12x1" and back.not_checked == plan.not_checked
 

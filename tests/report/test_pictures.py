@@ -14,7 +14,9 @@ from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.plan.zone import Zone
 from toolaxis.report.bars import baselines_picture
+from toolaxis.report.hatching import COLOUR
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
@@ -83,6 +85,23 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
     assert "1 of 2 sub-surfaces" in ax.get_title()
     assert len(colours_of(made, tmp_path / "plan.png")) > 10
+
+
+def test_clean_up_zones_are_hatched_in_both_pictures() -> None:
+    plan, op = planned()
+    t = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    ring = tuple(np.column_stack([0.5 + r * np.cos(t), 0.5 + r * np.sin(t)]) for r in (0.3, 0.12))
+    marked = replace(op, zones=(Zone(ring, 100.0),))
+    for picture, ax in ((operation_picture, 0), (lambda p, o: overview_picture(p), 0)):
+        shown = []
+        for one in (op, marked):
+            made = picture(replace(plan, operations=(one,)), one)
+            image = np.asarray(made.axes[ax].images[0].get_array())
+            shown.append(float((np.abs(image - np.array(COLOUR)).max(axis=2) < 0.01).mean()))
+            legend = made.axes[ax].get_legend()
+            labels = [] if legend is None else [text.get_text() for text in legend.get_texts()]
+            assert ("left to clean-up" in labels) == (one is marked)
+        assert shown[0] == 0 and 0.005 < shown[1] < 0.3
 
 
 def test_the_curve_of_orientations_marks_the_chosen_one(tmp_path: Path) -> None:

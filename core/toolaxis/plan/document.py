@@ -14,6 +14,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.schema import NAME, VERSION, check
+from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
@@ -132,7 +133,8 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Docum
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
             "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel,
-            "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid)}
+            "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
+            "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
 
 
 def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
@@ -172,7 +174,9 @@ def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | No
         face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
     frame = document["work_coordinates"]
     axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
-    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes)
+    zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"])})
+                  for zone in document.get("zones", ()))
+    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones)
 
 
 def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part],

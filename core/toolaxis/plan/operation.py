@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 
 
@@ -24,6 +25,8 @@ class Operation:
         Passes and links in the part's frame; None where there is no axis.
     frame : WorkCoordinates or None
         None where there is no axis.
+    zones : tuple of Zone
+        What it leaves higher than the scallop limit, the largest first.
     """
 
     number: int
@@ -31,6 +34,7 @@ class Operation:
     orientation: Orientation
     path: ToolPath | None = None
     frame: WorkCoordinates | None = None
+    zones: tuple[Zone, ...] = ()
 
     @property
     def done(self) -> bool:

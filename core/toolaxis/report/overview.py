@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
+from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
 from toolaxis.report.plots import (
     BLUE,
     GREEN,
@@ -66,6 +67,8 @@ def overview_picture(plan: Plan) -> Figure:
     for index, op in enumerate(operations):
         canvas.splat(*face_splats(op.face, seen), _COLOURS[index % len(_COLOURS)] if op.done else _NO_AXIS)
     canvas.close()
+    for op in operations:
+        hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
@@ -75,6 +78,8 @@ def overview_picture(plan: Plan) -> Figure:
     done = sum(op.done for op in operations)
     ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(operations)} sub-surfaces, "
                  f"cutting length {plan.length:.0f} mm", fontsize=10)
+    if any(op.zones for op in operations):
+        ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
     scale_bar(ax, seen)
     bare(ax)
     return made

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Option, Plan
+from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
 from toolaxis.report.raster import (
     Camera,
     Canvas,
@@ -98,10 +99,11 @@ def _close_up(ax: Axes, op: Operation, view: tuple[Array, Array]) -> None:
     canvas = Canvas(camera(view[0], view[1], np.concatenate([loops, surface, cut])))
     canvas.splat(*face_splats(op.face, canvas.camera), _FACE)
     canvas.close()
+    hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
     ax.imshow(canvas.colour, origin="lower", extent=canvas.camera.extent, interpolation="nearest")
     slack = 0.01 * op.face.diagonal + 4 * canvas.camera.pixel
     _draw_cuts(ax, canvas, op.path, slack)
-    _legend(ax, {"face": _FACE}, {"contact line": BLUE, "beyond the border": SKY})
+    _legend(ax, {"face": _FACE}, {"contact line": BLUE, "beyond the border": SKY}, [hatch_patch()] if op.zones else [])
     scale_bar(ax, canvas.camera)
     bare(ax)
 
@@ -180,10 +182,12 @@ def _standing(path: ToolPath) -> Array:
     return path.cl[cutting[int(0.47 * (len(cutting) - 1))]]
 
 
-def _legend(ax: Axes, areas: Mapping[str, tuple[float, float, float]], lines: Mapping[str, str]) -> None:
+def _legend(ax: Axes, areas: Mapping[str, tuple[float, float, float]], lines: Mapping[str, str],
+            further: Sequence[Artist] = ()) -> None:
     handles: list[Artist] = [Patch(facecolor=colour, edgecolor="#555555", linewidth=0.5, label=name)
                              for name, colour in areas.items()]
     handles += [Line2D([], [], color=colour, label=name) for name, colour in lines.items()]
+    handles += further
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
 
 
