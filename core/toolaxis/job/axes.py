@@ -49,7 +49,7 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     """
     return task(op.face, plan.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
-                part=plan.part, tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
+                part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
                 direction=plan.inputs.direction, progress=progress)
 
 

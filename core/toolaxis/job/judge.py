@@ -71,7 +71,7 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
 
 def _task(plan: Plan, op: Operation) -> Task:
     assert op.path is not None
-    around = grouped(op.face, plan.inputs.tolerance, part=plan.part,
+    around = grouped(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
                      obstacles=[face for body in plan.obstacles for face in body.faces])
 
     def _of(*roles: str) -> tuple[Face, ...]:

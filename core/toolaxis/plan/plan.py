@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.baseline import Baseline
+from toolaxis.plan.blades import Blades
 from toolaxis.plan.operation import Operation
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
@@ -141,6 +142,8 @@ class Plan:
         Cutting length against the number of different axes, where that was asked for.
     baselines : tuple of Baseline
         What other methods come to on the same faces, this plan first, where that was asked for.
+    blades : Blades, optional
+        Where one blade was planned and its operations were turned to the others.
     """
 
     part: Part
@@ -152,6 +155,16 @@ class Plan:
     outcome: str
     options: tuple[Option, ...] = ()
     baselines: tuple[Baseline, ...] = ()
+    blades: Blades | None = None
+
+    def part_around(self, number: int) -> Part:
+        """The part as it stands around a face: where it has blades, the other ones are obstacles.
+
+        Parameters
+        ----------
+        number : int
+        """
+        return self.part if self.blades is None else self.blades.apart(self.part, number)
 
     @property
     def not_checked(self) -> tuple[str, ...]:
