@@ -190,3 +190,46 @@ def test_a_face_with_a_kink_is_divided_there(tmp_path: Path) -> None:
     assert sum(op.face.area for op in back.operations) == pytest.approx(24 * 1.09**0.5 * 16, rel=1e-6)
     verdict = ta.verify(made)
     assert verdict.passed, verdict.reasons
+
+
+def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
+                                                               monkeypatch: pytest.MonkeyPatch) -> None:
+    from toolaxis.job import baselines
+
+    assert baselines.BY_SUB_SURFACE == ("sectors", "roman", "normal")
+    monkeypatch.setattr(baselines, "BY_SUB_SURFACE", ("roman", "normal"))  # sectors take half a minute
+    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
+    made = ta.plan(ta.Part.from_faces(faces), ta.Tool.torus(12, 1, stickout=50, holder=[(10, 0), (10, 40)]), 0.1,
+                   compare=True, feedrate=500)
+    rows = {one.method: one for one in made.baselines}
+    assert list(rows) == ["plan", "roman", "normal", "one", "ball"]
+    mine = rows["plan"]
+    assert (mine.length, mine.travel, mine.seconds) == (made.length, made.travel, made.seconds) and mine.complete
+    assert mine.length <= rows["roman"].length
+    assert rows["normal"].machined == 0 and "flat bottom" in rows["normal"].reason
+    assert rows["one"].complete and rows["one"].orientations == 1 and rows["one"].length >= 0.98 * mine.length
+    assert rows["ball"].complete and rows["ball"].tool == "ball:12" and rows["ball"].length > 1.1 * mine.length
+    write_plan(made, tmp_path)
+    assert read_plan(tmp_path).baselines == made.baselines
+
+
+@pytest.mark.parametrize("method", ["one", "ball"])
+def test_the_plan_of_a_baseline_is_a_plan_that_passes(method: str) -> None:
+    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
+    made = ta.plan(ta.Part.from_faces(faces), "torus:12x1", 0.1, method=method)
+    assert made.outcome == "complete" and made.inputs.method == method
+    assert made.tool.name == ("ball:12" if method == "ball" else "torus:12x1")
+    assert made.orientations == (1 if method == "one" else 2)
+    assert ta.verify(made).passed
+
+
+def test_one_axis_for_faces_that_look_apart_is_not_found() -> None:
+    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.0) * [1, 1, -1], flip=True)]
+    made = ta.plan(ta.Part.from_faces(faces), "torus:12x1", 0.1, method="one")
+    assert made.outcome == "incomplete" and not any(op.done for op in made.operations)
+    assert all("all sub-surfaces allow" in op.orientation.reasons[0] for op in made.operations)
+
+
+def test_methods_that_name_their_axes_share_none() -> None:
+    with pytest.raises(ta.InvalidInput, match="leave out either"):
+        ta.plan(ta.Face.from_bspline(net(1.0)), "torus:12x1", 0.1, method="roman", orientations=2)

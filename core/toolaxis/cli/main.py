@@ -68,15 +68,20 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
-    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors", "roman", "normal"),
-                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; to "
-                          "compare: the axis of Roman's rule, or the mean normal")
+    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors", "roman", "normal", "one", "ball"),
+                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; "
+                          "to compare: roman (the axis of Roman's rule), normal (the mean normal), one (one axis for "
+                          "all), ball (a ball end of the same radius along the mean normal)")
+    sub.add_argument("--compare", action="store_true",
+                     help="also plan the same faces by the other methods: a table of passes, lengths and times")
     sub.add_argument("--objective", default="length", choices=("length", "passes"),
                      help="what is least: cutting length (default) or number of passes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
+    sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
+                     help="rate of rapid traverse, for times only (default: 10000)")
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")

@@ -41,6 +41,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
+                        rapid=spec.inputs.rapid, compare=given.compare,
                         orientations=spec.orientations, workers=given.workers, progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
@@ -60,7 +61,7 @@ def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                    given.feedrate, given.spindle)
+                    given.feedrate, given.spindle, rapid=given.rapid)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations)
     _ = spec.numbers
@@ -86,11 +87,13 @@ def _told(made: Plan, given: Namespace) -> int:
     if given.json:
         print_json(read_json(Path(given.out) / PLAN))
     else:
-        from toolaxis.report.tables import options_table, plan_table
+        from toolaxis.report.tables import baselines_table, options_table, plan_table
 
         if made.options:
             print_table(options_table(made.options))
         print_table(plan_table(made))
+        if made.baselines:
+            print_table(baselines_table(made))
     for op in made.operations:
         if not op.done:
             for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):

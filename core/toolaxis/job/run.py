@@ -13,12 +13,14 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
 from toolaxis.job.abreast import abreast, checked_workers
 from toolaxis.job.axes import frame_of, judged
+from toolaxis.job.baselines import compared
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
 from toolaxis.machine.limits import AxisLimits, parse_limits, written
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
+from toolaxis.orient.together import together
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider, Regions
 from toolaxis.partition.regions import checked_count
@@ -35,6 +37,9 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
+#: Methods that search as another one does.
+_SEARCHES = {"ball": "normal"}
+
 
 class Target(NamedTuple):
     """A sub-surface, the axis that its division reckoned with, if any, and whether it shares that with others."""
@@ -50,7 +55,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
-         workers: int | None = None, progress: Progress = NO_PROGRESS) -> Plan:
+         rapid: float = 10000.0, compare: bool = False, workers: int | None = None,
+         progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
 
     Parameters
@@ -81,12 +87,18 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
     method : str
-        "sphere", "sectors", "roman" or "normal".
+        How each sub-surface gets its axis: "sphere" (the best of the hemisphere) or "sectors" (projection planes and
+        sectors); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
+        sub-surfaces) and "ball" (a ball end of the tool's radius takes its place, along the mean normal).
     feedrate, spindle : float
         mm/min and rev/min, for the CL files.
     tolerance : Tolerance, optional
     datum : (3,) sequence of float
         Origin of the work coordinate systems, mm.
+    rapid : float
+        Rate of rapid traverse in links, mm/min; for times only.
+    compare : bool
+        Also plan the same faces by the other methods; what they come to stands in the plan's baselines.
     workers : int, optional
         Processes that plan sub-surfaces side by side, on Linux and outside FreeCAD; as many as there are cores unless
         given. The result is the same for any number.
@@ -107,10 +119,13 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
         raise InvalidInput(f"strategy {strategy!r} is not part of this version: leave it out")
     checked_count(regions)
     checked_count(orientations, "orientations")
+    if orientations is not None and method != "sphere":
+        raise InvalidInput(f"method {method!r} names its own axes, which are not shared: leave out either the method "
+                           "or the number of orientations")
     limits = parse_limits(machine) if isinstance(machine, str) and machine else machine or None
     words = machine if isinstance(machine, str) else written(limits)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), tolerance or Tolerance())
+                    float(spindle), tolerance or Tolerance(), float(rapid))
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
     loaded = load(part)
@@ -119,7 +134,11 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions,
                orientations, checked_workers(workers))
     with heard(progress):
-        return job.carried_out(targets, progress)
+        made = job.by(method).carried_out(targets, progress)
+        if not compare or made.outcome == "cancelled":
+            return made
+        whole = replace(job, regions=None, orientations=None)
+        return compared(made, targets, lambda name, some: whole.by(name).carried_out(some, progress.within(name)))
 
 
 def _listed(obstacles: Any) -> list[Any]:
@@ -144,6 +163,11 @@ class _Job:
     orientations: int | str | None = None
     workers: int = 1
 
+    def by(self, method: str) -> "_Job":
+        """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
+        return replace(self, inputs=replace(self.inputs, method=method),
+                       tool=self.tool.with_ball_end() if method == "ball" else self.tool)
+
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
@@ -152,13 +176,29 @@ class _Job:
                 targets, options = self._sharing(faces, progress)
             else:
                 targets = self._divided(faces, progress)
+            if self.inputs.method == "one":
+                return self._alike(targets, progress)
         except Cancelled:
             return self._plan((), "cancelled", options)
+        return self._machined(targets, options, progress)
+
+    def _machined(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
+        """The plan for sub-surfaces as they are."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
         operations = tuple(replace(op, face=targets[op.number - 1].face) for op in done.results)
         complete = "complete" if all(op.done for op in operations) else "incomplete"
         return self._plan(operations, "cancelled" if done.cancelled else complete, options)
+
+    def _alike(self, targets: list[Target], progress: Progress) -> Plan:
+        """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
+        tasks = [self._task(target.face, progress) for target in targets]
+        made = None
+        for axis in together(tasks, progress.within("one axis")):
+            made = self._machined([Target(target.face, axis, True) for target in targets], (), progress)
+            if made.outcome != "incomplete":
+                break
+        return made or self._machined(targets, (), progress)
 
     def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
         return Plan(self.part, self.tool, self.inputs, operations, self.bodies, self.datum, outcome, options)
@@ -203,6 +243,9 @@ class _Job:
             found, path = Orientation(None), None
             if axis is not None and target.shared:
                 found, path = judged(self._task(face, inner), axis)
+            if found.axis is None and self.inputs.method == "one":
+                why = found.reasons or ("no axis found that all sub-surfaces allow",)
+                return Operation(number, face, replace(found, reasons=why))
             if found.axis is None:
                 refused = found.reasons
                 found = self._searched(face, axis, inner)
@@ -217,7 +260,8 @@ class _Job:
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
     def _searched(self, face: Face, start: Array | None, progress: Progress) -> Orientation:
-        return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, self.inputs.method,
+        method = _SEARCHES.get(self.inputs.method, self.inputs.method)
+        return best_axis(face, self.tool, self.inputs.scallop, self.limits, self._obstacles, method,
                          self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
                          tolerance=self.inputs.tolerance, direction=self.inputs.direction, starts=start,
                          progress=progress)
