@@ -18,7 +18,7 @@ from toolaxis.plan.zone import Zone
 from toolaxis.report.bars import baselines_picture
 from toolaxis.report.hatching import COLOUR
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
-from toolaxis.report.overview import overview_picture
+from toolaxis.report.overview import coloured, overview_picture
 from toolaxis.report.plots import (
     WidthStudy,
     cutting_lines,
@@ -85,6 +85,18 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
     assert "1 of 2 sub-surfaces" in ax.get_title()
     assert len(colours_of(made, tmp_path / "plan.png")) > 10
+
+
+def test_sub_surfaces_that_touch_have_different_colours() -> None:
+    _, op = planned()
+    cells = [(i, j) for i in range(4) for j in range(4)]
+    pieces = [Operation(k, op.face.trimmed((np.array([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]) / 4,)),
+                        Orientation(None)) for k, (i, j) in enumerate(cells, 1)]
+    colours = coloured(pieces)
+    for k, (i, j) in enumerate(cells):
+        for m, other in enumerate(cells[:k]):
+            assert max(abs(i - other[0]), abs(j - other[1])) > 1 or colours[k] != colours[m]
+    assert len(set(colours)) <= 7
 
 
 def test_clean_up_zones_are_hatched_in_both_pictures() -> None:

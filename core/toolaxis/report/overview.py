@@ -1,5 +1,7 @@
 """The whole plan in one picture: the part coloured by sub-surface, its passes, and an arrow for each axis."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.axes import Axes
@@ -7,6 +9,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
@@ -29,6 +32,8 @@ from toolaxis.report.raster import Canvas, camera, face_splats, mean_direction, 
 Array = NDArray[np.float64]
 
 _YELLOW = "#F0E442"
+#: With more sub-surfaces than this, arrows are shorter.
+_MANY = 8
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
@@ -54,7 +59,7 @@ def overview_picture(plan: Plan) -> Figure:
     normals = np.array([mean_direction(op.face.normal(op.face.grid(12, 12))) for op in operations])
     middle = mean_direction(normals)
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
-    arrow = 0.22 * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    arrow = (0.22 if len(operations) <= _MANY else 0.16) * float(np.linalg.norm(np.ptp(corners, axis=0)))
     roots = np.array([_root(op) for op in operations])
     heads = np.array([root + (op.orientation.axis if op.orientation.axis is not None else 0 * root) * arrow
                       for op, root in zip(operations, roots, strict=True)])
@@ -64,8 +69,8 @@ def overview_picture(plan: Plan) -> Figure:
     for face in plan.part.faces:
         if face.number not in whole:
             canvas.splat(*face_splats(face, seen), _PART)
-    for index, op in enumerate(operations):
-        canvas.splat(*face_splats(op.face, seen), _COLOURS[index % len(_COLOURS)] if op.done else _NO_AXIS)
+    for op, colour in zip(operations, coloured(operations), strict=True):
+        canvas.splat(*face_splats(op.face, seen), _COLOURS[colour] if op.done else _NO_AXIS)
     canvas.close()
     for op in operations:
         hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
@@ -77,12 +82,40 @@ def overview_picture(plan: Plan) -> Figure:
         _arrow(ax, op, *seen.project(np.array([root, head]))[:, :2])
     done = sum(op.done for op in operations)
     ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(operations)} sub-surfaces, "
-                 f"cutting length {plan.length:.0f} mm", fontsize=10)
+                 f"different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
     if any(op.zones for op in operations):
         ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
     scale_bar(ax, seen)
     bare(ax)
     return made
+
+
+def coloured(operations: Sequence[Operation]) -> list[int]:
+    """A number for each sub-surface, below 7, so that those that touch have different ones where that many allow it.
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+    """
+    borders = [_border(op) for op in operations]
+    chosen: list[int] = []
+    for k, (tree, points) in enumerate(borders):
+        near = 0.01 * operations[k].face.diagonal
+        beside = {chosen[other] for other in range(k)
+                  if (borders[other][0].query(points, distance_upper_bound=near)[0] <= near).any()
+                  or (tree.query(borders[other][1], distance_upper_bound=near)[0] <= near).any()}
+        order = [(k + step) % len(_COLOURS) for step in range(len(_COLOURS))]
+        chosen.append(next((colour for colour in order if colour not in beside), order[0]))
+    return chosen
+
+
+def _border(op: Operation) -> tuple[cKDTree, Array]:
+    """Points along the outline, about as many on each edge, and a tree of them."""
+    share = np.linspace(0.0, 1.0, 24, endpoint=False)[:, None]
+    points = [op.face.evaluate(start + share * (end - start)).point
+              for loop in op.face.outline for start, end in zip(loop, np.roll(loop, -1, axis=0), strict=True)]
+    rows = np.concatenate(points)
+    return cKDTree(rows), rows
 
 
 def _view(middle: Array) -> tuple[Array, Array]:
@@ -111,6 +144,7 @@ def _arrow(ax: Axes, op: Operation, foot: Array, head: Array) -> None:
     tip, root = (float(head[0]), float(head[1])), (float(foot[0]), float(foot[1]))
     halo = [patheffects.withStroke(linewidth=3, foreground="white")]
     if op.done:
+        ax.plot(*root, "o", color="black", markersize=3.5)
         ax.annotate("", tip, root, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
     text = f"{op.number}" if op.done else f"{op.number}: no axis"
     ax.annotate(text, tip, textcoords="offset points", xytext=(5, 3), fontsize=11, weight="bold", path_effects=halo)
