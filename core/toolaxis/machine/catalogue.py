@@ -1,9 +1,12 @@
 """Machines from TOML, and those that come with toolaxis.
 
-In the files lengths are mm, angles degrees, times seconds; in memory angles are radians.
+In the files lengths are mm, angles degrees, times seconds; in memory angles are radians.  An acceleration or a jerk
+that nobody knows is written "unknown"; feeds are not planned with it.
 """
 
+import json
 import tomllib
+from collections.abc import Callable
 from math import inf, radians
 from pathlib import Path
 from typing import Any
@@ -20,6 +23,8 @@ _MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", 
 _LINEAR = {"name", "direction", "limits", "velocity", "acceleration", "jerk"}
 _ROTARY = _LINEAR | {"point", "increment", "by_hand"}
 _DRIVE = ("velocity", "acceleration", "jerk")
+#: What stands for an acceleration or a jerk that nobody knows.
+_UNKNOWN = "unknown"
 
 
 def library() -> dict[str, Path]:
@@ -123,6 +128,12 @@ def _number(item: dict[str, Any], word: str, axis: str) -> float:
     return float(value)
 
 
+def _drive(item: dict[str, Any], name: str, unit: Callable[[float], float]) -> Drive:
+    values = [None if item.get(word) == _UNKNOWN and word != "velocity" else unit(_number(item, word, name))
+              for word in _DRIVE]
+    return Drive(values[0] or 0.0, *values[1:])
+
+
 def _name(item: dict[str, Any], kind: str) -> str:
     name = item.get("name")
     if not isinstance(name, str):
@@ -138,7 +149,7 @@ def _limits(item: dict[str, Any], name: str) -> tuple[float, float]:
 def _linear(item: Any) -> LinearAxis:
     _known(item, _LINEAR, "a linear axis")
     name = _name(item, "linear")
-    drive = Drive(*(_number(item, word, name) for word in _DRIVE))
+    drive = _drive(item, name, float)
     direction = _numbers(item.get("direction"), 3, f"direction of axis {name}")
     return LinearAxis(name, direction, drive, *_limits(item, name))
 
@@ -152,8 +163,63 @@ def _rotary(item: Any) -> RotaryAxis:
     stated = [word for word in _DRIVE if word in item]
     if by_hand and stated:
         raise InvalidInput(f"axis {name} is set by hand and has a {stated[0]}: one of the two must go")
-    drive = None if by_hand else Drive(*(radians(_number(item, word, name)) for word in _DRIVE))
+    drive = None if by_hand else _drive(item, name, radians)
     low, high = (radians(value) for value in _limits(item, name))
     increment = radians(_number(item, "increment", name)) if "increment" in item else 0.0
     return RotaryAxis(name, _numbers(item.get("direction"), 3, f"direction of axis {name}"),
                       _numbers(item.get("point", [0, 0, 0]), 3, f"point of axis {name}"), drive, low, high, increment)
+
+
+def machine_to_toml(machine: Machine) -> str:
+    """The text of a machine's TOML file, which `machine_from_toml` reads back.
+
+    Directions come back to the rounding of unit vectors, everything else exactly.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    str
+        Angles in degrees; a value that was read from degrees comes back as the nearest number that gives it again.
+    """
+    lines = [f"name = {_quoted(machine.name)}", f"source = {_quoted(machine.source)}",
+             f"assumed = [{', '.join(map(_quoted, machine.assumed))}]",
+             f"spindle = {_listed(machine.spindle)}", f"gauge = {_listed(machine.gauge)}"]
+    for axis in machine.linear:
+        lines += ["", "[[linear]]", f"name = {_quoted(axis.name)}", f"direction = {_listed(axis.direction)}"]
+        lines += _written_limits(axis.low, axis.high, float) + _written_drive(axis.drive, float)
+    for kind, axes in (("table", machine.table), ("head", machine.head)):
+        for turn in axes:
+            lines += ["", f"[[{kind}]]", f"name = {_quoted(turn.name)}", f"direction = {_listed(turn.direction)}",
+                      f"point = {_listed(turn.point)}", f"increment = {_degrees(turn.increment)!r}"]
+            lines += _written_limits(turn.low, turn.high, _degrees)
+            lines += ["by_hand = true"] if turn.drive is None else _written_drive(turn.drive, _degrees)
+    return "\n".join(lines) + "\n"
+
+
+def _degrees(angle: float) -> float:
+    """Degrees that `radians` turns into the very angle, where there are such."""
+    value = float(np.degrees(angle))
+    near = [value, *(float(np.nextafter(value, way)) for way in (-inf, inf)), round(value, 9)]
+    return next((one for one in sorted(near, key=lambda one: len(repr(one))) if radians(one) == angle), value)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _listed(values: Any) -> str:
+    return "[" + ", ".join(repr(float(value)) for value in np.asarray(values)) + "]"
+
+
+def _written_limits(low: float, high: float, unit: Callable[[float], float]) -> list[str]:
+    if low == -inf and high == inf:
+        return []
+    return [f"limits = [{', '.join(repr(unit(one)) if np.isfinite(one) else str(one) for one in (low, high))}]"]
+
+
+def _written_drive(drive: Drive, unit: Callable[[float], float]) -> list[str]:
+    values = {word: getattr(drive, word) for word in _DRIVE}
+    return [f"{word} = {_quoted(_UNKNOWN) if value is None else repr(unit(value))}" for word, value in values.items()]

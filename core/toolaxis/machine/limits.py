@@ -195,6 +195,25 @@ class AllOf:
         return np.asarray(np.all([np.ones(len(rows), bool), *(part.allowed(rows) for part in self.parts)], axis=0))
 
 
+def refusal(limits: AxisLimits, axis: ArrayLike) -> str:
+    """Why limits forbid an axis, in words; empty where they allow it.
+
+    Parameters
+    ----------
+    limits : AxisLimits
+        A limit with a method `why` says it itself, as a machine does.
+    axis : (3,) array_like
+    """
+    one = as_rows(axis, 3, "axis")[:1]
+    if bool(limits.allowed(one)[0]):
+        return ""
+    if isinstance(limits, AllOf):
+        return "; ".join(filter(None, (refusal(part, one) for part in limits.parts)))
+    if hasattr(limits, "why"):
+        return str(limits.why(one))
+    return f"the axis is {degrees(float(limits.excess(one)[0])):.2f} deg outside the limits"
+
+
 _FORMS = "write cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D,z=X/Y/Z,x=X/Y/Z (degrees), several joined by +"
 
 

@@ -5,7 +5,6 @@ small circles: one rotary axis at an end of its range while the other turns, and
 meet.
 """
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -18,48 +17,23 @@ from toolaxis.numeric.turning import ON_AXIS, across, turn_between, turned
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, eq=False)
-class MachineReach:
-    """The tool axes that a machine's rotary axes reach within their ranges; an `AxisLimits` like cone and ranges.
+def reach_excess(machine: Machine, axes: ArrayLike, table_from_part: ArrayLike | None = None) -> Array:
+    """Angle from each tool axis to the nearest one that the rotary axes reach within their ranges, (n,) rad.
 
-    Attributes
+    Parameters
     ----------
     machine : Machine
         Axes set by hand count like others: they too can be indexed.
-    table_from_part : (4, 4) array, optional
+    axes : (n, 3) array_like
+        In the part's frame.
+    table_from_part : (4, 4) array_like, optional
         Where the part stands on the table, all axes at zero; only how it is turned matters here.
     """
-
-    machine: Machine
-    table_from_part: ArrayLike | None = None
-
-    def __post_init__(self) -> None:
-        placement(self.table_from_part)
-
-    def allowed(self, axes: ArrayLike) -> Bools:
-        """Whether at least one solution lies within all ranges, (n,) bool.
-
-        Parameters
-        ----------
-        axes : (n, 3) array_like
-        """
-        found = rotary_angles(self.machine, axes, table_from_part=self.table_from_part)
-        return np.asarray(found.within.any(axis=1))
-
-    def excess(self, axes: ArrayLike) -> Array:
-        """Angle from each axis to the nearest reached one, (n,) rad; 0 where it is reached itself.
-
-        Parameters
-        ----------
-        axes : (n, 3) array_like
-        """
-        rows = unit(as_rows(axes, 3, "axis")) @ placement(self.table_from_part)[:3, :3].T
-        arcs = _border(self.machine)
-        away = np.min([_to_arc(rows, *arc) for arc in arcs], axis=0)
-        return np.where(self.allowed(axes), 0.0, away)
+    rows = unit(as_rows(axes, 3, "axis")) @ placement(table_from_part)[:3, :3].T
+    away = np.min([_to_arc(rows, *arc) for arc in _border(machine)], axis=0)
+    return np.where(rotary_angles(machine, axes, table_from_part=table_from_part).within.any(axis=1), 0.0, away)
 
 
 def travel_excess(machine: Machine, points: ArrayLike, axis: ArrayLike, tool_length: float = 0.0,

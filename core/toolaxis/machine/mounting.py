@@ -1,0 +1,241 @@
+"""A machine with a part on its table and a tool in its spindle: which axes it takes, at which angles, and why not."""
+
+from dataclasses import dataclass, field, replace
+from itertools import product
+from math import degrees
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
+from toolaxis.machine.limits import ROUNDING
+from toolaxis.machine.reach import reach_excess, travel_excess
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Axes that lie closer than this are one for the search, rad: steps of rotary axes below it are simply rounded.
+SAME = 3e-4
+#: Angle to the nearest allowed axis that is told where only the travel forbids one, rad: nobody knows it, it is not 0.
+_UNKNOWN = 2 * ROUNDING
+
+
+@dataclass(frozen=True, eq=False)
+class Mounting:
+    """A machine, the part on its table and the tool in its spindle; an `AxisLimits` like cone and ranges.
+
+    Attributes
+    ----------
+    machine : Machine
+    table_from_part : (4, 4) or (3,) array_like, optional
+        Where the part stands on the table, all axes at zero: a rigid motion, or the part's origin in machine
+        coordinates, mm.  Without it the part's axes are the machine's, and travel is not judged.
+    tool_length : float, optional
+        From the spindle's gauge point to the tip, mm.  Without it travel is not judged.
+    reached : (n, 3) array
+        Tips that every allowed axis must bring inside the linear travel, part's frame, mm.
+    slack : float
+        By how much they may miss it, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine is none, the place is no rigid motion, or the tool has no length.
+    """
+
+    machine: Machine
+    table_from_part: ArrayLike | None = None
+    tool_length: float | None = None
+    reached: Array = field(default_factory=lambda: np.empty((0, 3)))
+    slack: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.machine, Machine):
+            raise InvalidInput(f"machine is a {type(self.machine).__name__}: give a Machine, such as "
+                               "toolaxis.load_machine(\"dmg-dmu-60t\")")
+        placement(self.table_from_part)
+        if self.tool_length is not None and not (np.isfinite(self.tool_length) and self.tool_length >= 0):
+            raise InvalidInput(f"tool length is {self.tool_length} mm: it must be finite and zero or more")
+
+    @property
+    def judges_travel(self) -> bool:
+        """Whether place and tool length are known, so that linear travel can be judged."""
+        return self.table_from_part is not None and self.tool_length is not None
+
+    def reaching(self, points: ArrayLike, slack: float = 0.0) -> "Mounting":
+        """The same with tips that must be reached.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            mm
+        slack : float
+            By how much they may miss the travel, mm: what the points differ from the tips really used.
+        """
+        return replace(self, reached=as_rows(points, 3, "points"), slack=float(slack))
+
+    def allowed(self, axes: ArrayLike) -> Bools:
+        """Whether some solution lies within all rotary ranges and brings what must be reached inside the travel, (n,).
+
+        Parameters
+        ----------
+        axes : (n, 3) array_like
+        """
+        rows = as_rows(axes, 3, "axis")
+        found = rotary_angles(self.machine, rows, table_from_part=self.table_from_part)
+        within = found.within.copy()
+        if self.judges_travel and len(self.reached):
+            for branch in range(within.shape[1]):
+                some = np.flatnonzero(within[:, branch])
+                within[some, branch] = self._worst(found.joints[some, branch]) <= self.slack
+        return np.asarray(within.any(axis=1))
+
+    def _worst(self, rotary: Array) -> Array:
+        """By how much the tips to be reached leave the travel at rotary angles, (k,) mm."""
+        count, n = len(rotary), len(self.reached)
+        at = linear_coordinates(self.machine, np.tile(self.reached, (count, 1)), np.repeat(rotary, n, axis=0),
+                                float(self.tool_length or 0.0), self.table_from_part)
+        out = np.max([axis.excess(at[:, i]) for i, axis in enumerate(self.machine.linear)], axis=0)
+        return np.asarray(out.reshape(count, n).max(axis=1, initial=0.0))
+
+    def excess(self, axes: ArrayLike) -> Array:
+        """Angle from each axis to the nearest one within the rotary ranges, (n,) rad; 0 where it is allowed.
+
+        Where only the travel forbids an axis the angle is not known, and told as next to nothing.
+
+        Parameters
+        ----------
+        axes : (n, 3) array_like
+        """
+        away = reach_excess(self.machine, axes, self.table_from_part)
+        return np.where(self.allowed(axes), 0.0, np.maximum(away, _UNKNOWN))
+
+    def solutions(self, axis: ArrayLike) -> Array:
+        """Rotary angles at which an axis can be held, rounded to the machine's steps, (s, m) rad.
+
+        Those inside the ranges alone; the one with the least turns from zero first.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+        """
+        found = rotary_angles(self.machine, as_rows(axis, 3, "axis")[:1], table_from_part=self.table_from_part)
+        rows = np.unique(self._rounded(found.joints[0][found.within[0]]), axis=0)
+        return np.asarray(rows[np.argsort(np.abs(rows).sum(axis=1), kind="stable")])
+
+    def _rounded(self, angles: Array) -> Array:
+        """Angles in the axes' steps and inside their ranges, (s, m) rad."""
+        rows = np.array(angles, dtype=float).reshape(-1, len(self.machine.rotary))
+        for i, axis in enumerate(self.machine.rotary):
+            rows[:, i] = axis.rounded(rows[:, i])
+            rows[:, i] -= axis.increment * (rows[:, i] > axis.high + ROUNDING)
+            rows[:, i] += axis.increment * (rows[:, i] < axis.low - ROUNDING)
+        return rows
+
+    def axis_at(self, rotary: ArrayLike) -> Array:
+        """The tool axis in the part's frame at rotary angles, (3,).
+
+        Parameters
+        ----------
+        rotary : (m,) array_like
+            rad
+        """
+        return np.asarray(unit(tool_axes(self.machine, rotary)[0] @ placement(self.table_from_part)[:3, :3]))
+
+    def on_steps(self, axis: ArrayLike) -> Array:
+        """Axes around one that the machine can hold in its steps, nearest first, (k, 3); just the nearest where the
+        steps are too fine to matter.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+        """
+        one = unit(as_rows(axis, 3, "axis")[0])
+        found = rotary_angles(self.machine, one[None], table_from_part=self.table_from_part)
+        rows = []
+        for angles in found.joints[0][found.within[0]]:
+            steps = [_steps(float(value), drive.increment, drive.low, drive.high)
+                     for value, drive in zip(angles, self.machine.rotary, strict=True)]
+            rows += [self.axis_at(np.array(pair)) for pair in product(*steps)]
+        if not rows:
+            return np.empty((0, 3))
+        axes = np.array(rows)
+        away = np.asarray(angle_between(axes, one))
+        axes = axes[np.argsort(away, kind="stable")]
+        return axes[:1] if away.max() <= SAME else axes
+
+    def travel(self, points: ArrayLike, axis: ArrayLike) -> Array:
+        """How far tips leave the linear travel with an axis in the solution that does best, (3,) mm; zero inside.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            mm
+        axis : (3,) array_like
+
+        Returns
+        -------
+        (3,) array
+            Zeros where travel is not judged; infinite where the rotary axes do not get there.
+        """
+        if not self.judges_travel:
+            return np.zeros(3)
+        out = travel_excess(self.machine, points, axis, float(self.tool_length or 0.0), self.table_from_part)
+        return np.asarray(out[np.argmin(out.max(axis=1))])
+
+    def holding(self, points: ArrayLike, axis: ArrayLike) -> Array:
+        """Those of `solutions` in which all tips lie inside the linear travel, (s, m) rad.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            mm
+        axis : (3,) array_like
+        """
+        rows = self.solutions(axis)
+        if not self.judges_travel or not len(rows):
+            return rows
+        seen = self.reaching(points)
+        return np.asarray(rows[seen._worst(rows) <= 0])
+
+    def why(self, axis: ArrayLike) -> str:
+        """Why an axis is forbidden, in words; empty where it is allowed.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+        """
+        one = as_rows(axis, 3, "axis")[:1]
+        name = self.machine.name
+        away = float(reach_excess(self.machine, one, self.table_from_part)[0])
+        if away > 0:
+            return f"no position of {name} reaches the axis: it is {degrees(away):.2f} deg beyond the rotary ranges"
+        if bool(self.allowed(one)[0]):
+            return ""
+        return f"{self.out_of_travel(self.reached, one)} to reach the face"
+
+    def out_of_travel(self, points: ArrayLike, axis: ArrayLike) -> str:
+        """Which linear axis leaves its travel most, in words; empty where none does.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            mm
+        axis : (3,) array_like
+        """
+        out = self.travel(points, axis)
+        worst = int(np.argmax(out))
+        if not out[worst] > 0:
+            return ""
+        return f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by {out[worst]:.1f} mm"
+
+
+def _steps(angle: float, increment: float, low: float, high: float) -> list[float]:
+    """The steps below and above an angle that are inside a range."""
+    if increment == 0:
+        return [angle]
+    count = np.unique([np.floor(angle / increment), np.ceil(angle / increment), np.round(angle / increment)])
+    return [float(k * increment) for k in count if low - ROUNDING <= k * increment <= high + ROUNDING]
