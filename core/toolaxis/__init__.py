@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
     from toolaxis.job.judge import verify as verify
     from toolaxis.job.run import plan as plan
+    from toolaxis.machine.catalogue import load_machine as load_machine
+    from toolaxis.machine.mounting import Mounting as Mounting
     from toolaxis.orient.indexed import best_axis as best_axis
     from toolaxis.partition.regions import partition as partition
     from toolaxis.path.count import count as count
@@ -42,7 +44,7 @@ _HOME = {
     "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
-    "Cancelled": "errors",
+    "Cancelled": "errors", "load_machine": "machine.catalogue", "Mounting": "machine.mounting",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

@@ -3,20 +3,24 @@
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import degrees
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
-from toolaxis.machine.limits import ROUNDING
+from toolaxis.machine.limits import ROUNDING, AxisLimits, parse_limits
 from toolaxis.machine.reach import reach_excess, travel_excess
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
+#: A machine, its name or file, or limits of the axis and their short form.
+MachineLike: TypeAlias = Machine | AxisLimits | str
 #: Axes that lie closer than this are one for the search, rad: steps of rotary axes below it are simply rounded.
 SAME = 3e-4
 #: Angle to the nearest allowed axis that is told where only the travel forbids one, rad: nobody knows it, it is not 0.
@@ -231,6 +235,34 @@ class Mounting:
         if not out[worst] > 0:
             return ""
         return f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by {out[worst]:.1f} mm"
+
+
+def machine_limits(machine: MachineLike, table_from_part: ArrayLike | None = None) -> AxisLimits:
+    """What a machine allows, from whatever names it.
+
+    Parameters
+    ----------
+    machine : Machine, AxisLimits or str
+        A machine, its name in the library or its file, or limits of the axis and their short form.
+    table_from_part : (4, 4) or (3,) array_like, optional
+        Where the part stands on the machine's table.
+
+    Raises
+    ------
+    InvalidInput
+        When it is none of these, or a place is given for something that is no machine.
+    """
+    if isinstance(machine, str):
+        short = machine.startswith(("cone:", "rotary:"))
+        machine = parse_limits(machine) if short else load_machine(machine)
+    if isinstance(machine, Machine):
+        return Mounting(machine, table_from_part)
+    if not (hasattr(machine, "excess") and hasattr(machine, "allowed")):
+        raise InvalidInput(f"machine is a {type(machine).__name__}: give a Machine, its name or file, limits such as "
+                           "Cone or RotaryRanges, or their short form")
+    if table_from_part is not None:
+        raise InvalidInput("a place of the part on the table is given without a machine: name the machine too")
+    return machine
 
 
 def _steps(angle: float, increment: float, low: float, high: float) -> list[float]:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.distances import Found, bounded, motions
 from toolaxis.contact.placing import tips
-from toolaxis.machine.limits import AxisLimits
+from toolaxis.machine.limits import AxisLimits, refusal
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.orient.cloud import deepest
 from toolaxis.orient.contacts import Contacts, around, contacts_at
@@ -300,7 +300,7 @@ class Feasibility:
         """
         t = unit(as_rows(axis, 3, "axis")[0])
         if self.limits is not None and not self.limits.allowed(t)[0]:
-            return Witness(LIMITS, float(self.limits.excess(t)[0]))
+            return Witness(LIMITS, float(self.limits.excess(t)[0]), words=refusal(self.limits, t))
         return self.turned_away(t) or self.worst(t, self.dense)
 
     def turned_away(self, axis: Array) -> Witness | None:

@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import Cancelled, InvalidInput
-from toolaxis.machine.limits import AllOf, AxisLimits, parse_limits
+from toolaxis.machine.limits import AllOf, AxisLimits
+from toolaxis.machine.mounting import MachineLike, machine_limits
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.mounted import at_face, held, out_of_travel
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
@@ -136,34 +138,29 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
     strict, groups = (grouped(face, limit, allowance, part=part, skin=skin, surroundings=surroundings,
                               obstacles=obstacles) for limit in (kept, given))
-    return Task(Feasibility(face, tool, strict, given, limits, allowance), worth, groups, progress, direction)
+    reach = at_face(limits, face, tool)
+    return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, progress, direction)
 
 
-def combined(machine: object, limits: AxisLimits | str | None) -> AxisLimits | None:
-    """Limits from a machine (whatever answers `excess` and `allowed`, or the short form) and from further limits.
+def combined(machine: MachineLike | None, limits: AxisLimits | str | None) -> AxisLimits | None:
+    """Limits from a machine and from further limits.
 
     Parameters
     ----------
-    machine, limits : AxisLimits, str or None
+    machine : Machine, AxisLimits, str or None
+        Whatever `toolaxis.machine.mounting.machine_limits` takes.
+    limits : AxisLimits, str or None
 
     Raises
     ------
     InvalidInput
         When one of them is no limit.
     """
-    found: list[AxisLimits] = []
-    for one in (machine, limits):
-        if isinstance(one, str):
-            found.append(parse_limits(one))
-        elif one is not None:
-            if not (hasattr(one, "excess") and hasattr(one, "allowed")):
-                raise InvalidInput(f"machine is a {type(one).__name__}: give limits such as Cone or RotaryRanges, or "
-                                   "their short form")
-            found.append(one)
+    found = [machine_limits(one) for one in (machine, limits) if one is not None]
     return AllOf(tuple(found)) if len(found) > 1 else found[0] if found else None
 
 
-def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, obstacles: Obstacles = None,
+def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
@@ -176,8 +173,9 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: object = None, ob
     tool : Tool
     scallop : float
         Scallop height, mm.
-    machine : AxisLimits or str, optional
-        What the machine allows; see `toolaxis.machine.limits`.
+    machine : Machine, Mounting, AxisLimits or str, optional
+        A machine, its name or file, one with the part on its table (`toolaxis.machine.mounting`), or limits of the
+        axis and their short form.
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.
     method : str
@@ -248,6 +246,7 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
         How often each is tried, repaired between; 1 to take them as they are.
     """
     refused: list[str] = []
+    found = held(ledger, found)
     for k in range(len(found)):
         accepted = _accepted(job, ledger, found[k], refused, attempts)
         if accepted is not None:
@@ -296,7 +295,9 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
     feed = FEEDS[one.feed]
     placed = job.laid(one.axis, feed)
     path = job.traced(placed)
-    proof = prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
+    beyond = out_of_travel(job.feasibility.limits, path)
+    proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,
+                                               progress=job.progress)
     unreached = job.feasibility.unreached(one.axis)
     if unreached > 0:
         unreached = max(unreached, placed.uncut)
@@ -313,7 +314,7 @@ def _other(job: Task, one: Candidate) -> Orientation:
                        job.worth.face.area / one.length, outcome="feasible", unreached=one.unreached)
 
 
-def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machine: object = None,
+def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machine: MachineLike | None = None,
                   obstacles: Obstacles = None, feed: str | None = None, objective: str = "length", *,
                   part: Part | None = None, skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
                   tolerance: Tolerance | None = None, allowance: float = 0.0, limits: AxisLimits | str | None = None,

@@ -36,7 +36,8 @@ class Witness(NamedTuple):
     """The one place that decides against an axis.
 
     reason : index into `REASONS`;  amount : by how much the limit is missed, mm or rad;  label : of the face in the
-    way;  point : (3,) where it happens;  uv : (2,) of the contact;  distance : its component's signed distance, mm.
+    way;  point : (3,) where it happens;  uv : (2,) of the contact;  distance : its component's signed distance, mm;
+    words : what a limit itself says.
     """
 
     reason: int
@@ -45,3 +46,4 @@ class Witness(NamedTuple):
     point: Array = np.zeros(3)
     uv: Array = np.zeros(2)
     distance: float = 0.0
+    words: str = ""

@@ -259,6 +259,12 @@ class Tool:
         return found
 
     @property
+    def gauge_length(self) -> float | None:
+        """From the tip to the holder's upper end, where the spindle's gauge point is, mm; None without a holder."""
+        outline = self.outlines.get("holder")
+        return None if outline is None else float(outline[-1, 1])
+
+    @property
     def height(self) -> float:
         """Height above the tip up to which the tool is known, mm."""
         return max(self.flute_length, *(float(line[:, 1].max()) for line in self.outlines.values()), 0.0)
