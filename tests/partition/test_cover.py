@@ -1,5 +1,6 @@
 """Few axes for many sub-surfaces: the integer programme against enumeration, and the joint division."""
 
+from importlib import import_module
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -35,6 +36,19 @@ def test_twelve_sub_surfaces_and_400_axes_are_solved_exactly() -> None:
     for _ in range(4):
         greedy.append(int(np.argmin([costs[:, [*greedy, k]].min(axis=1).sum() for k in range(400)])))
     assert found.cost <= costs[:, greedy].min(axis=1).sum() + 400.0 + 1e-6
+
+
+def test_out_of_time_a_choice_is_still_made_and_its_bound_holds(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(4)
+    costs = rng.uniform(100, 900, (20, 120))
+    costs[rng.random(costs.shape) < 0.5] = np.inf
+    best = cover(costs, 5, 50.0)
+    assert best.bound == pytest.approx(best.cost, rel=1e-6)
+    monkeypatch.setattr(import_module("toolaxis.partition.cover"), "_SECONDS", 1e-6)
+    found = cover(costs, 5, 50.0)
+    assert np.isfinite(found.cost) and len(np.unique(found.axis)) <= 5
+    assert found.bound <= best.cost * (1 + 1e-9) <= found.cost * (1 + 1e-9)
+    assert found.cost == pytest.approx(costs[np.arange(20), found.axis].sum() + 50.0 * len(np.unique(found.axis)))
 
 
 def test_what_no_axis_serves_is_said() -> None:

@@ -22,7 +22,8 @@ Boxes: TypeAlias = list[list[Corners]]
 #: What one more sub-surface costs where its axis is there already, mm: retract, approach and a mark on the border.
 PIECE_COST = 20.0
 _ROUNDS = 6
-_SECONDS = 30.0
+#: Time for one choice of axes, s, and what the solver says where it proved that there is none.
+_SECONDS, _IMPOSSIBLE = 30.0, 2
 
 
 class Choice(NamedTuple):
@@ -81,12 +82,34 @@ def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) ->
                  integrality=np.concatenate([np.zeros(n), np.ones(k)]), bounds=Bounds(0, 1),
                  options={"time_limit": _SECONDS, "mip_rel_gap": 0.0})
     if found.x is None:
-        raise InvalidInput(f"no {most} axes serve all {s} sub-surfaces: allow more orientations")
-    chosen = np.empty(s, dtype=np.intp)
-    best = np.argsort(found.x[:n], kind="stable")
-    chosen[sub[best]] = axis[best]
+        chosen = None if found.status == _IMPOSSIBLE else _greedy(table, most)
+        if chosen is None:
+            why = "serve" if found.status == _IMPOSSIBLE else f"were found in {_SECONDS:g} s to serve"
+            raise InvalidInput(f"no {most} axes {why} all {s} sub-surfaces: allow more orientations")
+    else:
+        chosen = np.empty(s, dtype=np.intp)
+        best = np.argsort(found.x[:n], kind="stable")
+        chosen[sub[best]] = axis[best]
     cost = float(table[np.arange(s), chosen].sum() + index_cost * len(np.unique(chosen)))
-    return Choice(chosen, cost, min(cost, float(found.mip_dual_bound)))
+    known = float(table.min(axis=1).sum() + index_cost)  # each with its cheapest axis, and one axis at least
+    if found.mip_dual_bound is not None and np.isfinite(found.mip_dual_bound):
+        known = max(known, float(found.mip_dual_bound))
+    return Choice(chosen, cost, min(cost, known))
+
+
+def _greedy(table: Array, most: int | None) -> Index | None:
+    """Axes opened one after the other, each the one that leaves least unserved, then cheapest; None if none do."""
+    served = np.full(len(table), np.inf)
+    chosen = np.zeros(len(table), dtype=np.intp)
+    for _ in range(table.shape[1] if most is None else most):
+        left = np.minimum(served[:, None], table)
+        missing = np.isinf(left).sum(axis=0)
+        k = int(np.lexsort((np.where(np.isinf(left), 0.0, left).sum(axis=0), missing))[0])
+        better = table[:, k] < served
+        if not better.any():
+            break
+        chosen[better], served = k, np.minimum(served, table[:, k])
+    return chosen if np.isfinite(served).all() else None
 
 
 class Shared(NamedTuple):

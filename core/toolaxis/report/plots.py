@@ -154,7 +154,8 @@ def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -
     for face in plan.part.faces:
         if face.number != op.face.number or op.face.label != face.label:
             canvas.splat(*face_splats(face, seen), _PART)
-    canvas.splat(*face_splats(op.face, seen), _FACE)
+    points, directions = face_splats(op.face, seen)
+    canvas.splat(points + 4 * seen.pixel * seen.back, directions, _FACE)  # in front of the face that it is a piece of
     colours = {"cutter": _CUTTER, "shank": _SHANK, "holder": _HOLDER, "shank (not given)": _SHANK}
     for name, line in outlines.items():
         tool.splat(*revolved_splats(line, tip, axis, seen.pixel), colours[name])
