@@ -101,6 +101,21 @@ def test_plan_prints_json_on_stdout_alone(sheet: Path, tmp_path: Path, capsys: C
     assert not list(out.glob("*.png"))
 
 
+def test_other_methods_stand_beside_the_plan(sheet: Path, tmp_path: Path, capsys: Capture,
+                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("toolaxis.job.baselines.BY_SUB_SURFACE", ("roman",))
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1", "--compare", "--feedrate=600", "--rapid=6000",
+                 "--out", str(out)]) == 0
+    printed, _ = capsys.readouterr()
+    assert "the same faces by other methods" in printed and "ball:12" in printed and "600 mm/min in the cut" in printed
+    document = strict((out / "plan.json").read_text())
+    assert [row["method"] for row in document["baselines"]] == ["plan", "roman", "one", "ball"]
+    assert document["inputs"]["rapid"] == 6000 and document["seconds"] > document["length"] / 10
+    assert document["operations"][0]["seconds"] == pytest.approx(document["seconds"])
+    assert (out / "baselines.png").stat().st_size > 5_000
+
+
 def test_a_face_that_no_axis_can_reach_is_the_answer_no(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / "out"
     code = main(["plan", str(sheet), "--tool=torus:12x1", "--scallop=0.1", "--faces=1", "--limits=cone:0,0,-1,20",
