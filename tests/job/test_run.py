@@ -9,6 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.run import Target, by_axis
 from toolaxis.job.spec import chosen_faces, parse_faces
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
@@ -126,6 +127,7 @@ def test_the_number_of_orientations_is_chosen_from_their_curve(tmp_path: Path) -
     chosen = next(option for option in made.options if option.chosen)
     axes = np.unique([op.orientation.axis for op in made.operations], axis=0)
     assert len(axes) == chosen.orientations and len(made.operations) == chosen.sub_surfaces
+    assert (np.abs(np.diff(made.axes, axis=0)) > 1e-9).any(axis=1).sum() == chosen.orientations - 1
     write_plan(made, tmp_path)
     assert read_plan(tmp_path).options == made.options
 
@@ -228,6 +230,13 @@ def test_one_axis_for_faces_that_look_apart_is_not_found() -> None:
     made = ta.plan(ta.Part.from_faces(faces), "torus:12x1", 0.1, method="one")
     assert made.outcome == "incomplete" and not any(op.done for op in made.operations)
     assert all("all sub-surfaces allow" in op.orientation.reasons[0] for op in made.operations)
+
+
+def test_operations_are_carried_out_axis_by_axis() -> None:
+    face, x, y = ta.Face.from_bspline(net(1.0)), np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
+    named = zip("abcde", (x, y, x, -x, y), strict=True)
+    order = by_axis([Target(face.trimmed((), label), axis, True) for label, axis in named])
+    assert "".join(target.face.label for target in order) == "acbed"
 
 
 def test_methods_that_name_their_axes_share_none() -> None:

@@ -49,6 +49,18 @@ class Target(NamedTuple):
     shared: bool = False
 
 
+def by_axis(targets: list[Target]) -> list[Target]:
+    """Sub-surfaces in an order in which each axis is set once: that of the first one with each axis.
+
+    Parameters
+    ----------
+    targets : list of Target
+        Each with an axis.
+    """
+    names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
+    return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
+
+
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | str | None = None,
          faces: Sequence[int] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None,
@@ -231,8 +243,8 @@ class _Job:
             chosen = found[knee]
         else:
             chosen = shared(dividers, count, progress=progress)
-        return [Target(piece, axis, True) for one in chosen.regions
-                for piece, axis in zip(one.faces, one.axes, strict=True)], options
+        return by_axis([Target(piece, axis, True) for one in chosen.regions
+                        for piece, axis in zip(one.faces, one.axes, strict=True)]), options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""

@@ -131,7 +131,7 @@ class Plan:
     tool : Tool
     inputs : Inputs
     operations : tuple of Operation
-        One per sub-surface, in the order of the faces.
+        One per sub-surface, in the order of the faces; by axis where sub-surfaces share axes.
     obstacles : tuple of Part
         Further bodies that were kept clear of.
     datum : (3,) array
