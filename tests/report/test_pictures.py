@@ -89,8 +89,8 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
 
 def test_sub_surfaces_that_touch_have_different_colours() -> None:
     _, op = planned()
-    cells = [(i, j) for i in range(4) for j in range(4)]
-    pieces = [Operation(k, op.face.trimmed((np.array([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]) / 4,)),
+    cells = [(i, j) for i in range(3) for j in range(7)]
+    pieces = [Operation(k, op.face.trimmed((np.array([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]) / [3, 7],)),
                         Orientation(None)) for k, (i, j) in enumerate(cells, 1)]
     colours = coloured(pieces)
     for k, (i, j) in enumerate(cells):
