@@ -34,6 +34,7 @@ def parser() -> argparse.ArgumentParser:
     _add_inspect(commands)
     _add_plan(commands)
     _add_verify(commands)
+    _add_post(commands)
     return top
 
 
@@ -102,6 +103,24 @@ def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.verify")
+
+
+def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("post", help="write an NC program and a setup sheet from a plan",
+                              description="Write a plan's operations in the dialect of a control, with a setup sheet.")
+    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+    sub.add_argument("--dialect", required=True, metavar="NAME",
+                     help="fanuc (G68.2), haas-g268, haas-g254, siemens (CYCLE800), heidenhain (PLANE SPATIAL), "
+                          "linuxcnc-twp (G68.2), linuxcnc or iso (a work offset for each orientation), apt (CL files)")
+    sub.add_argument("--machine", metavar="NAME|FILE", help="a machine from resources/machines, a TOML or .fcm file")
+    sub.add_argument("--offset", metavar="X,Y,Z",
+                     help="the part's origin in machine coordinates, all axes at zero, mm: travel is checked with it")
+    sub.add_argument("--retract", type=float, metavar="MM",
+                     help="machine coordinate of Z at which rotary axes may turn (default: the end of its travel)")
+    sub.add_argument("--clamp", metavar="WORDS", help="words that hold the rotary axes, such as M10,M12")
+    sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.post")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,0 +1,62 @@
+"""`toolaxis post`: NC programs and CL files from a plan's folder."""
+
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+
+from toolaxis.cli.output import print_json, say
+from toolaxis.job.folder import read_plan, staged
+from toolaxis.job.posting import offset_from, posted, verdict_of
+from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.mounting import Mounting
+from toolaxis.plan.plan import Plan
+from toolaxis.post.gcode import Options
+
+
+def run(given: Namespace, asked: Callable[[], bool]) -> int:
+    """Write the program and its setup sheet into the plan's folder.
+
+    Parameters
+    ----------
+    given : argparse.Namespace
+    asked : callable
+        Whether the user asked to stop; the work takes a moment and is not stopped.
+
+    Returns
+    -------
+    int
+        0, or 1 where an operation of the plan has no axis and is not in the program.
+    """
+    folder = Path(given.folder)
+    options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
+    plan = read_plan(folder)
+    verdict = verdict_of(folder)
+    files = posted(plan, given.dialect, _mounting(given, plan), options, name=folder.resolve().name,
+                   verdict=verdict)
+    with staged(folder) as stage:
+        for name, text in files.items():
+            (stage.folder / name).write_text(text, encoding="utf-8")
+        stage.publish(clear=False)
+    missing = [op.name for op in plan.operations if not op.done]
+    if given.json:
+        print_json({"dialect": given.dialect, "files": [str(folder / name) for name in files], "verdict": verdict,
+                    "missing": missing})
+    for name in files:
+        say(f"toolaxis: {folder / name}")
+    if verdict != "passed":
+        say(f"toolaxis: warning: the plan's verdict: {verdict}")
+    if missing:
+        say(f"toolaxis: not in the program, for want of an axis: {', '.join(missing)}")
+    return 1 if missing else 0
+
+
+def _mounting(given: Namespace, plan: Plan) -> Mounting | None:
+    """The machine that was given, with the part where it was said to stand."""
+    if not given.machine:
+        return None
+    offset = offset_from(given.offset) if given.offset else None
+    return Mounting(load_machine(given.machine), offset, plan.tool.gauge_length)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in text.split(",")) if text else ()

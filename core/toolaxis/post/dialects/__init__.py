@@ -1,0 +1,1 @@
+"""The dialects: one module for each maker of controls, and `known` with all of them."""

@@ -1,0 +1,73 @@
+"""Siemens 840D sl, 828D and ONE: swivelling by CYCLE800.
+
+**Source** SINUMERIK operating manual 6FC5398-8CP40, "Swivel": axis-by-axis mode turns the coordinate system about each
+axis as the turns before have left it; Direction minus or plus takes the solution with the lower or the higher value of
+the rotary axis that is the direction reference.  SINUMERIK programming manual, CYCLE800(_FR, _TC, _ST, _MODE, X0, Y0,
+Z0, A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE): _MODE 57 is axis by axis in the order X, Y, Z.
+"""
+
+from math import degrees
+
+import numpy as np
+
+from toolaxis.post.gcode import Dialect, Lines, Program, number
+from toolaxis.post.stations import Station
+
+
+class Siemens(Dialect):
+    """CYCLE800 with mode 57, turns about X, Y, Z; it retracts Z and turns the axes itself."""
+
+    name = "siemens"
+    title = "Siemens CYCLE800"
+    suffix = ".mpf"
+    digits, angle_digits = 5, 5
+    turns = "XYZ"
+    straight = True
+    notes = ("G54 has its origin at the datum, rotary axes at zero there.",
+             "CYCLE800 takes the swivel data record without a name: one record is set up. Of the two solutions it "
+             "takes the one by _DIR, whose reference axis the machine's maker has set; the program supposes the axis "
+             "that tilts. Compare with the angles of this sheet when the axes have turned.")
+
+    def start(self, program: Program) -> Lines:
+        """Modes, swivel off with a retract along Z, straight rapids, tool, spindle."""
+        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", *self.off(), "T1 D1", "M6", "G54",
+                f"S{program.plan.inputs.spindle:.0f} M3"]
+
+    def off(self) -> Lines:
+        """Z retracts, the frame is deleted."""
+        return ["CYCLE800(1,\"0\",0,57,0,0,0,0,0,0,0,0,0,1,0,0)"]
+
+    def orient(self, program: Program, station: Station) -> Lines:
+        """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
+        return [self.comment(f"AXES {self.rotary(program, station)}"), *program.unclamp,
+                f"CYCLE800(1,\"\",0,57,0,0,0,{','.join(self.euler(station))},0,0,0,{_direction(program, station)},0,0)",
+                *program.clamp]
+
+    def leave(self, program: Program, station: Station) -> Lines:
+        """Retract along Z, frame off."""
+        return self.off()
+
+    def end(self, program: Program) -> Lines:
+        """Spindle off, end."""
+        return ["M5", "M30"]
+
+    def comment(self, text: str) -> str:
+        """A block that is a comment."""
+        return "; " + super().comment(text)[1:-1]
+
+    def tool_length(self) -> str:
+        """Nothing: D1 holds."""
+        return ""
+
+    def feed(self, point: np.ndarray[tuple[int, ...], np.dtype[np.float64]], rate: float | None) -> str:
+        """A motion at feed rate."""
+        return f"G1 {self.point(point)}" + ("" if rate is None else f" F{number(rate, 3)}")
+
+
+def _direction(program: Program, station: Station) -> int:
+    """+1 where the axis that tilts stands at the higher of its two values, -1 where at the lower."""
+    rotary = program.machine.rotary
+    tilting = max(range(len(rotary)), key=lambda k: (round(float(np.linalg.norm(rotary[k].direction[:2])), 6), -k))
+    own = degrees(float(station.angles[tilting]))
+    other = [degrees(float(row[tilting])) for row in station.others]
+    return -1 if any(value > own + 1e-6 for value in other) or (not other and own < 0) else 1

@@ -1,0 +1,144 @@
+"""The setup sheet: what the operator must know before the program starts, as Markdown."""
+
+from collections.abc import Sequence
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.machine.kinematics import linear_coordinates, placement
+from toolaxis.plan.plan import Plan
+from toolaxis.post.gcode import Dialect, Program, number
+from toolaxis.post.stations import Station
+
+Array = NDArray[np.float64]
+
+
+def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "not judged yet") -> str:
+    """The setup sheet of a program.
+
+    Parameters
+    ----------
+    program : Program
+        From `program_of` with the same dialect.
+    dialect : Dialect
+    file : str
+        Name of the program's file.
+    verdict : str
+        What `toolaxis verify` said of the plan.
+
+    Returns
+    -------
+    str
+        Markdown; lengths in mm, angles in degrees.
+    """
+    plan = program.plan
+    parts = [f"# Setup sheet: {program.name}", _general(program, dialect, file, verdict), "## Tool", _tool(plan),
+             "## Work coordinate system", _work(program, dialect),
+             "## Orientations", _orientations(program, dialect), "## Operations", _operations(program, dialect),
+             "## What to mind", "\n".join(f"- {note}" for note in _notes(program, dialect)), ""]
+    return "\n\n".join(parts)
+
+
+def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str:
+    missing = [op.name for op in program.plan.operations if op.path is None]
+    machine = program.machine
+    rows = [["program", file], ["control", dialect.title], ["machine", f"{machine.name} ({machine.chain})"],
+            ["part", program.plan.part.source or "-"], ["verdict of the plan", verdict],
+            ["not checked", ", ".join(program.plan.not_checked)]]
+    if missing:
+        rows.append(["NOT IN THE PROGRAM", f"no axis was found for {', '.join(missing)}"])
+    return _table(["", ""], rows)
+
+
+def _tool(plan: Plan) -> str:
+    tool, inputs = plan.tool, plan.inputs
+    stickout = "not given" if tool.stickout is None else f"{tool.stickout:.3f}"
+    rows = [["T1", tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}", f"{tool.flute_length:.3f}",
+             stickout, "yes" if "holder" in tool.outlines else "not given", f"{inputs.spindle:.0f}",
+             f"{inputs.feedrate:.0f}"]]
+    return _table(["tool", "name", "diameter", "corner radius", "cutting edge", "stick-out", "holder", "rev/min",
+                   "mm/min"], rows) + "\n\nThe tool length is measured to the tip, the lowest point on the axis."
+
+
+def _vector(values: Array, digits: int) -> str:
+    return ", ".join(number(value, digits) for value in values)
+
+
+def _work(program: Program, dialect: Dialect) -> str:
+    where = program.mounting.table_from_part
+    turn = placement(where)[:3, :3]
+    lines = [f"Origin: the datum of the plan, at {_vector(program.plan.datum, 4)} in the part's frame.",
+             f"X, Y, Z along the machine's axes with all rotary axes at zero: {_vector(turn[0], 6)}; "
+             f"{_vector(turn[1], 6)}; {_vector(turn[2], 6)} in the part's frame."]
+    if where is None:
+        lines.append("Where the part stands on the table was not given: travel was not checked.")
+    elif len(dialect.offsets) == 1:
+        datum = (placement(where) @ np.append(program.plan.datum, 1.0))[:3]
+        lines.append(f"The datum lies at {_vector(datum, 4)} in machine coordinates.")
+    return "\n\n".join(lines)
+
+
+def _angles(program: Program, dialect: Dialect, angles: Array) -> str:
+    words = [f"{axis.name}{number(degrees(angle), dialect.angle_digits)}"
+             for axis, angle in zip(program.machine.rotary, angles, strict=True)]
+    return " ".join(words) or "-"
+
+
+def _orientations(program: Program, dialect: Dialect) -> str:
+    rows = []
+    for number_of in sorted({station.orientation for station in program.stations}):
+        station = next(one for one in program.stations if one.orientation == number_of)
+        others = [_angles(program, dialect, row) + ("" if ok else " (out of range)")
+                  for row, ok in zip(station.others, station.reachable, strict=True)]
+        offset = dialect.offsets[number_of if len(dialect.offsets) > 1 else 0]
+        rows.append([str(number_of + 1), offset, _angles(program, dialect, station.angles), "; ".join(others) or "none",
+                     _plane(dialect, station), _vector(station.matrix[:, 0], 6), _vector(station.matrix[:, 2], 6),
+                     _origin(program, station)])
+    return _table(["no.", "offset", "axes", "other solution", "plane", "plane's X", "plane's Z",
+                   "datum in the machine"], rows)
+
+
+def _plane(dialect: Dialect, station: Station) -> str:
+    if not station.written:
+        return "-"
+    return ", ".join(f"{name} {number(angle, dialect.angle_digits)}"
+                     for name, angle in zip(dialect.turns, station.written, strict=True))
+
+
+def _origin(program: Program, station: Station) -> str:
+    """Linear coordinates with the spindle's gauge point at the datum."""
+    where = program.mounting.table_from_part
+    if where is None or station.tilt:
+        return "not known"
+    at = linear_coordinates(program.machine, program.plan.datum, station.angles, 0.0, where)
+    return _vector(at[0], 4)
+
+
+def _operations(program: Program, dialect: Dialect) -> str:
+    inputs, rows = program.plan.inputs, []
+    for station in program.stations:
+        op, seconds = station.operation, station.operation.seconds(program.plan.inputs.feedrate, inputs.rapid)
+        offset = dialect.offsets[station.orientation if len(dialect.offsets) > 1 else 0]
+        rows.append([op.name, str(station.orientation + 1), offset, str(op.path.passes if op.path else 0),
+                     _vector(station.tips[0], 3), number(float(station.tips[:, 2].min()), 3), f"{seconds / 60:.1f}"])
+    return _table(["operation", "orientation", "offset", "passes", "first point in the plane", "lowest Z", "min"], rows)
+
+
+def _notes(program: Program, dialect: Dialect) -> list[str]:
+    notes = list(dialect.notes)
+    if program.retract is not None and dialect.told_retract:
+        notes.append(f"Rotary axes turn with Z at {program.retract:.3f} in machine coordinates: compare with the "
+                     "machine's own travel.")
+    if any(station.tilt for station in program.stations):
+        notes.append("The spindle is tilted: each operation begins with one straight motion from the retracted place "
+                     "to its first point. Whether that is free of fixtures is not checked.")
+    if program.machine.assumed:
+        notes.append(f"Assumed in the machine's file: {', '.join(program.machine.assumed)}.")
+    notes.append(f"Points are rounded to {0.5 * 10 ** -dialect.digits:g} mm in each coordinate.")
+    return notes

@@ -1,0 +1,218 @@
+"""Stations: where the machine stands for each operation, and the operation's path in the plane of that station."""
+
+from dataclasses import dataclass, replace
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.kinematics import placement, rotary_angles
+from toolaxis.machine.mounting import Mounting
+from toolaxis.numeric.vectors import angle_between, rotation, unit
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Angle within which an operation's axis must stand still, rad.
+FIXED = 1e-6
+#: Length, mm, by which a link may miss the tool axis, or the crossing height, and still be rapid.
+STRAIGHT = 1e-5
+#: Shares of the gouge tolerance and of the least clearance that holding the axis in the machine's steps may take up.
+_GOUGE_SHARE, _CLEARANCE_SHARE = 0.5, 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """One operation as a machine carries it out with its rotary axes standing still.
+
+    Attributes
+    ----------
+    operation : Operation
+    angles : (m,) array
+        Where the rotary axes stand, in the order of `Machine.rotary`, in the machine's steps and the dialect's digits,
+        rad.
+    others : (s, m) array
+        The other solutions for the same axis, rad, whether within the ranges or not.
+    reachable : (s,) array of bool
+        Which of those are within the ranges.
+    matrix : (3, 3) array
+        The plane's axes as columns, in the directions of the work coordinate system: the machine's axes, on the table
+        with all axes at zero.  After `Dialect.placed` it is the plane that the program's own words give.
+    written : tuple of float
+        Angles of the plane as they stand in the program, degrees; empty where the program holds none.
+    tips : (n, 3) array
+        Tool tips in the plane, from the plan's datum, mm.
+    rapid : (n,) array of bool
+        Whether the motion that arrives at each tip is rapid: a link along the tool axis, or above everything.
+    orientation : int
+        Number from 0 of the rotary angles among the different ones of a program.
+    tilt : float
+        Angle between the spindle and the machine's Z axis, rad; 0 unless a head is tilted.
+    """
+
+    operation: Operation
+    angles: Array
+    others: Array
+    reachable: Bools
+    matrix: Array
+    written: tuple[float, ...]
+    tips: Array
+    rapid: Bools
+    orientation: int
+    tilt: float
+
+
+def stations(plan: Plan, mounting: Mounting, angle_digits: int) -> tuple[Station, ...]:
+    """The stations of all operations of a plan that have an axis, in their order.
+
+    The solution of each is the one with the least turn from the one before.
+
+    Parameters
+    ----------
+    plan : Plan
+    mounting : Mounting
+        The machine, and where the part stands on its table.
+    angle_digits : int
+        Digits after the point in which rotary angles can be written, in degrees.
+
+    Raises
+    ------
+    InvalidInput
+        When an axis is out of reach or held too far from where the passes were made for, a path leaves the travel, or
+        an operation has no fixed axis.
+    """
+    found: list[Station] = []
+    known: list[Array] = []
+    stand = np.zeros(len(mounting.machine.rotary))
+    for op in plan.operations:
+        if op.path is None or op.frame is None:
+            continue
+        stand = _nearest(_held(op, plan, mounting, angle_digits), stand, mounting.machine)
+        number = next((k for k, one in enumerate(known) if np.abs(one - stand).max(initial=0.0) < FIXED), len(known))
+        known += [stand] if number == len(known) else []
+        found.append(_station(op, mounting, stand, number))
+    if not found:
+        raise InvalidInput("the plan has no operation with an axis: there is nothing to post")
+    return tuple(found)
+
+
+def turned_table(machine: Machine, angles: Array) -> Array:
+    """The machine's axes as the turned table sees them, as columns, (3, 3).
+
+    Parameters
+    ----------
+    machine : Machine
+    angles : (m,) array
+        rad
+    """
+    matrix = np.eye(3)
+    for axis, angle in zip(machine.table, angles, strict=False):
+        matrix = matrix @ rotation(axis.direction, float(angle))
+    return matrix
+
+
+def in_plane(station: Station, mounting: Mounting, matrix: Array, datum: Array) -> Station:
+    """A station with its path in another plane.
+
+    Parameters
+    ----------
+    station : Station
+    mounting : Mounting
+    matrix : (3, 3) array
+        The plane's axes as columns in the work coordinate system's directions.
+    datum : (3,) array
+        mm, part's frame.
+    """
+    path = station.operation.path
+    assert path is not None
+    turn = placement(mounting.table_from_part)[:3, :3]
+    return replace(station, matrix=matrix, tips=(path.cl - datum) @ turn.T @ matrix)
+
+
+def _held(op: Operation, plan: Plan, mounting: Mounting, digits: int) -> Array:
+    """Rotary angles in steps and digits at which an operation can be carried out, (s, m) rad."""
+    assert op.path is not None
+    axis = unit(op.path.axis.mean(axis=0))
+    away = float(np.max(angle_between(op.path.axis, axis)))
+    if away > FIXED:
+        raise InvalidInput(f"{op.name}: the tool axis turns by {degrees(away):.4f} deg along the path: only operations "
+                           "with a fixed axis can be posted so; use --dialect apt")
+    rows = mounting.solutions(axis)
+    if not len(rows):
+        why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
+        raise InvalidInput(f"{op.name}: {why}; plan for this machine, or post for another")
+    rows = mounting.holding(op.path.cl, axis)
+    if not len(rows):
+        raise InvalidInput(f"{op.name}: {mounting.out_of_travel(op.path.cl, axis)}; move the part on the table")
+    return _close(_written(rows, mounting.machine, digits), op, plan, mounting)
+
+
+def _written(rows: Array, machine: Machine, digits: int) -> Array:
+    """Angles as a program writes them, rad; those of an axis without steps are rounded to the digits."""
+    shown = np.round(np.degrees(rows), digits)
+    for i, axis in enumerate(machine.rotary):
+        lost = np.abs(np.radians(shown[:, i]) - rows[:, i]).max()
+        if axis.increment > 0 and lost > 1e-9:
+            raise InvalidInput(f"increment of axis {axis.name} is {degrees(axis.increment):g} deg: its steps cannot be "
+                               f"written with {digits} digits after the point in this dialect")
+    return np.radians(shown)
+
+
+def _close(rows: Array, op: Operation, plan: Plan, mounting: Mounting) -> Array:
+    """The angles at which the tool does not lean away from the axis that the passes were made and checked for."""
+    assert op.path is not None
+    tolerance, tool = plan.inputs.tolerance, plan.tool
+    least = min(tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)
+    leans = np.array([float(np.max(angle_between(op.path.axis, mounting.axis_at(row)))) for row in rows])
+    shifts, swings = leans * 2 * tool.radius, leans * tool.height
+    good = (shifts <= _GOUGE_SHARE * tolerance.gouge) & (swings <= _CLEARANCE_SHARE * least)
+    if not good.any():
+        away, moved = float(leans.min()), float(np.maximum(shifts, swings).min())
+        raise InvalidInput(f"{op.name}: the machine holds the axis {degrees(away):.4f} deg from the one that the "
+                           f"passes were made for, which moves the tool by {moved:.4f} mm: make the plan "
+                           "with --machine, so that its axes are ones that the machine can hold")
+    return np.asarray(rows[good])
+
+
+def _nearest(rows: Array, stand: Array, machine: Machine) -> Array:
+    """The solution with the least largest turn from where the axes stand, by whole turns where they turn further."""
+    near = np.array(rows)
+    for i, axis in enumerate(machine.rotary):
+        near[:, i], _ = axis.within(rows[:, i], stand[i])
+    turns = np.abs(near - stand).max(axis=1, initial=0.0)
+    return np.asarray(near[int(np.argmin(np.round(turns, 9)))])
+
+
+def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> Station:
+    assert op.path is not None and op.frame is not None
+    machine = mounting.machine
+    turn = placement(mounting.table_from_part)[:3, :3]
+    z = turn @ mounting.axis_at(angles)
+    x = turn @ op.frame.x
+    x = unit(x - (x @ z) * z)
+    matrix = np.stack([x, np.cross(z, x), z], axis=1)
+    both = rotary_angles(machine, op.path.axis[:1], near=angles, table_from_part=mounting.table_from_part)
+    apart = np.abs(both.joints[0] - angles).max(axis=1, initial=0.0) > 2e-2
+    spindle = turned_table(machine, angles).T @ z
+    tilt = float(angle_between(spindle, np.array([0.0, 0.0, 1.0])))
+    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl,
+                   _rapid(op), number, tilt if tilt > FIXED else 0.0)
+
+
+def _rapid(op: Operation) -> Bools:
+    """Which motions are rapid: links along the axis, and those across at the crossing height, above everything."""
+    path = op.path
+    assert path is not None
+    axis = unit(path.axis.mean(axis=0))
+    steps = np.diff(path.cl, axis=0, prepend=path.cl[:1])
+    heights = path.cl @ axis
+    along = np.linalg.norm(steps - (steps @ axis)[:, None] * axis, axis=1) <= STRAIGHT
+    low = float(heights[path.kind != Motion.LINK].max(initial=-np.inf))
+    above = heights >= max(float(heights.max()) - STRAIGHT, low + STRAIGHT)
+    both = above & np.concatenate([[True], above[:-1]])
+    return np.asarray((path.kind == Motion.LINK) & (along | both))
