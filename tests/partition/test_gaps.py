@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.partition.gaps import nearness, reach_along_normal, widest
+from toolaxis.partition.gaps import ahead, nearness, reach_along_normal, widest
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -67,3 +67,16 @@ def test_every_cutter_in_contact_reaches_its_diameter_along_the_normal(tool):
 
 def test_short_flutes_reach_less():
     assert reach_along_normal(Tool.torus(10, 1, flute_length=6)) == pytest.approx(5.0)
+
+
+def test_ahead_is_the_distance_along_the_normal_and_not_the_least_one():
+    c, s = np.cos(0.3), np.sin(0.3)
+    lean = sheet(0.0).transformed([[c, 0, -s, 0], [0, 1, 0, 0], [s, 0, c, 5], [0, 0, 0, 1.0]])
+    found = ahead(sheet(0.0), [lean])
+    assert found is not None and found.straight
+    assert found.distance == pytest.approx(5.0, abs=1e-6)
+    assert nearness(sheet(0.0), [lean]).distance == pytest.approx(5.0, abs=1e-6)
+    turned = ahead(lean.transformed(np.diag([1.0, 1, 1, 1])), [sheet(0.0)])
+    assert turned is None  # its normals point away
+    back = ahead(sheet(0.0, flip=True), [lean])
+    assert back is None

@@ -10,7 +10,8 @@ from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
 from toolaxis.job.spec import Spec
 from toolaxis.machine.limits import parse_limits
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Inputs, Plan, outcome_of
 from toolaxis.progress import Progress
 
 _LATER = {"machine": ("choosing a machine by name", "give its axis range with --limits"),
@@ -94,13 +95,21 @@ def _told(made: Plan, given: Namespace) -> int:
         print_table(plan_table(made))
         if made.baselines:
             print_table(baselines_table(made))
+    if made.blades is not None:
+        from toolaxis.report.blades import blades_lines
+
+        for line in blades_lines(made):
+            say(f"toolaxis: {line}")
     for op in made.operations:
-        if not op.done:
+        if made.blades is not None and op.number in made.blades.copies:
+            continue
+        if not op.done and outcome_of([op], made.blades) == "complete":
+            say(f"toolaxis: face {op.face.label}: left to clean-up: {op.orientation.reasons[0]}")
+        elif not op.done:
             for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
-        elif op.orientation.unreached > 0:
-            say(f"toolaxis: face {op.face.label}: {100 * op.orientation.unreached:.1f} % of the area lies at walls and "
-                "is left to clean-up")
+        else:
+            _left_over(op)
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
@@ -108,3 +117,17 @@ def _told(made: Plan, given: Namespace) -> int:
         say("toolaxis: stopped before all faces were done; plan.json holds those that were")
         return 130
     return 0 if made.outcome == "complete" else 1
+
+
+def _left_over(op: Operation) -> None:
+    """Say what an operation leaves to a clean-up tool."""
+    found, zones = op.orientation, [zone for zone in op.zones if zone.at_wall]
+    if found.unreached > 0:
+        count = f", {len(zones)} {'zone' if len(zones) == 1 else 'zones'}" if zones else ""
+        elsewhere = sum(zone.elsewhere for zone in zones)
+        also = f"; {elsewhere:.1f} mm2 of that are machined by other operations" if elsewhere > 0.05 else ""
+        say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
+            f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
+    for why in found.reasons:
+        if why.startswith("undercut"):
+            say(f"toolaxis: warning: face {op.face.label}: {why}")

@@ -20,7 +20,7 @@ from toolaxis.orient.worth import FEEDS
 from toolaxis.path.layout import Layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 
@@ -190,5 +190,5 @@ def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
     operations = tuple(chosen.get(op.number, op) for op in plan.operations)
     outcome = plan.outcome
     if outcome != "cancelled":
-        outcome = "complete" if all(op.done for op in operations) else "incomplete"
+        outcome = outcome_of(operations, plan.blades)
     return replace(plan, operations=operations, outcome=outcome)

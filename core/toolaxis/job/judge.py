@@ -9,7 +9,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import Clearance
@@ -91,7 +91,7 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     plan : Plan
     verdict : Verdict
     """
-    missing = [op.name for op in plan.operations if op.path is None]
+    missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing)],
             "not_checked": list(plan.not_checked),

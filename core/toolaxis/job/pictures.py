@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.job.axes import search_task
+from toolaxis.job.rooms import tightest
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.ledger import Ledger
@@ -32,6 +33,7 @@ from toolaxis.report.plots import (
     widths_picture,
 )
 from toolaxis.report.raster import mean_direction
+from toolaxis.report.tightest import tightest_picture
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.verdict import Verdict
@@ -45,6 +47,9 @@ _POINTS = 60
 
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
     """Draw the whole part where it has several operations, and every operation: passes and tool, axes, strip widths.
+
+    The tool is drawn once more where it comes nearest to what it must keep clear of; turned copies of operations are
+    drawn in the picture of the whole part only.
 
     A choice between numbers of orientations is drawn as their curve, a comparison of methods as bars.
 
@@ -63,10 +68,15 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
         options_picture(plan.options).savefig(folder / "orientations.png", dpi=DPI)
     if plan.baselines:
         baselines_picture(plan.baselines).savefig(folder / "baselines.png", dpi=DPI)
-    done = [op for op in plan.operations if op.done]
+    closest = tightest(plan, progress)
+    if closest is not None:
+        tightest_picture(plan, closest.operation, closest).savefig(folder / "tightest.png", dpi=DPI)
+    copies = {} if plan.blades is None else plan.blades.copies
+    originals = [op for op in plan.operations if op.number not in copies]
+    done = [op for op in originals if op.done]
     largest = max(done, key=lambda op: op.face.area, default=None)
-    for index, op in enumerate(plan.operations):
-        progress.report("drawing", index, len(plan.operations))
+    for index, op in enumerate(originals):
+        progress.report("drawing", index, len(originals))
         job = search_task(plan, op, Progress(None, progress.cancelled))
         if op.orientation.map is not None:
             marks = {**_marks(op), **_baselines(plan, job, op is largest)}

@@ -14,11 +14,14 @@ from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
 from toolaxis.job.abreast import abreast, checked_workers
 from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.baselines import compared
+from toolaxis.job.pattern import Pattern, followed, recognised, shared_out, spread_out, with_refused
+from toolaxis.job.rooms import with_rooms
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
+from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits, parse_limits, written
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.orient.indexed import Task, best_axis, combined
+from toolaxis.orient.indexed import METHODS, Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.orient.together import together
 from toolaxis.partition.cover import shared, trade
@@ -146,7 +149,13 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: AxisLimits | s
     job = _Job(loaded, cutter, inputs, combined(limits, None), bodies, as_rows(datum, 3, "datum")[0], regions,
                orientations, checked_workers(workers))
     with heard(progress):
-        made = job.by(method).carried_out(targets, progress)
+        if faces is None and not loaded.selected and method in METHODS:
+            progress.report("looking for blades", 0, 1)
+            pattern, refusal = recognised(loaded)
+            if pattern is not None:
+                return job.bladed(pattern, progress)
+            job = replace(job, part=loaded.with_warnings(*refusal))
+        made = zoned(job.by(method).carried_out(targets, progress), job.workers, progress)
         if not compare or made.outcome == "cancelled":
             return made
         whole = replace(job, regions=None, orientations=None)
@@ -174,11 +183,26 @@ class _Job:
     regions: int | str | None = None
     orientations: int | str | None = None
     workers: int = 1
+    whole: tuple[Face, ...] = ()
 
     def by(self, method: str) -> "_Job":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
         return replace(self, inputs=replace(self.inputs, method=method),
                        tool=self.tool.with_ball_end() if method == "ball" else self.tool)
+
+    def bladed(self, pattern: Pattern, progress: Progress) -> Plan:
+        """The plan of a part with blades: one is planned, what is done there is turned to the others."""
+        share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
+        apart = pattern.blades.apart(self.part, pattern.first[0].number)
+        one = replace(self, part=apart, regions={None: "auto", 1: None}.get(self.regions, self.regions),
+                      whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
+        faces = [piece for face in share.divided for piece in split_at_kinks(face)]
+        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share.refused)
+        found = spread_out(pattern, first, _Planner(self), progress)
+        if found.outcome != "cancelled" and pattern.rest:
+            faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]
+            found = followed(found, zoned(self.carried_out(faces, progress), self.workers, progress))
+        return found if found.outcome == "cancelled" else with_rooms(found, progress)
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
@@ -188,6 +212,7 @@ class _Job:
                 targets, options = self._sharing(faces, progress)
             else:
                 targets = self._divided(faces, progress)
+            targets += [Target(face) for face in self.whole]
             if self.inputs.method == "one":
                 return self._alike(targets, progress)
         except Cancelled:
@@ -291,3 +316,23 @@ class _Job:
         return search_task(face, self.tool, self.inputs.scallop, self.limits, self._obstacles,
                            objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
                            tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _Planner:
+    """What plans a face of a part whose blades are told apart."""
+
+    job: _Job
+
+    @property
+    def workers(self) -> int:
+        """Processes to work with."""
+        return self.job.workers
+
+    def task(self, part: Part, face: Face, progress: Progress) -> Task:
+        """What decides about an axis."""
+        return replace(self.job, part=part)._task(face, progress)
+
+    def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
+        """The operation, its axis searched."""
+        return replace(replace(self.job, part=part)._operation(Target(face), (number - 1, number), progress), face=face)

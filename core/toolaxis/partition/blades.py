@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 SAMPLES = 9
 #: A face is of revolution where its normals pass the axis within this share of their distance from it.
 MEETS = 2e-3
+#: Two lines are met by all normals where the second singular value is below this share of the first.
+_ROUND = 1e-6
 #: Faces are alike within this share of their area, and in place within this share of the part's diagonal.
 ALIKE, IN_PLACE = 0.03, 0.01
 #: The flow turns outwards where the edges' distances from the axis differ by more than this share.
@@ -200,7 +202,10 @@ def _met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array
         area = np.concatenate([np.full(len(samples.points[k]), samples.area[k]) for k in numbers])
         middle, size = p.mean(axis=0), float(np.ptp(p, axis=0).max())
         rows = np.concatenate([np.cross((p - middle) / size, n), n], axis=1) * np.sqrt(area)[:, None]
-        line = np.linalg.svd(rows, full_matrices=False)[2][-1]
+        _, values, lines = np.linalg.svd(rows, full_matrices=False)
+        line = lines[-1]
+        if values[-2] <= _ROUND * values[0]:  # cylinders alone: the line at infinity across them is met too
+            line = np.linalg.svd(lines[-2:, :3].T)[2][0] @ lines[-2:]
         length = max(float(np.linalg.norm(line[:3])), 1e-9)
         d, point = line[:3] / length, middle + size * np.cross(line[:3], line[3:]) / length**2
         kept = [k for k in numbers if _of_revolution(samples, k, point, d)]

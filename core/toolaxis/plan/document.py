@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
+from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
@@ -162,6 +163,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "orientations": plan.orientations,
         "seconds": plan.seconds,
         "baselines": [asdict(one) for one in plan.baselines],
+        "blades": blades_document(plan.blades),
         "options": [asdict(option) for option in plan.options],
         "operations": [_operation_document(op, plan, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
@@ -204,4 +206,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),
                 np.array(document["datum"], dtype=float), document["outcome"],
                 tuple(Option(**option) for option in document.get("options", ())),
-                tuple(Baseline(**one) for one in document.get("baselines", ())))
+                tuple(Baseline(**one) for one in document.get("baselines", ())),
+                blades_from(document.get("blades"), len(operations)))

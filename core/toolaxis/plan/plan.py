@@ -1,5 +1,6 @@
 """The plan: what was asked for, and the operations that answer it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 
@@ -121,6 +122,19 @@ class Option:
     chosen: bool
 
 
+def outcome_of(operations: Sequence[Operation], blades: Blades | None = None) -> str:
+    """What operations that were all tried come to: "complete" or "incomplete".
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+    blades : Blades, optional
+        Their fillets need no axis: roots are what a clean-up tool is for, and the plan says how much of them stays.
+    """
+    needed = [op for op in operations if blades is None or blades.side_of(op.face.number) != "fillet"]
+    return "complete" if all(op.done for op in needed) else "incomplete"
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """Operations that machine faces of a part, each with a fixed axis.
@@ -137,7 +151,8 @@ class Plan:
     datum : (3,) array
         Origin of every work coordinate system, mm.
     outcome : str
-        "complete" (every sub-surface has an axis), "incomplete" (one or more have none) or "cancelled".
+        "complete" (every sub-surface has an axis, fillets at the roots of blades apart), "incomplete" (one or more have
+        none) or "cancelled".
     options : tuple of Option
         Cutting length against the number of different axes, where that was asked for.
     baselines : tuple of Baseline

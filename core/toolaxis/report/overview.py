@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
 from toolaxis.report.plots import (
     BLUE,
@@ -48,14 +48,16 @@ _COLOURS = tuple(_pale(name) for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, B
 def overview_picture(plan: Plan) -> Figure:
     """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
 
-    Neighbours have different colours; a sub-surface without an axis is grey and says so.
+    Neighbours have different colours; a sub-surface without an axis is grey and says so.  Turned copies have the colour
+    of their original, and neither arrow nor passes.
 
     Parameters
     ----------
     plan : Plan
         With at least one operation.
     """
-    operations = plan.operations
+    copies = {} if plan.blades is None else plan.blades.copies
+    operations = tuple(op for op in plan.operations if op.number not in copies)
     normals = np.array([mean_direction(op.face.normal(op.face.grid(12, 12))) for op in operations])
     middle = mean_direction(normals)
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
@@ -65,24 +67,26 @@ def overview_picture(plan: Plan) -> Figure:
                       for op, root in zip(operations, roots, strict=True)])
     seen = camera(*_view(middle), np.concatenate([corners, roots, heads]), pixels=1100)
     canvas = Canvas(seen)
-    whole = {op.face.number for op in operations}
+    whole = {op.face.number for op in plan.operations}
     for face in plan.part.faces:
         if face.number not in whole:
             canvas.splat(*face_splats(face, seen), _PART)
-    for op, colour in zip(operations, coloured(operations), strict=True):
-        canvas.splat(*face_splats(op.face, seen), _COLOURS[colour] if op.done else _NO_AXIS)
+    colours = {op.number: _COLOURS[k] for op, k in zip(operations, coloured(operations), strict=True)}
+    for op in plan.operations:
+        canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
-    for op in operations:
+    for op in plan.operations:
         hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
     for op, root, head in zip(operations, roots, heads, strict=True):
         _passes(ax, canvas, op)
-        _arrow(ax, op, *seen.project(np.array([root, head]))[:, :2])
-    done = sum(op.done for op in operations)
-    ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(operations)} sub-surfaces, "
-                 f"different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
+        if op.done or outcome_of([op], plan.blades) == "incomplete":
+            _arrow(ax, op, *seen.project(np.array([root, head]))[:, :2])
+    done = sum(op.done for op in plan.operations)
+    ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
+                 f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
     if any(op.zones for op in operations):
         ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
     scale_bar(ax, seen)

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan, outcome_of
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -79,7 +79,13 @@ def plan_table(plan: Plan) -> Table:
     plan : Plan
         Gouge is an upper bound, clearance a lower one.
     """
-    rows = [[*_operation_row(op), *_links(op, plan.inputs), op.orientation.outcome] for op in plan.operations]
+    blades = plan.blades
+    rows = [[*_operation_row(op), *_links(op, plan.inputs), op.orientation.outcome] for op in plan.operations
+            if blades is None or op.number not in blades.copies]
+    if blades is not None:
+        shown = [op for op in plan.operations if op.number not in blades.copies]
+        rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
+                for row, op in zip(rows, shown, strict=True)]
     title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
              f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, different axes {plan.orientations}")
     columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("outcome", "left")]
@@ -168,6 +174,9 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     """
     judged = {op.name: op for op in verdict.operations}
     rows = [_verdict_row(op, judged.get(op.name)) for op in plan.operations]
+    for row, op in zip(rows, plan.operations, strict=True):
+        if not op.done and outcome_of([op], plan.blades) == "complete":
+            row[-1] = "clean-up"
     columns = [*_COLUMNS, ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"), ("verdict", "left")]
     return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, measured by material removal",
                  columns, rows)

@@ -1,0 +1,172 @@
+"""One blade planned, its operations turned to the others and proven there; broken patterns are refused with reasons."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.pattern import recognised, too_narrow
+from toolaxis.job.rooms import tightest
+from toolaxis.plan.document import plan_document
+from toolaxis.plan.plan import Plan
+from toolaxis.plan.schema import check
+from toolaxis.report.blades import blades_lines
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+
+COUNT = 4
+
+
+def turn(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+
+
+def sides(how: str = "") -> list[Face]:
+    """The two sides of a thin blade that stands along +x, parametrised as asked for."""
+    z, x = np.meshgrid(np.linspace(-6, 6, 5), np.linspace(20, 30, 4), indexing="ij")
+    bend = 1 - (z / 6) ** 2
+    made = []
+    for bulge, flip in ((2.0, False), (0.5, True)):
+        points = np.dstack([x, bulge * bend + 0.02 * (x - 20) * z, z])
+        if "swapped" in how:
+            points, flip = points.swapaxes(0, 1), not flip
+        if "reversed" in how:
+            points, flip = points[::-1], not flip
+        made.append(Face.from_bspline(points, flip=flip))
+    return made
+
+
+def wheel(count: int = COUNT, change: tuple[str, ...] = ()) -> Part:
+    """Blades around a cylinder, some with other parameters, missing or moved."""
+    hub = Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
+    faces = [hub]
+    for k in range(count):
+        how = change[k] if k < len(change) else ""
+        if how == "missing":
+            continue
+        shift = np.eye(4)
+        shift[2, 3] = 5.0 if how == "moved" else 0.0
+        faces += [face.transformed(turn(2 * np.pi * k / count) @ shift) for face in sides(how)]
+    return Part.from_faces(faces)
+
+
+def ring(count: int = 6) -> Part:
+    """Lenses whose edges touch those of the next ones."""
+    half = 25 * np.tan(np.pi / count)
+    y, z = np.meshgrid(np.linspace(-half, half, 5), np.linspace(-5, 5, 4), indexing="ij")
+    bend = 1 - (y / half) ** 2
+    lens = [Face.from_bspline(np.dstack([25 + bulge * bend, y, z]), flip=flip)
+            for bulge, flip in ((2.0, False), (-1.0, True))]
+    hub = Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
+    return Part.from_faces([hub, *(face.transformed(turn(2 * np.pi * k / count)) for k in range(count)
+                                   for face in lens)])
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    tool = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
+    return ta.plan(wheel(change=("", "swapped", "reversed")), tool, 0.15, regions=1)
+
+
+def test_every_blade_is_machined_as_the_first(plan: Plan) -> None:
+    assert plan.outcome == "complete" and plan.blades is not None
+    assert len(plan.operations) == 2 * COUNT
+    assert plan.blades.copies == {n: 1 + (n - 1) % 2 for n in range(3, 2 * COUNT + 1)}
+    assert plan.blades.searched == ()
+    names = [plan.blades.side_of(op.face.number) for op in plan.operations]
+    assert names == ["suction", "pressure"] * COUNT
+    for op in plan.operations[2:]:
+        k, source = (op.number - 1) // 2, plan.operations[(op.number - 1) % 2]
+        assert op.path is not None and source.path is not None and op.frame is not None
+        matrix = turn(-2 * np.pi * k / COUNT if plan.blades.axis[2] < 0 else 2 * np.pi * k / COUNT)
+        assert op.path.cl == pytest.approx(source.path.cl @ matrix[:3, :3].T, abs=1e-6)
+        assert op.orientation.axis == pytest.approx(matrix[:3, :3] @ source.orientation.axis, abs=1e-9)
+        assert op.frame.z == pytest.approx(op.orientation.axis, abs=1e-12)
+        assert op.face.area == pytest.approx(source.face.area, rel=1e-6)
+        along = op.face.evaluate(op.face.grid(1, 1))
+        there = source.face.evaluate(source.face.grid(1, 1))
+        mine, other = ((d.su if found.feed == "u" else d.sv)[0] for d, found in
+                       ((along, op.orientation), (there, source.orientation)))
+        assert abs(mine @ (matrix[:3, :3] @ other)) == pytest.approx(np.linalg.norm(mine) * np.linalg.norm(other))
+
+
+def test_the_judge_passes_every_blade(plan: Plan) -> None:
+    verdict = ta.verify(plan, spacing=1.0)
+    assert len(verdict.operations) == 2 * COUNT
+    assert verdict.passed, verdict.reasons
+
+
+def test_figures_of_copies_are_proven_and_no_better_than_the_originals(plan: Plan) -> None:
+    for op in plan.operations[2:]:
+        source = plan.operations[(op.number - 1) % 2].orientation
+        assert op.orientation.gouge >= source.gouge - 1e-9
+        for name, value in op.orientation.clearance.items():
+            assert source.clearance[name] - 0.011 <= value <= source.clearance[name]
+
+
+def test_neighbour_and_hub_are_told_apart(plan: Plan) -> None:
+    assert plan.blades is not None
+    rooms = {(room.to, room.component): room for room in plan.blades.room}
+    neighbours = {n for k in (1, COUNT - 1) for n in plan.blades.blades[k].numbers}
+    for component in ("cutter", "shank", "holder"):
+        room = rooms["neighbouring blade", component]
+        assert room.operation == 0 or room.face in neighbours
+        least = min(op.orientation.clearance[component] for op in plan.operations[:2])
+        assert room.distance >= least - 1e-9
+    place = tightest(plan)
+    assert place is None or place.operation.number in (1, 2)
+
+
+def test_it_survives_being_written_and_says_what_was_done(plan: Plan, tmp_path: Path) -> None:
+    write_plan(plan, tmp_path)
+    again = read_plan(tmp_path)
+    assert again.blades is not None and plan.blades is not None
+    assert again.blades.copies == plan.blades.copies and again.blades.blades == plan.blades.blades
+    files = json.loads((tmp_path / "plan.json").read_text())
+    names = {"part": {k: files["part"][k] for k in ("file", "sha256")}, "obstacles": files["obstacles"],
+             "operations": [op["cl_file"] for op in files["operations"]]}
+    check(json.loads(json.dumps(plan_document(again, names))))
+    assert files["blades"]["copies"][0] == {"operation": 3, "of": 1}
+    text = "\n".join(blades_lines(again))
+    assert f"{COUNT} blades found around the axis" in text and "one planned, three turned" in text
+    assert "least clearance to the neighbouring blade: cutter" in text
+
+
+@pytest.mark.parametrize("how", ["missing", "moved"])
+def test_a_broken_pattern_is_planned_face_by_face_with_a_warning(how: str) -> None:
+    pattern, warnings = recognised(wheel(6, ("", "", how)))
+    assert pattern is None
+    assert len(warnings) == 1 and "missing or moved" in warnings[0] and "planned by itself" in warnings[0]
+
+
+def test_blades_that_touch_are_refused() -> None:
+    pattern, warnings = recognised(ring())
+    assert pattern is None
+    assert len(warnings) == 1 and "touch" in warnings[0]
+
+
+def test_a_part_without_blades_is_not_warned_of() -> None:
+    loose = Part.from_faces([face.transformed(turn(0.3 * k * k)) for k in range(3) for face in sides()])
+    assert recognised(loose) == (None, ())
+
+
+def test_a_gap_narrower_than_the_tool_is_infeasible_and_names_the_widest() -> None:
+    part = wheel(12)
+    pattern, _ = recognised(part)
+    assert pattern is not None
+    wide, slim = (ta.Tool.torus(diameter=d, corner_radius=0.5) for d in (14.0, 6.0))
+    assert too_narrow(pattern, slim, 0.1) == {}
+    refused = too_narrow(pattern, wide, 0.1)
+    assert len(refused) == 2
+    for why in refused.values():
+        widest = float(why.rpartition(" is ")[2].split(" mm")[0])
+        assert pattern.blades.gap.distance - 0.1 <= widest < 14.0
+    made = ta.plan(part, wide, 0.1, regions=1)
+    assert made.outcome == "incomplete" and len(made.operations) == 24
+    assert all(op.orientation.outcome == "infeasible" for op in made.operations)
+    assert "widest cutter that passes" in made.operations[5].orientation.reasons[0]
