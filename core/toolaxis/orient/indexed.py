@@ -11,6 +11,7 @@ from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.machine.limits import AllOf, AxisLimits
 from toolaxis.machine.mounting import MachineLike, machine_limits
 from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.orient.crossing import Crossing
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.ledger import Ledger
@@ -100,8 +101,9 @@ class Task:
         own = self.worth.face
         walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
                     for group in self.groups)
+        crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance)
         return trace(placed, self.direction, self.feasibility.tolerance,
-                     linking=Linking(height, run_in=0.0) if walls else Linking(height))
+                     linking=Linking(height, run_in=0.0 if walls else 1.0, lower=crossing.heights))
 
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The very passes, links and ramps included, that `finished` proves.

@@ -1,5 +1,6 @@
 """From pieces of passes to one tool path: run in, cut, run out, retract along the axis, cross, come down."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,6 +39,9 @@ class Linking:
         Length of the ramp that touches down along the feed and lifts off after it, mm; 0 for none.
     approach : float
         Height above the ramp from which the tool comes down at feed rate, mm.
+    lower : callable, optional
+        Takes the tips (k, 3) above the end of each stroke and those above the begin of the next, mm, and answers at
+        which heights along the axis the tip may cross between them, (k,) mm; all cross at `height` without it.
 
     Raises
     ------
@@ -48,6 +52,7 @@ class Linking:
     height: float
     run_in: float = 1.0
     approach: float = 2.0
+    lower: Callable[[Array, Array], Array] | None = None
 
     def __post_init__(self) -> None:
         for name in ("height", "run_in", "approach"):
@@ -61,8 +66,8 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
     """Join strokes by retracts along the axis.
 
     Each stroke is entered and left on a ramp at 45 degrees between feed and axis, and by a short move along the axis;
-    between strokes the tip rises to the crossing height, goes across, and comes down.  The path begins and ends at
-    the crossing height.
+    between strokes the tip rises to a crossing height, goes across, and comes down.  The path begins and ends at the
+    greatest one.
 
     Parameters
     ----------
@@ -79,29 +84,48 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
     Notes
     -----
     **Properties**: (1) the first point and all CUT points are those of the strokes in their order, links in between;
-    (2) every move across happens at the crossing height or above; (3) `breaks` start at the move that comes from it.
+    (2) every move across happens at `height` or above, or where `lower` says; (3) `breaks` start at the move that comes
+    down from it.
     """
-    tops = [float((stroke.tip @ axis).max()) for strokes in passes for stroke in strokes]
-    height = max([linking.height, *(top + linking.approach + linking.run_in for top in tops)])
+    strokes = [stroke for some in passes for stroke in some]
+    if not strokes:
+        empty = np.empty((0, 3))
+        return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
+    entries, exits = [_entry(one, axis, linking) for one in strokes], [_exit(one, axis, linking) for one in strokes]
+    heights = _heights(strokes, (entries, exits), axis, linking)
     tips: list[Array] = []
     contacts: list[Array] = []
     normals: list[Array] = []
     kinds: list[NDArray[np.int8]] = []
-    breaks = [0]
-    for strokes in passes:
-        for stroke in strokes:
-            before, after = _entry(stroke, axis, linking, height), _exit(stroke, axis, linking, height)
-            tips += [before, stroke.tip, after]
-            contacts += [before, stroke.contact, after]
-            normals += [np.tile(axis, (len(before), 1)), stroke.normal, np.tile(axis, (len(after), 1))]
-            kinds.append(_kinds(len(before), len(stroke.tip), len(after)))
-        breaks.append(sum(map(len, tips)))
-    if not tips:
-        empty = np.empty((0, 3))
-        return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
+    for k, stroke in enumerate(strokes):
+        before = np.concatenate([_lifted(entries[k][:1], axis, heights[k]), entries[k]])
+        after = np.concatenate([exits[k], _lifted(exits[k][-1:], axis, heights[k + 1])])
+        tips += [before, stroke.tip, after]
+        contacts += [before, stroke.contact, after]
+        normals += [np.tile(axis, (len(before), 1)), stroke.normal, np.tile(axis, (len(after), 1))]
+        kinds.append(_kinds(len(before), len(stroke.tip), len(after)))
     cl = np.concatenate(tips)
+    ends = np.cumsum([len(kind) for kind in kinds])
+    breaks = np.concatenate([[0], ends[np.cumsum([len(some) for some in passes]) - 1]])
     return ToolPath(np.concatenate(contacts), cl, np.tile(axis, (len(cl), 1)), np.concatenate(normals),
-                    np.concatenate(kinds), np.array(breaks, dtype=np.int64))
+                    np.concatenate(kinds), breaks.astype(np.int64))
+
+
+def _heights(strokes: list[Stroke], ends: tuple[list[Array], list[Array]], axis: Array, linking: Linking) -> Array:
+    """Heights along the axis at which the tip comes, crosses from stroke to stroke, and goes, (strokes + 1,) mm."""
+    tops = [float((stroke.tip @ axis).max()) for stroke in strokes]
+    heights = np.full(len(strokes) + 1, max([linking.height, *(top + linking.approach + linking.run_in
+                                                               for top in tops)]))
+    if linking.lower is not None and len(strokes) > 1:
+        entries, exits = ends
+        end, begin = np.array([one[-1] for one in exits[:-1]]), np.array([one[0] for one in entries[1:]])
+        asked = np.maximum(linking.lower(end, begin), np.maximum(end @ axis, begin @ axis))
+        heights[1:-1] = np.minimum(heights[1:-1], asked)
+    return heights
+
+
+def _lifted(near: Array, axis: Array, height: float) -> Array:
+    return near + max(height - float(near[0] @ axis), 0.0) * axis
 
 
 def _kinds(before: int, cutting: int, after: int) -> NDArray[np.int8]:
@@ -121,17 +145,15 @@ def _ramp(start: Array, inner: Array, axis: Array, run_in: float) -> Array:
     return np.empty((0, 3)) if long < 1e-6 else (start + run_in * direction / long)[None]
 
 
-def _entry(stroke: Stroke, axis: Array, linking: Linking, height: float) -> Array:
-    """Points before the first cut point: at the crossing height, above the ramp, at its top."""
+def _entry(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+    """Points before the first cut point: above the ramp, at its top."""
     ramp = _ramp(stroke.tip[0], stroke.tip[1], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[0]
-    near = low + linking.approach * axis
-    return np.concatenate([[near + max(height - float(near @ axis), 0.0) * axis, near], ramp])
+    return np.concatenate([(low + linking.approach * axis)[None], ramp])
 
 
-def _exit(stroke: Stroke, axis: Array, linking: Linking, height: float) -> Array:
-    """Points after the last cut point: the end of the ramp, above it, at the crossing height."""
+def _exit(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+    """Points after the last cut point: the end of the ramp, above it."""
     ramp = _ramp(stroke.tip[-1], stroke.tip[-2], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[-1]
-    near = low + linking.approach * axis
-    return np.concatenate([ramp, [near, near + max(height - float(near @ axis), 0.0) * axis]])
+    return np.concatenate([ramp, (low + linking.approach * axis)[None]])

@@ -1,0 +1,81 @@
+"""How low a tool may cross from stroke to stroke: the least lift at which nothing is in its way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.distances import judged
+from toolaxis.orient.setting import OTHER, Group
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: What the cutter keeps from the skin while it crosses, mm: stock that is still to be cut may stand there.
+OVER = 1.0
+#: Lifts above the higher end of a link that are tried, mm.
+_LIFTS = (1.0, 3.0, 8.0, 20.0, 45.0, 90.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """The surroundings of links with one axis.
+
+    Attributes
+    ----------
+    tool : Tool
+    groups : tuple of Group
+        With the distances to keep.
+    axis : (3,) array
+    top : float
+        Height along the axis, mm, at which the tip crosses above everything.
+    allowance : float
+        Stock left on the skin, mm.
+    """
+
+    tool: Tool
+    groups: tuple[Group, ...]
+    axis: Array
+    top: float
+    allowance: float = 0.0
+
+    def heights(self, ends: Array, begins: Array) -> Array:
+        """The least heights along the axis at which the tip may cross, (k,) mm.
+
+        Lifting, crossing and coming down keep the distances to walls and obstacles, and crossing keeps `OVER` from the
+        skin too; bounds hold along the motions.
+
+        Parameters
+        ----------
+        ends, begins : (k, 3) array
+            Tips from which it is lifted, and down to which it comes, mm.
+        """
+        found = np.full(len(ends), self.top)
+        base = np.maximum(ends @ self.axis, begins @ self.axis)
+        left = np.arange(len(ends))
+        for lift in _LIFTS:
+            left = left[base[left] + lift < self.top]
+            if not len(left):
+                break
+            height = base[left] + lift
+            high = [tips[left] + (height - tips[left] @ self.axis)[:, None] * self.axis for tips in (ends, begins)]
+            across, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
+            free = self._clear(*across, over=True) & self._clear(*up) & self._clear(*down)
+            found[left[free]] = height[free]
+            left = left[~free]
+        return found
+
+    def _clear(self, start: Array, end: Array, over: bool = False) -> Bools:
+        """Whether straight motions keep their distances, (k,)."""
+        axes = np.broadcast_to(self.axis, start.shape)
+        moves = np.stack([(start + end) / 2, (end - start) / 2, axes], axis=1)
+        free = np.ones(len(moves), dtype=bool)
+        for group in self.groups:
+            required = group.required.copy()
+            if over and group.role != OTHER:
+                required[0] = self.allowance + OVER
+            table = np.tile(required, (len(group.faces), 1))
+            some = np.flatnonzero(free)
+            free[some] = judged(group.cells, self.tool, moves[some], table).blocked < 0
+        return free

@@ -1,0 +1,88 @@
+"""Links cross as low as is proven clear: lower than everything where nothing is in the way, above what is."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.orient.crossing import OVER, Crossing
+from toolaxis.orient.indexed import task
+from toolaxis.orient.setting import grouped
+from toolaxis.tolerances import Tolerance
+
+TOOL = ta.Tool.torus(diameter=8, corner_radius=1, stickout=40, holder=[(10, 0), (10, 30)])
+AXIS = np.array([0.0, -np.sin(0.3), np.cos(0.3)])
+
+
+@pytest.fixture(scope="module")
+def sheet() -> ta.Face:
+    x, y = np.meshgrid(np.linspace(0, 60, 5), np.linspace(0, 30, 5), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 0.002 * (x - 30) ** 2], axis=-1))
+
+
+def box(x0: float, x1: float, y0: float, y1: float, height: float) -> list[ta.Face]:
+    """The five upper faces of a box, normals outwards."""
+    def quad(a, b, c, d):
+        return ta.Face.from_bspline(np.array([[a, d], [b, c]], dtype=float), degree=(1, 1))
+
+    z0, z1 = -5.0, height
+    return [quad((x0, y0, z1), (x1, y0, z1), (x1, y1, z1), (x0, y1, z1)),
+            quad((x0, y0, z0), (x1, y0, z0), (x1, y0, z1), (x0, y0, z1)),
+            quad((x1, y1, z0), (x0, y1, z0), (x0, y1, z1), (x1, y1, z1)),
+            quad((x0, y1, z0), (x0, y0, z0), (x0, y0, z1), (x0, y1, z1)),
+            quad((x1, y0, z0), (x1, y1, z0), (x1, y1, z1), (x1, y0, z1))]
+
+
+def test_links_stay_low_where_nothing_is_in_the_way(sheet: ta.Face) -> None:
+    path = task(sheet, TOOL, 0.05).made(AXIS, "u")
+    height = path.cl @ AXIS
+    top = height.max()
+    assert height[0] == pytest.approx(top) and height[-1] == pytest.approx(top), "it comes from the top and goes there"
+    link = (path.kind == Motion.LINK)[1:-1]
+    assert (height[1:-1][link] < top - 1).all()
+    across = np.flatnonzero((path.kind[1:] == Motion.LINK)
+                            & (np.linalg.norm(np.cross(np.diff(path.cl, axis=0), AXIS), axis=1) > 1e-6)) + 1
+    assert len(across) == path.passes - 1
+    for k in across:
+        for share in np.linspace(0, 1, 21):
+            tip = path.cl[k - 1] + share * (path.cl[k] - path.cl[k - 1])
+            grid = sheet.evaluate(sheet.grid(80, 80)).point
+            assert cutter_distance(grid, tip) >= OVER - 1e-6
+
+
+def cutter_distance(points: np.ndarray, tip: np.ndarray) -> float:
+    """Least signed distance of the cutter's torus and flat to points, and of its side below the flute length."""
+    rows = points - tip
+    z = rows @ AXIS
+    r = np.linalg.norm(rows - z[:, None] * AXIS, axis=1)
+    inner, corner = TOOL.flat_radius, TOOL.corner_radius
+    core = np.stack([np.maximum(r - inner, 0), np.maximum(corner - z, 0)], axis=1)
+    return float((np.linalg.norm(core, axis=1) - corner).min())
+
+
+def test_a_link_over_a_box_goes_above_it(sheet: ta.Face) -> None:
+    walls = box(24, 34, -3, 33, 14.0)
+    crossing = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=walls), AXIS, 60.0)
+    ends, begins = np.array([[5.0, 10, 3.0], [5.0, 10, 3.0]]), np.array([[52.0, 10, 3.0], [9.0, 11, 3.0]])
+    over, beside = crossing.heights(ends, begins)
+    assert beside == pytest.approx(max(ends[1] @ AXIS, begins[1] @ AXIS) + 1.0)
+    lifted = ends[0] + (over - ends[0] @ AXIS) * AXIS
+    assert over < 60.0
+    for share in np.linspace(0, 1, 200):
+        tip = lifted + share * (begins[0] + (over - begins[0] @ AXIS) * AXIS - lifted)
+        for wall in walls:
+            assert cutter_distance(wall.evaluate(wall.grid(30, 30)).point, tip) >= Tolerance().cutter_clearance - 1e-6
+
+
+def test_a_link_between_walls_too_near_rises_to_the_top(sheet: ta.Face) -> None:
+    roof = box(-20, 80, 12, 40, 50.0)
+    crossing = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=roof), AXIS, 70.0)
+    assert crossing.heights(np.array([[5.0, 9, 3.0]]), np.array([[52.0, 9, 3.0]])) == pytest.approx([70.0])
+
+
+def test_a_plan_with_low_links_passes_the_judge_beside_a_box(sheet: ta.Face) -> None:
+    made = ta.plan(sheet, TOOL, 0.1, obstacles=box(24, 34, 34, 60, 20.0))
+    assert made.outcome == "complete", made.operations[0].orientation.reasons
+    assert made.travel < 1.6 * made.length
+    verdict = ta.verify(made)
+    assert verdict.passed, verdict.reasons
