@@ -1,58 +1,26 @@
-"""One blade planned, its operations turned to all the others and proven again there."""
+"""A part with blades: counterparts of one blade's faces on the others, and what of it is to be planned."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.contact.distances import judged as decided
-from toolaxis.contact.distances import segment_motions
-from toolaxis.errors import Cancelled, ToolAxisError, UnsupportedGeometry
-from toolaxis.job.abreast import abreast
-from toolaxis.job.axes import frame_of, judged
-from toolaxis.job.zones import told, zones_of
-from toolaxis.orient.indexed import Task
-from toolaxis.orient.proof import COMPONENTS, prove
-from toolaxis.orient.reasons import sentence
-from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.errors import UnsupportedGeometry
 from toolaxis.partition.blades import Bladed, NoPattern, blades_of
 from toolaxis.partition.gaps import Nearness, ahead, nearness, reach_along_normal, widest
 from toolaxis.partition.strips import strips
-from toolaxis.partition.turned import Counterpart, best_motion, counterpart, moved, turn_about, turned_piece
+from toolaxis.partition.turned import Counterpart, best_motion, counterpart, turn_about
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
-from toolaxis.plan.operation import Operation
-from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Plan, outcome_of
-from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import PLAIN_KINDS, Part
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-#: A turned path is taken as it is where the turned face is so close to the real one, mm.
-SAME = 1e-4
-#: By how much figures of a copy may be worse than the original's before they are measured anew, mm.
-_SLACK, _FINER = 0.01, 1e-4
 #: Greatest turn of normals across a strip of an edge, and of a fillet, rad.
 _NOSE, _FILLET = np.radians(95.0), np.radians(50.0)
-
-
-class Planner(Protocol):
-    """What plans faces of a part."""
-
-    @property
-    def workers(self) -> int:
-        """Processes to work with."""
-
-    def task(self, part: Part, face: Face, progress: Progress) -> Task:
-        """What decides about an axis for a face of a part."""
-
-    def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
-        """The operation of a face of a part, its axis searched."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,234 +196,3 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
         else:
             whole += strips(face, _FILLET) if name == "fillet" else (face,)
     return Share(tuple(divided), tuple(whole), refused)
-
-
-def with_refused(first: Plan, part: Part, refused: dict[int, str]) -> Plan:
-    """The plan of the first blade with the faces that cannot be machined, at its end.
-
-    Parameters
-    ----------
-    first : Plan
-    part : Part
-    refused : dict of int to str
-        Why, by number of the face.
-    """
-    made = tuple(Operation(len(first.operations) + k, part.face(number),
-                           Orientation(None, outcome="infeasible", reasons=(why,)))
-                 for k, (number, why) in enumerate(refused.items(), 1))
-    return replace(first, operations=first.operations + made)
-
-
-def followed(plan: Plan, other: Plan) -> Plan:
-    """A plan with the operations of another one after its own.
-
-    Parameters
-    ----------
-    plan, other : Plan
-    """
-    more = tuple(replace(op, number=len(plan.operations) + op.number) for op in other.operations)
-    worst = next((name for name in ("cancelled", "incomplete") if name in (plan.outcome, other.outcome)), "complete")
-    return replace(plan, operations=plan.operations + more, outcome=worst)
-
-
-def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progress) -> Plan:
-    """The plan of the first blade carried over to all blades.
-
-    Parameters
-    ----------
-    pattern : Pattern
-    first : Plan
-        Operations of the first blade.
-    planner : Planner
-    progress : Progress
-
-    Returns
-    -------
-    Plan
-        With `blades`; cancelled where the user stopped it, with the blades that were finished.
-    """
-    count = len(pattern.blades.blades)
-    if first.outcome == "cancelled":
-        return replace(first, part=pattern.part)
-    done = abreast(lambda k, inner: _on_blade(pattern, k, first, planner, inner.within(f"blade {k + 2} of {count}")),
-                   count - 1, planner.workers, progress)
-    operations, copies, searched = list(first.operations), {}, []
-    for found, taken in done.results:
-        for op, source in zip(found, taken, strict=True):
-            number = len(operations) + 1
-            face = pattern.part.face(op.face.number)
-            operations.append(replace(op, number=number, face=face.trimmed(op.face.trims, op.face.label)))
-            if source:
-                copies[number] = source
-            elif op.done:
-                searched.append(number)
-    outcome = "cancelled" if done.cancelled else outcome_of(operations, pattern.blades)
-    blades = replace(pattern.blades, copies=copies, searched=tuple(searched))
-    made = replace(first, part=pattern.part, operations=tuple(operations), outcome=outcome, blades=blades)
-    own = {number for number in range(len(first.operations) + 1, len(operations) + 1) if operations[number - 1].done}
-    made = _zoned_anew(made, own - _exact(made), progress)
-    measured = tuple(_measured(pattern, k, made.operations) for k in range(count))
-    return replace(made, blades=replace(blades, blades=measured))
-
-
-def _exact(plan: Plan) -> set[int]:
-    """Numbers of the copies whose very path was turned."""
-    assert plan.blades is not None
-    return {n for n in plan.blades.copies if plan.operations[n - 1].orientation.evaluations == 1}
-
-
-def _zoned_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
-    """The plan with the clean-up zones of those operations whose passes are not turned copies."""
-    try:
-        return replace(plan, operations=tuple(told(op, zones_of(plan, op, progress)) if op.number in numbers else op
-                                              for op in plan.operations))
-    except Cancelled:
-        return replace(plan, outcome="cancelled")
-
-
-def _measured(pattern: Pattern, k: int, operations: Sequence[Operation]) -> PlannedBlade:
-    """A blade with the areas that are machined and left."""
-    blade = pattern.blades.blades[k]
-    own = [op for op in operations if pattern.blades.blade_of(op.face.number) == k + 1]
-    area = sum(op.face.area for op in own)
-    left = sum(op.face.area * (op.orientation.unreached if op.done else 1.0) for op in own)
-    return replace(blade, area=float(area), left=float(left))
-
-
-def _on_blade(pattern: Pattern, k: int, first: Plan, planner: Planner,
-              progress: Progress) -> tuple[list[Operation], list[int]]:
-    """Operations of blade k + 2, and for each the number of the one it copies; 0 where its axis was searched anew."""
-    known: dict[frozenset[int], tuple[Group, ...]] = {}
-    found, taken = [], []
-    for index, op in enumerate(first.operations):
-        progress.report("proof of turned operations", index, len(first.operations))
-        made, copied = _elsewhere(pattern, k, op, (planner, known, progress))
-        found.append(made)
-        taken.append(op.number if copied else 0)
-    return found, taken
-
-
-_Means = tuple[Planner, dict[frozenset[int], tuple[Group, ...]], Progress]
-
-
-def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[Operation, bool]:
-    """An operation on another blade, and whether it is the turned copy."""
-    planner, _, progress = means
-    number = op.face.number
-    other = pattern.matching[k].get(number)
-    matrix = pattern.motions[k]
-    if other is None:
-        beside = pattern.blades.blades[k + 1].numbers[0]
-        reason = f"no face where the turn puts face {number}: plan the faces of this blade ({beside} ...) by hand"
-        return Operation(op.number, op.face, Orientation(None, reasons=(reason,))), False
-    suffix = op.face.label.removeprefix(str(number))
-    piece, away = turned_piece(op.face, pattern.part.face(number), other, matrix, f"{other.face.number}{suffix}")
-    apart = pattern.blades.apart(pattern.part, piece.number)
-    if not op.done:
-        return Operation(op.number, piece, replace(op.orientation, map=None, lobes=())), True
-    assert op.path is not None and op.orientation.axis is not None
-    task = planner.task(apart, piece, progress)
-    axis = matrix[:3, :3] @ op.orientation.axis
-    swapped = other.chart.swapped if other.chart is not None else None
-    if away <= SAME and swapped is not None:
-        assert other.chart is not None
-        turned = _turned(op, piece, matrix, swapped)
-        chart = other.chart
-        zones = tuple(replace(zone, loops=tuple(chart(loop) for loop in zone.loops)) for zone in op.zones)
-        made, why = _proven(replace(turned, zones=zones), task, _groups(task, means), first_datum(op))
-    else:
-        made, why = _judged(op, piece, task, axis, swapped)
-    if made is not None:
-        return made, True
-    anew = planner.search(apart, piece, op.number, progress)
-    note = f"the turned axis of {op.name} was refused here: {why}"
-    return replace(anew, orientation=replace(anew.orientation, reasons=(note, *anew.orientation.reasons))), False
-
-
-def first_datum(op: Operation) -> Array:
-    """The origin of an operation's work coordinate system, (3,) mm.
-
-    Parameters
-    ----------
-    op : Operation
-        With one.
-    """
-    assert op.frame is not None
-    return op.frame.origin
-
-
-def _turned(op: Operation, piece: Face, matrix: Array, swapped: bool) -> Operation:
-    """An operation with everything turned, not yet proven."""
-    assert op.path is not None and op.orientation.axis is not None
-    turn, path, found = matrix[:3, :3], op.path, op.orientation
-    assert found.axis is not None
-    axis = turn @ found.axis
-    axis /= np.linalg.norm(axis)
-    carried = ToolPath(moved(matrix, path.cc), moved(matrix, path.cl), np.tile(axis, (len(path.cl), 1)),
-                       path.normal @ turn.T, path.kind, path.breaks)
-    feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
-    left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
-    return Operation(op.number, piece, replace(found, axis=axis, feed=feed, map=None, lobes=(), evaluations=1,
-                                               reasons=(f"turned copy of {op.name}", *left)), carried)
-
-
-def _groups(task: Task, means: _Means) -> tuple[Group, ...]:
-    """The surroundings of a task's face; those of one skin share their cells."""
-    known = means[1]
-    key = frozenset(face.number for face in task.groups[0].faces)
-    return known.setdefault(key, task.groups)
-
-
-def _proven(op: Operation, task: Task, groups: tuple[Group, ...], datum: Array) -> tuple[Operation | None, str]:
-    """A turned operation with what is proven of it on the real faces, or why it is refused.
-
-    It is decided first whether nothing is worse than on the first blade but for rounding; measured only where it is.
-    """
-    path, found = op.path, op.orientation
-    assert path is not None and found.axis is not None
-    limits, tool, allowance = task.feasibility.limits, task.worth.tool, task.worth.allowance
-    if limits is not None and not limits.allowed(found.axis[None])[0]:
-        return None, "the machine does not allow it"
-    moves = segment_motions(path.cl, path.axis[0])
-    least = {name: value - _SLACK for name, value in found.clearance.items()}
-    depth = found.gouge + _FINER
-    same = all((decided(group.cells, tool, moves, np.tile(_asked(group, least, allowance - depth),
-                                                           (len(group.faces), 1))).blocked < 0).all()
-               for group in groups)
-    if same:
-        least = {name: max(value, float(groups[0].required[COMPONENTS.index(name)])) if name != "cutter" else
-                 max(value, task.feasibility.tolerance.cutter_clearance) for name, value in least.items()}
-        depth = min(depth, task.feasibility.tolerance.gouge)
-    else:
-        proof = prove(path, tool, groups, allowance, progress=task.progress)
-        if proof.witness is not None:
-            return None, sentence(proof.witness, task.feasibility)
-        least, depth = proof.clearance, proof.gouge
-    made = replace(found, clearance=least, gouge=depth)
-    return replace(op, orientation=made, frame=frame_of(op.face, made, datum)), ""
-
-
-def _asked(group: Group, least: dict[str, float], depth: float) -> Array:
-    """Distances to decide by: those to keep, or the first blade's where these are greater, (3,)."""
-    wanted = np.array([least.get(name, -np.inf) for name in COMPONENTS])
-    if group.role == SKIN:
-        wanted[0] = depth
-    elif group.role != OTHER:
-        wanted[0] = -np.inf
-    return np.maximum(group.required, wanted)
-
-
-def _judged(op: Operation, piece: Face, task: Task, axis: Array, swapped: bool | None) -> tuple[Operation | None, str]:
-    """The turned axis with passes of its own on the real face, or why it is refused."""
-    feeds = {None: None, False: op.orientation.feed, True: "v" if op.orientation.feed == "u" else "u"}
-    try:
-        found, path = judged(task, axis, feeds[swapped])
-    except Cancelled:
-        raise
-    except ToolAxisError as reason:
-        return None, str(reason)
-    if path is None:
-        return None, "; ".join(found.reasons)
-    note = f"turned copy of {op.name}, its passes laid anew: the faces differ"
-    made = replace(found, evaluations=2, reasons=(note, *found.reasons))
-    return Operation(op.number, piece, made, path, frame_of(piece, made, first_datum(op))), ""

@@ -14,10 +14,11 @@ from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError
 from toolaxis.job.abreast import abreast, checked_workers
 from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.baselines import compared
-from toolaxis.job.pattern import Pattern, followed, recognised, shared_out, spread_out, with_refused
+from toolaxis.job.pattern import Pattern, recognised, shared_out
 from toolaxis.job.rooms import with_rooms
 from toolaxis.job.spec import chosen_faces
 from toolaxis.job.toolfile import load_tool
+from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits, parse_limits, written
 from toolaxis.numeric.vectors import as_rows
@@ -194,7 +195,8 @@ class _Job:
         """The plan of a part with blades: one is planned, what is done there is turned to the others."""
         share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
         apart = pattern.blades.apart(self.part, pattern.first[0].number)
-        one = replace(self, part=apart, regions={None: "auto", 1: None}.get(self.regions, self.regions),
+        regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
+        one = replace(self, part=apart, regions=regions,
                       whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
         faces = [piece for face in share.divided for piece in split_at_kinks(face)]
         first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share.refused)
