@@ -40,7 +40,8 @@ def closer(feasibility: Feasibility, axis: Array, contacts: Contacts) -> Closer:
         return Closer(away.reason, away.amount, away.uv[None], np.empty((0, 3)))
     trouble = feasibility.trouble(axis, contacts)
     reason, amount, _ = feasibility.verdict(trouble, contacts)
-    bad = np.flatnonzero((trouble.reason != FREE) & (reason != FREE))
+    hit = (trouble.reason != FREE) & (reason != FREE)
+    bad = np.flatnonzero(hit & ~trouble.wall if (hit & ~trouble.wall).any() else hit)
     bad = bad[np.argsort(-trouble.amount[bad], kind="stable")][:_MOST]
     gouged = [i for i in bad if trouble.reason[i] == GOUGE and trouble.face[i] >= 0]
     skin = feasibility.groups[0].faces

@@ -3,8 +3,8 @@
 Screening looks at a few contacts and may only err towards "free"; proving looks at dense contacts with bounds of
 normals between them, and at last at every motion of the passes really made.
 
-A contact at which the cutter would come too near to a wall that is less than one cutter diameter away is left to a
-clean-up tool; anything else that is in the way forbids the axis.
+A contact at which the cutter would come too near to a wall that is less than one cutter diameter away, or gouge a face
+that continues the machined one, is left to a clean-up tool; anything else that is in the way forbids the axis.
 """
 
 from dataclasses import dataclass, field, replace
@@ -132,8 +132,19 @@ class Feasibility:
         return self._contacts(np.concatenate([grid, around(self.face, 6 * _DENSE)]), len(grid))
 
     def _contacts(self, uv: Array, weighed: int) -> Contacts:
-        walls = tuple(face for group in self.groups if group.role == OTHER for face in group.faces)
-        return contacts_at(self.face, uv, weighed, walls, 2 * self.tool.radius + self.tolerance.cutter_clearance)
+        return contacts_at(self.face, uv, weighed, self.walls, 2 * self.tool.radius + self.tolerance.cutter_clearance)
+
+    @cached_property
+    def neighbours(self) -> tuple[Face, ...]:
+        """Faces that continue this one: smooth to touch, but too narrow for the cutter where they are hollow."""
+        return tuple(face for face in self.groups[0].faces
+                     if self.groups[0].role == SKIN and face.number != self.face.number)
+
+    @property
+    def walls(self) -> tuple[Face, ...]:
+        """For what contacts beside it may be left to a clean-up tool: walls and obstacles, then the neighbours."""
+        others = tuple(face for group in self.groups if group.role == OTHER for face in group.faces)
+        return others + self.neighbours
 
     def screen(self, axes: ArrayLike) -> Verdicts:
         """Verdicts on axes from a few contacts: cheap, and wrong only towards "free".
@@ -167,8 +178,9 @@ class Feasibility:
 
     @cached_property
     def cloud(self) -> Array:
-        """Points of the skin that surely gouging axes run into, (m, 3)."""
-        return np.concatenate([self._points(face) for face in self.groups[0].faces])
+        """Points of the face that surely gouging axes run into, (m, 3); those of its neighbours can be kept off."""
+        return np.concatenate([self._points(face) for face in self.groups[0].faces
+                               if face.number == self.face.number] or [np.empty((0, 3))])
 
     def _points(self, face: Face) -> Array:
         count = max(6, 24 // len(self.groups[0].faces))
@@ -249,7 +261,11 @@ class Feasibility:
             beside = np.zeros(n, dtype=bool)
             if group.role == OTHER and len(contacts.near):
                 hit = np.asarray((found.lower < group.required).any(axis=1))
-                beside = self._beside(tool, group, moves, (hit, contacts.near))
+                beside = self._beside(tool, group, moves, (hit, contacts.near[:, :len(group.faces)]))
+            elif len(contacts.near) and self.neighbours:
+                near = contacts.near[:, -len(self.neighbours):].any(axis=1)
+                hit = np.asarray(near & (found.lower < group.required).any(axis=1))
+                beside = self._into_neighbours(group, moves, hit, left_out) if group.role == SKIN else hit
             worst = self._worse(worst, found, number, beside)
         return worst
 
@@ -257,6 +273,17 @@ class Feasibility:
         """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it."""
         highest = float(np.maximum(*(group.box * axis)).sum())
         return self.tool.carried_on(highest - float((places @ axis).min()))
+
+    def _into_neighbours(self, group: Group, moves: Array, hit: Bools, left_out: Array | None) -> Bools:
+        """Which of the positions that were hit are so by faces that continue this one alone, as a boss's fillet."""
+        into, rows = hit.copy(), np.flatnonzero(hit)
+        if len(rows):
+            only = np.full((len(group.faces), 3), -np.inf)
+            own = [face.number == self.face.number for face in group.faces]
+            only[own] = 0.0 if left_out is None else left_out[own]
+            found = bounded(group.cells, self.tool, moves[rows], group.required + 2 * FINE, FINE, only)
+            into[rows] = (found.lower >= group.required).all(axis=1)
+        return into
 
     @staticmethod
     def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Bools, Bools]) -> Bools:
@@ -355,7 +382,7 @@ class Feasibility:
         ----------
         axis : (3,) array_like
         """
-        if all(group.role != OTHER for group in self.groups):
+        if not self.walls:
             return 0.0
         return self.stand(unit(as_rows(axis, 3, "axis")[0]), self.dense)[2]
 
@@ -373,14 +400,16 @@ class Feasibility:
 
         Notes
         -----
-        Contacts on the face are looked at for walls and obstacles only: for all else a free axis is free there.
+        Contacts on the face are looked at for walls, obstacles and faces that continue it: for all else a free axis is
+        free there.
         """
         rows, t = as_rows(uv, 2, "uv"), unit(as_rows(axis, 3, "axis")[0])
         normal, point = self.face.normal(rows), self.face.evaluate(rows).point
         angle = angle_between(np.broadcast_to(t, normal.shape), normal)
         good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
         inside = self.face.contains(rows)
-        for part, roles in ((good & inside, (OTHER,)), (good & ~inside, ROLES)):
+        within = ROLES if self.neighbours else (OTHER,)
+        for part, roles in ((good & inside, within), (good & ~inside, ROLES)):
             if part.any() and any(group.role in roles for group in self.groups):
                 some = Contacts(rows[part], point[part], normal[part], np.zeros(int(part.sum())), _NOWHERE)
                 good[part] = self.trouble(t, some, roles=roles).reason == FREE

@@ -43,7 +43,8 @@ def corner_too_large(feasibility: Feasibility) -> str:
     Notes
     -----
     Whatever the axis, the cutter contains the ball of the corner radius that touches the surface at the contact.  Where
-    the search for the depth was given up, its bound says nothing and no proof is drawn from it.
+    the search for the depth was given up, its bound says nothing and no proof is drawn from it.  Faces that continue
+    this one are left out: contacts beside them can be left to a clean-up tool.
     """
     tool, skin = feasibility.tool, feasibility.groups[0]
     radius, limit = tool.corner_radius, feasibility.tolerance.gouge
@@ -53,7 +54,9 @@ def corner_too_large(feasibility: Feasibility) -> str:
     centre = some.point + (radius + feasibility.allowance) * some.normal
     ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
     slack = max(face.tolerance for face in skin.faces) + 2 * FINE
-    found = bounded(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE)
+    only = np.full((len(skin.faces), 3), -np.inf)
+    only[[face.number == feasibility.face.number for face in skin.faces]] = 0.0
+    found = bounded(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE, only)
     depth = np.where(found.looked > BUDGET, 0.0, -found.lower[:, 0] - slack)
     i = int(np.argmax(depth))
     if depth[i] <= limit:

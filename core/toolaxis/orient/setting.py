@@ -81,7 +81,7 @@ def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: P
         When obstacles are not faces.
     """
     touching: tuple[Face, ...] = ()
-    others = [*surroundings, *_faces_of(obstacles)]
+    others = [*surroundings, *faces_of(obstacles)]
     own = (face, *(f for f in skin if f is not face))
     if part is not None:
         own = (*part.skin(face.number), *own[1:])
@@ -96,7 +96,18 @@ def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: P
     return tuple(group for group in groups if group.faces)
 
 
-def _faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
+def faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
+    """The faces of obstacles.
+
+    Parameters
+    ----------
+    obstacles : Part, Face or sequence of Face, optional
+
+    Raises
+    ------
+    InvalidInput
+        When obstacles are not faces.
+    """
     if obstacles is None:
         return ()
     if isinstance(obstacles, Face):

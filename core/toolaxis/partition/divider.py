@@ -46,6 +46,9 @@ class Regions(Sequence[Face]):
         Its reckoned cutting length, mm.
     curve : (m, 2) array
         Number of sub-surfaces and the least cutting length reckoned for it, mm; inf where there is no division.
+    radius : float
+        Outer distance of the rings where the face is divided around bosses, inf where by the nearest boss alone, mm; 0
+        where by iso-parametric cuts alone.
     """
 
     faces: tuple[Face, ...]
@@ -53,6 +56,7 @@ class Regions(Sequence[Face]):
     feeds: tuple[str, ...]
     lengths: tuple[float, ...]
     curve: Array
+    radius: float = 0.0
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -90,6 +94,25 @@ class Solution(NamedTuple):
         count : int
         """
         return self.division.pieces(count)
+
+
+def named_pieces(label: str, rows: list[tuple[Face, Solution, Corners]], curve: Array) -> Regions:
+    """Pieces with their names and what the division reckons of each.
+
+    Parameters
+    ----------
+    label : str
+        Of the whole face.
+    rows : list of (Face, Solution, corners)
+        Each piece with the rectangle that it comes from.
+    curve : (m, 2) array
+        As in `Regions`.
+    """
+    labels = [label + letters(k) if len(rows) > 1 else label for k in range(len(rows))]
+    return Regions(tuple(piece.trimmed(piece.trims, name) for (piece, _, _), name in zip(rows, labels, strict=True)),
+                   np.array([one.prices.axes[one.offers.axis[box]] for _, one, box in rows]).reshape(-1, 3),
+                   tuple("uv"[one.offers.feed[box]] for _, one, box in rows),
+                   tuple(float(one.offers.cost[box]) for _, one, box in rows), curve)
 
 
 class Divider:
@@ -164,7 +187,7 @@ class Divider:
             What each sub-surface costs besides, mm.
         """
         found = offers(prices.rates, self._gaps, self._pitch, self._ends, prices.extra)
-        cost = np.where(self._narrow, np.inf, found.cost + piece_cost)
+        cost = np.where(self._narrow | self._torn, np.inf, found.cost + piece_cost)
         empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
         return Solution(prices, found, Division(cost, empty, self.most))
 
@@ -200,15 +223,8 @@ class Divider:
         boxes : list of (int, int, int, int)
         """
         face = self.job.worth.face
-        pieces = [(face.trimmed(loops), box) for box in boxes for loops in self.lattice.rectangle(box)]
-        owners = [box for _, box in pieces]
-        labels = [face.label + letters(k) if len(pieces) > 1 else face.label for k in range(len(pieces))]
-        faces = tuple(piece.trimmed(piece.trims, label) for (piece, _), label in zip(pieces, labels, strict=True))
-        return Regions(faces,
-                       np.array([found.prices.axes[found.offers.axis[box]] for box in owners]).reshape(-1, 3),
-                       tuple("uv"[found.offers.feed[box]] for box in owners),
-                       tuple(float(found.offers.cost[box]) for box in owners),
-                       np.stack([found.known, found.division.curve[found.known]], axis=1))
+        rows = [(face.trimmed(loops), found, box) for box in boxes for loops in self.lattice.rectangle(box)]
+        return named_pieces(face.label, rows, np.stack([found.known, found.division.curve[found.known]], axis=1))
 
     def _first_axes(self) -> Array:
         normals = self.lattice.normals[self.lattice.material]
@@ -253,6 +269,19 @@ class Divider:
         total[1:, 1:] = self.lattice.filled.cumsum(axis=0).cumsum(axis=1)
         across = total[None, :, :] - total[:, None, :]
         return np.asarray(across[:, :, None, :] - across[:, :, :, None])
+
+    @cached_property
+    def _torn(self) -> NDArray[np.bool_]:
+        """Rectangles in which the face falls apart, though it hangs together: they are no one piece."""
+        from scipy.ndimage import label
+
+        found = np.zeros(self._filled.shape, dtype=bool)
+        cells = self.lattice.filled > _NOTHING
+        if not cells.all():
+            for u0, u1, v0, v1 in np.argwhere(proper(*self.lattice.cells)):
+                found[u0, u1, v0, v1] = label(cells[u0:u1, v0:v1])[1] > 1
+            found[0, -1, 0, -1] = False
+        return found
 
     @cached_property
     def _narrow(self) -> NDArray[np.bool_]:

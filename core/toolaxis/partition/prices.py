@@ -9,7 +9,6 @@ from toolaxis.contact.strip import step_widths
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.contacts import contacts_at
 from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.setting import OTHER
 from toolaxis.orient.verdicts import FREE
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.partition.lattice import Lattice
@@ -36,12 +35,15 @@ class Prices:
         Whether the node lies at a wall and is left to a clean-up tool.
     extra : (k, 2, nu, nv) array
         What it costs to clean up in each cell, beyond the passes that are reckoned through it with feed u and v, mm.
+    whole : (nu, nv) array
+        Area of the face in each cell, mm^2.
     """
 
     axes: Array
     rates: Array
     left: Bools
     extra: Array
+    whole: Array
 
     def of(self, places: NDArray[np.intp]) -> "Prices":
         """The prices of some of the axes.
@@ -50,7 +52,7 @@ class Prices:
         ----------
         places : (m,) array of int
         """
-        return Prices(self.axes[places], self.rates[places], self.left[places], self.extra[places])
+        return Prices(self.axes[places], self.rates[places], self.left[places], self.extra[places], self.whole)
 
     def joined(self, other: "Prices") -> "Prices":
         """The prices of more axes after these.
@@ -60,7 +62,7 @@ class Prices:
         other : Prices
         """
         return Prices(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
-                      np.concatenate([self.left, other.left]), np.concatenate([self.extra, other.extra]))
+                      np.concatenate([self.left, other.left]), np.concatenate([self.extra, other.extra]), self.whole)
 
 
 def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array,
@@ -104,7 +106,7 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)
     everywhere[:, nodes] = left
     rates, everywhere = rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape)
-    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, rates, everywhere))
+    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, rates, everywhere), lattice.areas)
 
 
 def _clean_up(lattice: Lattice, worth: Worth, rates: Array, left: Bools) -> Array:
@@ -134,9 +136,8 @@ def _usable(lattice: Lattice, feasibility: Feasibility, axes: Array, nodes: NDAr
     if feasibility.limits is not None:
         allowed &= feasibility.limits.allowed(axes)[:, None]
     left = np.zeros_like(allowed)
-    walls = tuple(face for group in feasibility.groups if group.role == OTHER for face in group.faces)
     reach = 2 * feasibility.tool.radius + feasibility.tolerance.cutter_clearance
-    contacts = contacts_at(lattice.face, uv, len(uv), walls, reach)
+    contacts = contacts_at(lattice.face, uv, len(uv), feasibility.walls, reach)
     for k in range(len(axes)):
         progress.report("axes at the lattice", k, len(axes))
         some = np.flatnonzero(allowed[k])

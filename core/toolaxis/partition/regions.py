@@ -9,6 +9,8 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.orient.indexed import Task, combined, task
 from toolaxis.orient.setting import Obstacles
+from toolaxis.partition.around import Distance, candidates, slivers
+from toolaxis.partition.bosses import distances
 from toolaxis.partition.divider import MOST, Divider, Regions
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -80,12 +82,13 @@ def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str 
     for face in chosen:
         job = task(face, tool, scallop, combined(machine, None), obstacles, part=whole, tolerance=tolerance,
                    allowance=allowance)
-        pieces += regions(job, count, index_cost, progress.within(f"face {face.label}")).faces
+        standing = distances(face, job.worth.tool, whole, obstacles)
+        pieces += regions(job, count, index_cost, progress.within(f"face {face.label}"), standing).faces
     return tuple(pieces)
 
 
 def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX_COST,
-            progress: Progress = NO_PROGRESS) -> Regions:
+            progress: Progress = NO_PROGRESS, bosses: Sequence[Distance] = ()) -> Regions:
     """Divide one face.
 
     Parameters
@@ -94,6 +97,9 @@ def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX
         From `toolaxis.orient.indexed.task`.
     count, index_cost, progress
         As for `partition`.
+    bosses : sequence of callable
+        Distances to what stands on the face, from `toolaxis.partition.bosses.distances`: it is also divided around
+        them, and the cheaper division is taken.
 
     Raises
     ------
@@ -108,8 +114,16 @@ def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX
     label = job.worth.face.label
     if not len(known) and number in (None, 1):
         return Regions((job.worth.face,), np.zeros((0, 3)), (), (), np.zeros((0, 2)))
+    around = [one for one in candidates(divider, bosses) if np.isfinite(one.curve).any()] if len(bosses) else []
     if number is None:
-        number = int(known[np.argmin(divider.curve[known] + index_cost * known)])
+        least = np.min([divider.curve, *(one.curve for one in around)], axis=0)
+        number = int(np.argmin(least + index_cost * np.arange(len(least))))
+    best = min(around, key=lambda one: one.curve[number], default=None)
+    if best is not None and np.isfinite(best.curve[number]):
+        best = best.closer(divider, number)
+        found = best.regions(number)
+        if best.curve[number] < divider.curve[number] and len(found) == number and not slivers(found, job.worth.tool):
+            return found
     if number not in known:
         raise InvalidInput(f"face {label} cannot be divided into {number} sub-surfaces: {_why_not(divider, number)}")
     return divider.regions(number)

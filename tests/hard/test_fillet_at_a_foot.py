@@ -1,0 +1,25 @@
+"""Found: a boss with a fillet at its foot forbade every axis, for the cutter gouges the fillet beside the face."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+
+cq = pytest.importorskip("cadquery")
+
+
+def test_what_lies_beside_a_fillet_is_left_to_clean_up() -> None:
+    solid = (cq.Workplane().box(36, 30, 10).faces(">Z").workplane().circle(4).extrude(12)
+             .edges(cq.selectors.BoxSelector((-5, -5, 4.5), (5, 5, 5.5))).fillet(2.0))
+    part = ta.load(solid)
+    floor = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(4, 4)).point[:, 2], 5))
+    assert len(part.skin(floor.number)) > 1
+    plan = ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1, faces=[floor.number])
+    (op,) = plan.operations
+    assert op.done, op.orientation.reasons
+    assert 0 < op.orientation.unreached < 0.4 and op.orientation.gouge <= 0.002
+    assert op.zones and all(zone.at_wall for zone in op.zones)
+    assert sum(zone.area for zone in op.zones) == pytest.approx(op.orientation.unreached * floor.area, rel=1e-9)
+    verdict = ta.verify(plan)
+    assert verdict.passed, verdict.reasons
+    assert 1 - verdict.operations[0].share_within == pytest.approx(op.orientation.unreached, abs=4e-3)
