@@ -31,13 +31,14 @@ def commands() -> list[str]:
 
 def test_every_command_runs(tmp_path: Path) -> None:
     found = commands()
-    assert [line.split()[1] for line in found] == ["inspect", "plan", "verify"]
+    assert [line.split()[1] for line in found] == ["inspect", "plan", "verify", "post"]
     for line in found:
         words = [str(ROOT / word) if word.startswith("examples/") else word for word in line.split()[1:]]
         done = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", *words], cwd=tmp_path, capture_output=True,
                               text=True)
         assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
     assert (tmp_path / "out" / "saddle" / "verdict.json").exists()
+    assert (tmp_path / "out" / "saddle" / "program-fanuc.nc").exists()
 
 
 def test_the_python_example_runs_and_passes() -> None:
@@ -60,7 +61,7 @@ def test_every_link_leads_to_a_file(name: str) -> None:
 
 
 def test_every_option_that_is_named_exists() -> None:
-    shown = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", "plan", "--help"], capture_output=True,
-                           text=True, check=True).stdout
+    shown = "".join(subprocess.run([sys.executable, "-m", "toolaxis.cli.main", command, "--help"], capture_output=True,
+                                   text=True, check=True).stdout for command in ("plan", "post"))
     for option in set(re.findall(r"--[a-z]+", TEXT)) - {"--help"}:
         assert option in shown

@@ -16,7 +16,7 @@ from toolaxis.machine.configurations import Machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.dialects.known import DIALECTS
-from toolaxis.post.gcode import Dialect, program_of, program_text
+from toolaxis.post.gcode import Dialect, Options, program_of, program_text
 
 MACHINES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",
             "three-axes-fixture")
@@ -170,6 +170,19 @@ def test_the_next_solution_is_the_nearer_one() -> None:
     program = program_of(plan, Mounting(machine), DIALECTS["fanuc"])
     turns = [degrees(station.angles[0]) for station in program.stations]
     assert abs(turns[1] - turns[0]) == pytest.approx(20.0, abs=1e-6)
+
+
+def test_angles_that_are_already_chosen_are_kept_or_refused() -> None:
+    """The other solution of the table, C turned by 180 deg and A on the other side."""
+    rng, machine = np.random.default_rng(5), load_machine("mikron-ucp-710")
+    plan = a_plan(axes_at(machine, np.radians([[30.0, 20.0]]), np.eye(3)), rng)
+    for turns in ([210.0, -20.0], [-150.0, -20.0]):
+        program = program_of(plan, Mounting(machine), DIALECTS["fanuc"], Options(angles={1: np.radians(turns)}))
+        assert np.allclose(np.degrees(program.stations[0].angles), turns, atol=1e-9)
+    for turns, said in (([31.0, 20.0], "deg from the one"), ([210.0, -35.0], "axis A does not hold"),
+                        ([30.0004, 20.0], "axis C does not hold"), ([30.0], "2 finite ones")):
+        with pytest.raises(InvalidInput, match=said):
+            program_of(plan, Mounting(machine), DIALECTS["fanuc"], Options(angles={1: np.radians(turns)}))
 
 
 def test_same_angles_share_a_work_offset() -> None:

@@ -3,13 +3,13 @@
 What all controls have in common stands here; what each says differently stands in `toolaxis.post.dialects`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, degrees, isfinite, radians
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
@@ -69,6 +69,8 @@ class Options:
         Machine coordinate of Z, mm, at which rotary axes may turn; the upper end of Z's travel unless given.
     clamp, unclamp : tuple of str
         Words around an index move, such as M10; the dialect's own unless given.
+    angles : mapping of int to (m,) array_like
+        Rotary angles already chosen for operations, by their numbers, rad; those with the least turn unless given.
 
     Raises
     ------
@@ -79,6 +81,7 @@ class Options:
     retract: float | None = None
     clamp: tuple[str, ...] = field(default=())
     unclamp: tuple[str, ...] = field(default=())
+    angles: Mapping[int, ArrayLike] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.retract is not None and not isfinite(self.retract):
@@ -293,7 +296,7 @@ def program_of(plan: Plan, mounting: Mounting, dialect: Dialect, options: Option
     chosen = Options() if options is None else options
     top = mounting.machine.linear[2].high
     retract = chosen.retract if chosen.retract is not None else (top if isfinite(top) else None)
-    found = stations(plan, mounting, dialect.angle_digits)
+    found = stations(plan, mounting, dialect.angle_digits, chosen.angles)
     placed = tuple(dialect.placed(station, mounting, plan.datum) for station in found)
     made = Program(plan, mounting, placed, _plain(name).replace(" ", "_") or "toolaxis", retract,
                    chosen.clamp or dialect.hold, chosen.unclamp or dialect.release)

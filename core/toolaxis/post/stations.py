@@ -1,10 +1,11 @@
 """Stations: where the machine stands for each operation, and the operation's path in the plane of that station."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import degrees
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
@@ -67,7 +68,8 @@ class Station:
     tilt: float
 
 
-def stations(plan: Plan, mounting: Mounting, angle_digits: int) -> tuple[Station, ...]:
+def stations(plan: Plan, mounting: Mounting, angle_digits: int,
+             chosen: Mapping[int, ArrayLike] | None = None) -> tuple[Station, ...]:
     """The stations of all operations of a plan that have an axis, in their order.
 
     The solution of each is the one with the least turn from the one before.
@@ -79,6 +81,8 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int) -> tuple[Station
         The machine, and where the part stands on its table.
     angle_digits : int
         Digits after the point in which rotary angles can be written, in degrees.
+    chosen : mapping of int to (m,) array_like, optional
+        Rotary angles that are already chosen for operations, by their numbers, rad.
 
     Raises
     ------
@@ -92,7 +96,10 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int) -> tuple[Station
     for op in plan.operations:
         if op.path is None or op.frame is None:
             continue
-        stand = _nearest(_held(op, plan, mounting, angle_digits), stand, mounting.machine)
+        given = (chosen or {}).get(op.number)
+        rows = _solutions(op, mounting) if given is None else _given(op, given, mounting)
+        rows = _close(_written(rows, mounting.machine, angle_digits), op, plan, mounting)
+        stand = rows[0] if given is not None else _nearest(rows, stand, mounting.machine)
         number = next((k for k, one in enumerate(known) if np.abs(one - stand).max(initial=0.0) < FIXED), len(known))
         known += [stand] if number == len(known) else []
         found.append(_station(op, mounting, stand, number))
@@ -134,14 +141,35 @@ def in_plane(station: Station, mounting: Mounting, matrix: Array, datum: Array) 
     return replace(station, matrix=matrix, tips=(path.cl - datum) @ turn.T @ matrix)
 
 
-def _held(op: Operation, plan: Plan, mounting: Mounting, digits: int) -> Array:
-    """Rotary angles in steps and digits at which an operation can be carried out, (s, m) rad."""
+def _fixed(op: Operation) -> Array:
+    """The axis of an operation, which must not turn."""
     assert op.path is not None
-    axis = unit(op.path.axis.mean(axis=0))
+    axis = np.asarray(unit(op.path.axis.mean(axis=0)))
     away = float(np.max(angle_between(op.path.axis, axis)))
     if away > FIXED:
         raise InvalidInput(f"{op.name}: the tool axis turns by {degrees(away):.4f} deg along the path: only operations "
                            "with a fixed axis can be posted so; use --dialect apt")
+    return axis
+
+
+def _given(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
+    """Rotary angles that are already chosen, (1, m) rad."""
+    _fixed(op)
+    row, rotary = np.asarray(angles, dtype=float), mounting.machine.rotary
+    if row.shape != (len(rotary),) or not np.isfinite(row).all():
+        raise InvalidInput(f"{op.name}: rotary angles are {row.tolist()}: {len(rotary)} finite ones are needed")
+    for axis, angle in zip(rotary, row, strict=True):
+        if not axis.low - FIXED <= angle <= axis.high + FIXED or abs(float(axis.rounded(angle)) - angle) > FIXED:
+            raise InvalidInput(f"{op.name}: axis {axis.name} does not hold {degrees(angle):.6f} deg: it goes from "
+                               f"{degrees(axis.low):g} to {degrees(axis.high):g} deg in steps of "
+                               f"{degrees(axis.increment):g} deg")
+    return row[None]
+
+
+def _solutions(op: Operation, mounting: Mounting) -> Array:
+    """Rotary angles in the machine's steps at which an operation can be carried out, (s, m) rad."""
+    assert op.path is not None
+    axis = _fixed(op)
     rows = mounting.solutions(axis)
     if not len(rows):
         why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
@@ -149,7 +177,7 @@ def _held(op: Operation, plan: Plan, mounting: Mounting, digits: int) -> Array:
     rows = mounting.holding(op.path.cl, axis)
     if not len(rows):
         raise InvalidInput(f"{op.name}: {mounting.out_of_travel(op.path.cl, axis)}; move the part on the table")
-    return _close(_written(rows, mounting.machine, digits), op, plan, mounting)
+    return rows
 
 
 def _written(rows: Array, machine: Machine, digits: int) -> Array:
