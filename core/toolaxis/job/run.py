@@ -25,6 +25,7 @@ from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import METHODS, Task, best_axis, combined
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.orient.together import together
+from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider, Regions
 from toolaxis.partition.regions import checked_count
@@ -249,7 +250,8 @@ class _Job:
 
         def _division(k: int, inner: Progress) -> Regions:
             named = inner.within(f"face {faces[k].label}")
-            return regions_of(self._task(faces[k], inner), self.regions, progress=named)
+            standing = distances(faces[k], self.tool, self.part, self._obstacles)
+            return regions_of(self._task(faces[k], inner), self.regions, progress=named, bosses=standing)
 
         found = abreast(_division, len(faces), self.workers, progress)
         if found.cancelled:

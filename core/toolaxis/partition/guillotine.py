@@ -14,6 +14,8 @@ Index = NDArray[np.intp]
 Corners = tuple[int, int, int, int]
 #: Sums of rates above this hold a forbidden node.
 _TOO_MUCH = 1e9
+#: Cutting length, mm, below which a rectangle is left to a clean-up tool as a whole: it is no sub-surface.
+_NONE = 1e-6
 _CHUNK = 32
 
 
@@ -94,7 +96,8 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
         middle = (most[:, 1:] * row[1:] + most[:, :-1] * row[:-1]) / 2
         cost = (middle * pitch[step]).sum(axis=1) + row.mean() / 2
         cost += 0.0 if extra is None else extra[:, along].sum(axis=(1, 2))
-        both.append(np.where(most.max(axis=1) < _TOO_MUCH, cost, np.inf))
+        usable = (most.max(axis=1) < _TOO_MUCH) & ((middle * pitch[step]).sum(axis=1) > _NONE)
+        both.append(np.where(usable, cost, np.inf))
     return np.minimum(*both)
 
 
@@ -135,7 +138,8 @@ def _lengths(rates: Array, rows: Array, pitch: Array) -> Array:
     count = np.arange(ns)[None, :] - np.arange(ns)[:, None] + 1
     mean = _between(np.cumsum(np.insert(rows, 0, 0.0, axis=-1), axis=-1))[..., :-1, 1:] / np.maximum(count, 1)
     total = np.concatenate([np.zeros((k, na, na, 1)), np.cumsum(middle, axis=-1)], axis=-1)
-    return np.asarray(_between(total) + mean / 2)
+    passes = _between(total)
+    return np.asarray(np.where(passes > _NONE, passes + mean / 2, _TOO_MUCH))
 
 
 def _between(total: Array) -> Array:
