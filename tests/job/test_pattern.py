@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.job.axes import with_operations
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.pattern import recognised, too_narrow
 from toolaxis.job.rooms import tightest
@@ -135,6 +136,12 @@ def test_it_survives_being_written_and_says_what_was_done(plan: Plan, tmp_path: 
     text = "\n".join(blades_lines(again))
     assert f"{COUNT} blades found around the axis" in text and "one planned, three turned" in text
     assert "least clearance to the neighbouring blade: cutter" in text
+
+
+def test_what_gets_another_axis_is_no_copy_any_more(plan: Plan) -> None:
+    changed = with_operations(plan, {2: plan.operations[1], 3: plan.operations[2]})
+    assert changed.blades is not None and changed.blades.copies == {5: 1, 7: 1}
+    assert changed.outcome == "complete"
 
 
 @pytest.mark.parametrize("how", ["missing", "moved"])

@@ -191,4 +191,8 @@ def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
     outcome = plan.outcome
     if outcome != "cancelled":
         outcome = outcome_of(operations, plan.blades)
-    return replace(plan, operations=operations, outcome=outcome)
+    blades = plan.blades
+    if blades is not None:
+        kept = {copy: source for copy, source in blades.copies.items() if not {copy, source} & set(chosen)}
+        blades = replace(blades, copies=kept)
+    return replace(plan, operations=operations, outcome=outcome, blades=blades)
