@@ -117,7 +117,8 @@ def _laid(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | No
     charts = _eight(face.surface.domain, other.surface.domain)
     away = [float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max()) for chart in charts]
     k = int(np.argmin(away))
-    if away[k] > NEAR * face.diagonal or other.contains(charts[k](face.grid(_GRID, _GRID))).mean() <= 0.9:
+    inner = face.grid(_GRID, _GRID)
+    if away[k] > NEAR * face.diagonal or other.contains(charts[k](inner)).sum() < 0.9 * len(inner):
         return None
     return Counterpart(other, charts[k], away[k])
 
