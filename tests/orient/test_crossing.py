@@ -86,3 +86,21 @@ def test_a_plan_with_low_links_passes_the_judge_beside_a_box(sheet: ta.Face) -> 
     assert made.travel < 1.6 * made.length
     verdict = ta.verify(made)
     assert verdict.passed, verdict.reasons
+
+
+def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,
+                                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    from toolaxis.orient.indexed import Task
+
+    laid, axes = Task.laid, []
+
+    def _laid(self, axis, feed):
+        axes.append(axis)
+        if len(axes) == 1:
+            raise ta.InvalidInput("strip width is [0, 0] at uv [0.5, 0.5] of face 1")
+        return laid(self, axis, feed)
+
+    monkeypatch.setattr(Task, "laid", _laid)
+    found = ta.best_axis(sheet, TOOL, 0.1)
+    assert found.outcome == "feasible" and not np.array_equal(found.axis, axes[0])
+    assert any("strip width is [0, 0]" in reason for reason in found.reasons)

@@ -22,6 +22,7 @@ from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
+from toolaxis.orient.verdicts import BACK, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
@@ -295,7 +296,10 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
     one : Candidate
     """
     feed = FEEDS[one.feed]
-    placed = job.laid(one.axis, feed)
+    try:
+        placed = job.laid(one.axis, feed)
+    except InvalidInput as reason:  # a place between the counted ones leaves no strip
+        return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason)))
     path = job.traced(placed)
     beyond = out_of_travel(job.feasibility.limits, path)
     proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,

@@ -38,8 +38,10 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
     """
     own, tolerance = feasibility.face.label, feasibility.tolerance
     at = f"at {place(found.point)}"
+    if found.words:
+        return found.words
     if found.reason == LIMITS:
-        return found.words or f"the axis is {degrees(found.amount):.2f} deg outside the limits"
+        return f"the axis is {degrees(found.amount):.2f} deg outside the limits"
     if found.reason == BACK:
         return (f"the axis leans {degrees(found.amount):.2f} deg farther than "
                 f"{degrees(feasibility.greatest_angle):.1f} deg from the normal of face {own} {at}: the cutter's "
