@@ -55,7 +55,7 @@ def test_the_sheet_holds_what_the_operator_needs(folder: Path) -> None:
     text = (folder / "setup-iso.md").read_text()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
     first, second = (row for row in rows if row[0] in ("1", "2"))
-    assert first[1:3] == ["G54", "C30.000 A20.000"] and second[1:3] == ["G55", "C-45.000 A60.000"]
+    assert first[1:3] == ["G54", "C30.000 A20.000"] and second[1:3] == ["G55", "C315.000 A60.000"]
     assert first[3].startswith("C") and "A-20.000" in first[3] and second[3].endswith("(out of range)")
     tool = next(row for row in rows if row[0] == "T1")
     assert tool[2:6] == ["12.000", "1.000", "24.000", "60.000"]

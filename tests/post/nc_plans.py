@@ -16,10 +16,9 @@ from toolaxis.tools.assembly import Tool
 
 DATUM = np.array([3.0, -7.0, 11.0])
 TOOL = Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40), (25, 40), (25, 80)])
-#: Kinds of the motions of a made-up path and whether each is rapid in a program.
-KINDS = (Motion.LINK, Motion.LINK, Motion.ENTRY, Motion.CUT, Motion.CUT, Motion.EXIT, Motion.LINK, Motion.LINK,
-         Motion.LINK, Motion.ENTRY, Motion.CUT, Motion.EXIT, Motion.LINK, Motion.LINK, Motion.ENTRY, Motion.CUT,
-         Motion.EXIT, Motion.LINK)
+#: Kinds of the motions of a made-up path.
+KINDS = (*[Motion.LINK] * 2, Motion.ENTRY, Motion.CUT, Motion.CUT, Motion.EXIT, *[Motion.LINK] * 4, Motion.ENTRY,
+         Motion.CUT, Motion.EXIT, *[Motion.LINK] * 2, Motion.ENTRY, Motion.CUT, Motion.EXIT, Motion.LINK)
 
 
 def spin(axis: np.ndarray, angle: float) -> np.ndarray:
@@ -57,21 +56,19 @@ def held_angles(machine: Machine, rng: np.random.Generator, count: int, *, level
 
 
 def a_path(axis: np.ndarray, rng: np.random.Generator) -> ToolPath:
-    """Two passes in three strokes: links along the axis, across at the top, and one lower and slanting."""
+    """Two passes in three strokes, with links along the axis, across at the top, and on slants down and up."""
     helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
     u = np.cross(axis, helper) / np.linalg.norm(np.cross(axis, helper))
     v, top = np.cross(axis, u), 80.0
     flat = rng.uniform(-60, 60, (len(KINDS), 2))
     high = rng.uniform(-20, 20, len(KINDS))
-    for k in (0, 7, 17):
-        high[k] = top
-    flat[1], flat[6], flat[12], flat[16] = flat[0], flat[5], flat[11], flat[17]
-    flat[7], flat[8] = flat[6], flat[7] + 5  # up along the axis, then down on a slant
-    high[8], high[12], high[13] = 40.0, 45.0, 45.0
-    high[1], high[6] = 30.0, 42.0
+    for k, beside in ((1, 0), (6, 5), (7, 6), (13, 12), (17, 18)):
+        flat[k] = flat[beside]
+    for k, height in ((0, top), (1, 30.0), (6, 42.0), (7, top), (8, top), (9, 40.0), (13, 45.0), (14, top), (18, top)):
+        high[k] = height
     cl = DATUM + flat[:, :1] * u + flat[:, 1:] * v + high[:, None] * axis
     axes = np.tile(axis, (len(KINDS), 1))
-    return ToolPath(cl, cl, axes, axes, np.array(KINDS, dtype=np.int8), np.array([0, 13, len(KINDS)]))
+    return ToolPath(cl, cl, axes, axes, np.array(KINDS, dtype=np.int8), np.array([0, 14, len(KINDS)]))
 
 
 def a_plan(axes: np.ndarray, rng: np.random.Generator, **inputs: float) -> Plan:

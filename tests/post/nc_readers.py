@@ -164,12 +164,13 @@ def read_siemens(text: str, table: Callable[[dict[str, float]], np.ndarray]) -> 
 
 
 def _swivel(control: Control, words: list[str], named: dict[str, float]) -> None:
-    assert len(words) == 16 and words[0] == "1" and words[2] == "0", words
+    control.plane = None
+    if words == [""]:
+        assert control.retracted or not control.found
+        return
+    assert len(words) == 16 and words[:3] == ["1", '""', "0"], words
     assert [float(words[k]) for k in (4, 5, 6, 10, 11, 12)] == [0.0] * 6
     control.retract()
-    control.plane = None
-    if words[1] == '"0"':
-        return
     control.index(named)
     mode = int(words[3])
     assert mode >> 6 == 0, "axis by axis"

@@ -1,6 +1,7 @@
 """One contract for every dialect: its program, read back as a control would, is the plan."""
 
 import re
+from dataclasses import replace
 from math import degrees, radians
 
 import numpy as np
@@ -69,7 +70,10 @@ def _judge(plan: Plan, mounting: Mounting, dialect: Dialect, found: list[Read]) 
             assert one.low - 1e-9 <= radians(read.angles[one.name]) <= one.high + 1e-9
             on_step = radians(read.angles[one.name]) / one.increment
             assert abs(on_step - round(on_step)) < 1e-4
-        _judge_rates(plan, op.path.kind, read, wanted @ held)
+        _judge_rates(plan, op.path.kind, read, wanted @ axis)
+    if len(dialect.offsets) > 1:
+        assert len({read.offset for read in found}) == len({tuple(sorted(read.angles.items())) for read in found})
+        assert len({(read.offset, *sorted(read.angles.items())) for read in found}) == len({r.offset for r in found})
 
 
 def _judge_plane(x: np.ndarray, held: np.ndarray, read: Read, dialect: Dialect, machine: Machine) -> None:
@@ -172,6 +176,30 @@ def test_the_next_solution_is_the_nearer_one() -> None:
     assert abs(turns[1] - turns[0]) == pytest.approx(20.0, abs=1e-6)
 
 
+def test_axes_without_end_roll_over_but_on_linuxcnc() -> None:
+    rng, machine = np.random.default_rng(5), load_machine("mikron-ucp-710")
+    angles = np.radians([[120.0, 40.0], [-150.0, 40.0], [-30.0, 40.0], [120.0, 40.0]])
+    plan = a_plan(axes_at(machine, angles, np.eye(3)), rng)
+    for name, wanted in (("iso", [120.0, 210.0, 330.0, 120.0]), ("linuxcnc", [120.0, 210.0, 330.0, 480.0])):
+        program = program_of(plan, Mounting(machine), DIALECTS[name])
+        found = re.findall(r"^G0 C(\S+) A40\.", program_text(program, DIALECTS[name]), re.MULTILINE)
+        assert [float(value) for value in found] == wanted
+        assert [station.orientation for station in program.stations] == [0, 1, 2, 0]
+
+
+def test_three_axes_take_what_stands_upright() -> None:
+    machine = load_machine("three-axes-fixture")
+    upright = Machine("three axes", machine.linear)
+    plan = a_plan(np.array([0.0, 0.0, 1.0]), np.random.default_rng(1))
+    text = program_text(program_of(plan, Mounting(upright), DIALECTS["iso"]), DIALECTS["iso"])
+    (read,) = read_iso(text, lambda angles: np.eye(3), True)
+    path = plan.operations[0].path
+    assert path is not None and np.abs(np.array(read.points) - (path.cl - DATUM)).max() <= 0.5e-3 + 1e-9
+    with pytest.raises(InvalidInput, match="no position of three axes reaches"):
+        program_of(a_plan(np.array([0.0, 0.6, 0.8]), np.random.default_rng(1)), Mounting(upright), DIALECTS["iso"])
+    with pytest.raises(InvalidInput, match="needs 2 rotary axes"):
+        program_of(plan, Mounting(upright), DIALECTS["fanuc"])
+
 def test_angles_that_are_already_chosen_are_kept_or_refused() -> None:
     """The other solution of the table, C turned by 180 deg and A on the other side."""
     rng, machine = np.random.default_rng(5), load_machine("mikron-ucp-710")
@@ -183,6 +211,17 @@ def test_angles_that_are_already_chosen_are_kept_or_refused() -> None:
                         ([30.0004, 20.0], "axis C does not hold"), ([30.0], "2 finite ones")):
         with pytest.raises(InvalidInput, match=said):
             program_of(plan, Mounting(machine), DIALECTS["fanuc"], Options(angles={1: np.radians(turns)}))
+
+
+def test_the_solution_that_the_machine_holds_is_taken_though_it_is_further() -> None:
+    """A 45 degree head in whole degrees: one solution is on the steps, the other mostly is not."""
+    rng, known = np.random.default_rng(8), load_machine("nutating-head")
+    (table,), (head,) = ([replace(axis, increment=radians(1.0)) for axis in some] for some in (known.table, known.head))
+    machine = replace(known, table=(table,), head=(head,))
+    for row in np.round(rng.uniform(-100, 100, (20, 2))):
+        plan = a_plan(axes_at(machine, np.radians(row)[None], np.eye(3)), rng)
+        (station,) = program_of(plan, Mounting(machine), DIALECTS["siemens"]).stations
+        assert station.lean < 1e-6
 
 
 def test_same_angles_share_a_work_offset() -> None:

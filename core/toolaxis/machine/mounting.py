@@ -132,7 +132,7 @@ class Mounting:
 
     def _rounded(self, angles: Array) -> Array:
         """Angles in the axes' steps and inside their ranges, (s, m) rad."""
-        rows = np.array(angles, dtype=float).reshape(-1, len(self.machine.rotary))
+        rows = np.array(angles, dtype=float).reshape(len(angles), len(self.machine.rotary))
         for i, axis in enumerate(self.machine.rotary):
             rows[:, i] = axis.rounded(rows[:, i])
             rows[:, i] -= axis.increment * (rows[:, i] > axis.high + ROUNDING)

@@ -113,6 +113,8 @@ class Dialect:
         Kinds of machine, as `Machine.kind` says them, that the dialect serves.
     straight : bool
         Whether rapid motion is along a straight line also where several axes move.
+    rolls_over : bool
+        Whether rotary axes without end are told angles from 0 to below 360 degrees.
     told_retract : bool
         Whether the program says to which machine coordinate Z retracts.
     along_axis : bool
@@ -134,6 +136,7 @@ class Dialect:
     by_hand: ClassVar[bool] = False
     kinds: ClassVar[tuple[str, ...]] = ("table", "head", "table-table", "head-table", "head-head")
     straight: ClassVar[bool] = False
+    rolls_over: ClassVar[bool] = True
     told_retract: ClassVar[bool] = False
     along_axis: ClassVar[bool] = False
     hold: ClassVar[tuple[str, ...]] = ()
@@ -192,8 +195,17 @@ class Dialect:
 
     def rotary(self, program: Program, station: Station) -> str:
         """The rotary words of a station."""
-        return " ".join(f"{axis.name}{number(degrees(angle), self.angle_digits)}"
-                        for axis, angle in zip(program.machine.rotary, station.angles, strict=True))
+        return " ".join(self.words(program.machine, station.angles))
+
+    def words(self, machine: Machine, angles: Array) -> Lines:
+        """Rotary angles, rad, as words; from 0 to below 360 degrees for axes without end that roll over."""
+        made = []
+        for axis, angle in zip(machine.rotary, angles, strict=True):
+            value = round(degrees(angle), self.angle_digits)
+            endless = not (isfinite(axis.low) or isfinite(axis.high))
+            turned = round(value % 360.0, self.angle_digits) % 360.0 if endless and self.rolls_over else value
+            made.append(f"{axis.name}{number(turned, self.angle_digits)}")
+        return made
 
     def index(self, program: Program, station: Station) -> Lines:
         """Blocks that turn the rotary axes, let go before and held after."""

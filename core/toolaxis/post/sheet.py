@@ -1,7 +1,6 @@
 """The setup sheet: what the operator must know before the program starts, as Markdown."""
 
 from collections.abc import Sequence
-from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,9 +84,7 @@ def _work(program: Program, dialect: Dialect) -> str:
 
 
 def _angles(program: Program, dialect: Dialect, angles: Array) -> str:
-    words = [f"{axis.name}{number(degrees(angle), dialect.angle_digits)}"
-             for axis, angle in zip(program.machine.rotary, angles, strict=True)]
-    return " ".join(words) or "-"
+    return " ".join(dialect.words(program.machine, angles)) or "-"
 
 
 def _orientations(program: Program, dialect: Dialect) -> str:
@@ -126,12 +123,36 @@ def _operations(program: Program, dialect: Dialect) -> str:
         op, seconds = station.operation, station.operation.seconds(program.plan.inputs.feedrate, inputs.rapid)
         offset = dialect.offsets[station.orientation if len(dialect.offsets) > 1 else 0]
         rows.append([op.name, str(station.orientation + 1), offset, str(op.path.passes if op.path else 0),
-                     _vector(station.tips[0], 3), number(float(station.tips[:, 2].min()), 3), f"{seconds / 60:.1f}"])
-    return _table(["operation", "orientation", "offset", "passes", "first point in the plane", "lowest Z", "min"], rows)
+                     _vector(station.tips[0], 3), number(float(station.tips[:, 2].min()), 3),
+                     f"{gouge_of(program, dialect, station):.4f}", f"{seconds / 60:.1f}"])
+    return _table(["operation", "orientation", "offset", "passes", "first point in the plane", "lowest Z",
+                   "gouge at most", "min"], rows)
+
+
+def gouge_of(program: Program, dialect: Dialect, station: Station) -> float:
+    """Upper bound of the gouge of an operation with the digits and the angles that were written, mm.
+
+    Parameters
+    ----------
+    program : Program
+    dialect : Dialect
+    station : Station
+
+    Returns
+    -------
+    float
+        The plan's bound, more by what rounding moves a tip and by what leaning moves the cutter about it.
+    """
+    rounding = 0.5 * 3 ** 0.5 * 10.0 ** -dialect.digits
+    return station.operation.orientation.gouge + rounding + 2 * program.plan.tool.radius * station.lean
 
 
 def _notes(program: Program, dialect: Dialect) -> list[str]:
-    notes = list(dialect.notes)
+    notes, allowed = list(dialect.notes), program.plan.inputs.tolerance.gouge
+    over = [station.operation.name for station in program.stations if gouge_of(program, dialect, station) > allowed]
+    if over:
+        notes.append(f"With the digits of this dialect the bound of the gouge exceeds {allowed:g} mm in "
+                     f"{', '.join(over)}: plan with a smaller gouge tolerance, or use a dialect with more digits.")
     if program.retract is not None and dialect.told_retract:
         notes.append(f"Rotary axes turn with Z at {program.retract:.3f} in machine coordinates: compare with the "
                      "machine's own travel.")

@@ -36,7 +36,7 @@ class Station:
     operation : Operation
     angles : (m,) array
         Where the rotary axes stand, in the order of `Machine.rotary`, in the machine's steps and the dialect's digits,
-        rad.
+        rad; axes without end go on from station to station.
     others : (s, m) array
         The other solutions for the same axis, rad, whether within the ranges or not.
     reachable : (s,) array of bool
@@ -51,7 +51,9 @@ class Station:
     rapid : (n,) array of bool
         Whether the motion that arrives at each tip is rapid: a link along the tool axis, or above everything.
     orientation : int
-        Number from 0 of the rotary angles among the different ones of a program.
+        Number from 0 of the position of the rotary axes among the different ones of a program, whole turns aside.
+    lean : float
+        Angle between the tool axis at the angles and the one that the passes were made for, rad.
     tilt : float
         Angle between the spindle and the machine's Z axis, rad; 0 unless a head is tilted.
     """
@@ -65,6 +67,7 @@ class Station:
     tips: Array
     rapid: Bools
     orientation: int
+    lean: float
     tilt: float
 
 
@@ -100,7 +103,7 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
         rows = _solutions(op, mounting) if given is None else _given(op, given, mounting)
         rows = _close(_written(rows, mounting.machine, angle_digits), op, plan, mounting)
         stand = rows[0] if given is not None else _nearest(rows, stand, mounting.machine)
-        number = next((k for k, one in enumerate(known) if np.abs(one - stand).max(initial=0.0) < FIXED), len(known))
+        number = next((k for k, one in enumerate(known) if _same(one, stand)), len(known))
         known += [stand] if number == len(known) else []
         found.append(_station(op, mounting, stand, number))
     if not found:
@@ -216,6 +219,11 @@ def _nearest(rows: Array, stand: Array, machine: Machine) -> Array:
     return np.asarray(near[int(np.argmin(np.round(turns, 9)))])
 
 
+def _same(a: Array, b: Array) -> bool:
+    """Whether rotary angles are the same position, whole turns aside."""
+    return bool((np.abs(np.mod(a - b + np.pi, 2 * np.pi) - np.pi) < FIXED).all())
+
+
 def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> Station:
     assert op.path is not None and op.frame is not None
     machine = mounting.machine
@@ -228,8 +236,9 @@ def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> S
     apart = np.abs(both.joints[0] - angles).max(axis=1, initial=0.0) > 2e-2
     spindle = turned_table(machine, angles).T @ z
     tilt = float(angle_between(spindle, np.array([0.0, 0.0, 1.0])))
-    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl,
-                   _rapid(op), number, tilt if tilt > FIXED else 0.0)
+    lean = float(np.max(angle_between(op.path.axis, mounting.axis_at(angles))))
+    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl, _rapid(op), number,
+                   lean, tilt if tilt > FIXED else 0.0)
 
 
 def _rapid(op: Operation) -> Bools:

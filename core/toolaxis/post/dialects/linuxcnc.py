@@ -22,6 +22,7 @@ class LinuxCnc(Iso):
     digits, angle_digits = 5, 5
     offsets: ClassVar[tuple[str, ...]] = (*Iso.offsets, "G59.1", "G59.2", "G59.3")
     straight = True
+    rolls_over = False
     told_retract = True
 
     def start(self, program: Program) -> Lines:

@@ -3,7 +3,8 @@
 **Source** SINUMERIK operating manual 6FC5398-8CP40, "Swivel": axis-by-axis mode turns the coordinate system about each
 axis as the turns before have left it; Direction minus or plus takes the solution with the lower or the higher value of
 the rotary axis that is the direction reference.  SINUMERIK programming manual, CYCLE800(_FR, _TC, _ST, _MODE, X0, Y0,
-Z0, A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE): _MODE 57 is axis by axis in the order X, Y, Z.
+Z0, A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE): _FR 1 retracts Z before
+swivelling, _MODE 57 is axis by axis in the order X, Y, Z; without parameters the swivel frames are deleted.
 """
 
 from math import degrees
@@ -29,27 +30,25 @@ class Siemens(Dialect):
              "that tilts. Compare with the angles of this sheet when the axes have turned.")
 
     def start(self, program: Program) -> Lines:
-        """Modes, swivel off with a retract along Z, straight rapids, tool, spindle."""
-        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", *self.off(), "T1 D1", "M6", "G54",
+        """Modes, swivel frames deleted, straight rapids, tool, spindle."""
+        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", "T1 D1", "M6", "G54",
                 f"S{program.plan.inputs.spindle:.0f} M3"]
-
-    def off(self) -> Lines:
-        """Z retracts, the frame is deleted."""
-        return ["CYCLE800(1,\"0\",0,57,0,0,0,0,0,0,0,0,0,1,0,0)"]
 
     def orient(self, program: Program, station: Station) -> Lines:
         """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
         return [self.comment(f"AXES {self.rotary(program, station)}"), *program.unclamp,
-                f"CYCLE800(1,\"\",0,57,0,0,0,{','.join(self.euler(station))},0,0,0,{_direction(program, station)},0,0)",
-                *program.clamp]
+                _swivel(*self.euler(station), _direction(program, station)), *program.clamp]
 
     def leave(self, program: Program, station: Station) -> Lines:
-        """Retract along Z, frame off."""
-        return self.off()
+        """Nothing: the next CYCLE800 retracts Z before it swivels, in one call that a swivel data record stands for."""
+        return []
 
     def end(self, program: Program) -> Lines:
-        """Spindle off, end."""
-        return ["M5", "M30"]
+        """Retract, axes to zero, frames deleted, spindle off, end."""
+        zero = number(0.0, self.angle_digits)
+        home = [f"{axis.name}{zero}" for axis in program.machine.rotary]
+        return [self.comment(f"AXES {' '.join(home)}"), *program.unclamp, _swivel(zero, zero, zero, 1), *program.clamp,
+                "CYCLE800()", "M5", "M30"]
 
     def comment(self, text: str) -> str:
         """A block that is a comment."""
@@ -62,6 +61,11 @@ class Siemens(Dialect):
     def feed(self, point: np.ndarray[tuple[int, ...], np.dtype[np.float64]], rate: float | None) -> str:
         """A motion at feed rate."""
         return f"G1 {self.point(point)}" + ("" if rate is None else f" F{number(rate, 3)}")
+
+
+def _swivel(a: str, b: str, c: str, direction: int) -> str:
+    """A new plane by turns about X, Y, Z after a retract along Z."""
+    return f'CYCLE800(1,"",0,57,0,0,0,{a},{b},{c},0,0,0,{direction},0,0)'
 
 
 def _direction(program: Program, station: Station) -> int:
