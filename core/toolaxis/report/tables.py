@@ -80,16 +80,22 @@ def plan_table(plan: Plan) -> Table:
         Gouge is an upper bound, clearance a lower one.
     """
     blades = plan.blades
-    rows = [[*_operation_row(op), *_links(op, plan.inputs), op.orientation.outcome] for op in plan.operations
-            if blades is None or op.number not in blades.copies]
+    rows = [[*_operation_row(op), *_links(op, plan.inputs), _clean_up(op), op.orientation.outcome]
+            for op in plan.operations if blades is None or op.number not in blades.copies]
     if blades is not None:
         shown = [op for op in plan.operations if op.number not in blades.copies]
         rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
                 for row, op in zip(rows, shown, strict=True)]
     title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
              f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, different axes {plan.orientations}")
-    columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("outcome", "left")]
+    columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("clean-\nup %", "right"),
+               ("outcome", "left")]
     return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan.inputs)}")
+
+
+def _clean_up(op: Operation) -> str:
+    """Share of the area that is left to a clean-up tool."""
+    return number(100 * op.orientation.unreached, 1) if op.done else "-"
 
 
 def _links(op: Operation, inputs: Inputs) -> list[str]:
