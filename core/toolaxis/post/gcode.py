@@ -169,7 +169,8 @@ class Dialect:
         if not station.tilt:
             first, down = self.point(point).rsplit(" ", 1)
             return [f"G0 {first}", " ".join(filter(None, ["G0", length, down]))]
-        return [*filter(None, [length]), self.straight_rapid(program, point)]
+        code, words = self.straight_rapid(program, point).split(" ", 1)
+        return [" ".join(filter(None, [code, length, words]))]
 
     def tool_length(self) -> str:
         """The word that turns tool length compensation on in the approach."""
