@@ -72,8 +72,9 @@ def _judge(plan: Plan, mounting: Mounting, dialect: Dialect, found: list[Read]) 
             assert abs(on_step - round(on_step)) < 1e-4
         _judge_rates(plan, op.path.kind, read, wanted @ axis)
     if len(dialect.offsets) > 1:
-        assert len({read.offset for read in found}) == len({tuple(sorted(read.angles.items())) for read in found})
-        assert len({(read.offset, *sorted(read.angles.items())) for read in found}) == len({r.offset for r in found})
+        places = [tuple(round(value % 360.0, 4) % 360.0 for _, value in sorted(read.angles.items())) for read in found]
+        pairs = {(read.offset, place) for read, place in zip(found, places, strict=True)}
+        assert len(pairs) == len({read.offset for read in found}) == len(set(places)), "one offset for each position"
 
 
 def _judge_plane(x: np.ndarray, held: np.ndarray, read: Read, dialect: Dialect, machine: Machine) -> None:
