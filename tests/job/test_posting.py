@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from dataclasses import replace
 from math import degrees
 from pathlib import Path
 
@@ -48,6 +49,24 @@ def test_program_and_sheet_appear(folder: Path, capsys: Capture) -> None:
     assert {path.name for path in folder.iterdir()} == {*before, "program-heidenhain.h", "setup-heidenhain.md"}
     assert all((folder / name).read_bytes() == content for name, content in before.items())
     assert (folder / "program-heidenhain.h").read_text().count("PLANE SPATIAL") == 3
+
+
+def test_the_plan_s_own_machine_is_taken(tmp_path: Path) -> None:
+    """With the part where the plan says that it stands, unless another place is given."""
+    where = np.eye(4)
+    where[:3, :3], where[:3, 3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [5, 6, 200]
+    machine = load_machine("mikron-ucp-710")
+    plan = replace(a_plan(axes_at(machine, ANGLES, where[:3, :3]), np.random.default_rng(3)),
+                   machine=Mounting(machine, where))
+    folder = tmp_path / "made"
+    with staged(folder) as stage:
+        write_plan(plan, stage.folder)
+        stage.publish()
+    assert main(["post", str(folder), "--dialect", "iso"]) == 0
+    assert "G0 C30.000 A20.000" in (folder / "program-iso.nc").read_text()
+    assert main(["post", str(folder), "--dialect", "iso", "--offset", "0,0,150"]) == 0
+    assert "G0 C30.000 A20.000" not in (folder / "program-iso.nc").read_text()
+    assert main(["post", str(folder), "--dialect", "iso", "--machine", "ab-trunnion"]) == 2
 
 
 def test_the_sheet_holds_what_the_operator_needs(folder: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.run import Target, by_axis
+from toolaxis.job.planning import Target, by_axis
 from toolaxis.job.spec import chosen_faces, parse_faces
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
@@ -156,7 +156,7 @@ def test_faces_by_number_and_by_default() -> None:
 
 
 def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    import toolaxis.job.run as job
+    import toolaxis.job.planning as job
 
     search = job.best_axis
 

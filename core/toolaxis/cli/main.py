@@ -66,6 +66,11 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--orientations", type=_count, metavar="N|auto",
                      help="at most N different axes in all, shared by the sub-surfaces of all faces; auto: as many as "
                           "the curve of cutting length over their number bends at")
+    sub.add_argument("--machine", metavar="NAME|FILE",
+                     help="only axes that this machine holds: a name from resources/machines, a TOML or .fcm file")
+    sub.add_argument("--offset", metavar="X,Y,Z",
+                     help="the part's origin in machine coordinates, all axes at zero, mm (write --offset=-100,0,50 "
+                          "for a negative one): no motion leaves the travel of the linear axes")
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
@@ -86,8 +91,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
-    for name in ("machine", "strategy"):
-        sub.add_argument(f"--{name}", help=argparse.SUPPRESS)
+    sub.add_argument("--strategy", help=argparse.SUPPRESS)
     sub.set_defaults(module="toolaxis.cli.plan")
 
 

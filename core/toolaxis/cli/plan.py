@@ -9,13 +9,13 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
 from toolaxis.job.spec import Spec
+from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of
 from toolaxis.progress import Progress
 
-_LATER = {"machine": ("choosing a machine by name", "give its axis range with --limits"),
-          "strategy": ("any other strategy than one fixed axis per face", "leave it out")}
+_LATER = {"strategy": ("any other strategy than one fixed axis per face", "leave it out")}
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -38,7 +38,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         from toolaxis.job.run import plan
 
         with shown_progress(asked) as progress:
-            made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.inputs.limits, faces=spec.numbers,
+            made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
+                        limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
@@ -64,8 +65,10 @@ def _spec(given: Namespace) -> Spec:
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
                     given.feedrate, given.spindle, rapid=given.rapid)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
-                tuple(given.obstacles), given.regions, given.orientations)
-    _ = spec.numbers
+                tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
+    _ = spec.numbers, spec.place
+    if spec.machine:
+        load_machine(spec.machine)
     return spec
 
 

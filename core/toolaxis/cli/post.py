@@ -6,7 +6,8 @@ from pathlib import Path
 
 from toolaxis.cli.output import print_json, say
 from toolaxis.job.folder import read_plan, staged
-from toolaxis.job.posting import offset_from, posted, verdict_of
+from toolaxis.job.posting import posted, verdict_of
+from toolaxis.job.spec import offset_from
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
@@ -51,11 +52,14 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _mounting(given: Namespace, plan: Plan) -> Mounting | None:
-    """The machine that was given, with the part where it was said to stand."""
-    if not given.machine:
-        return None
+    """The machine that was given, else the plan's own, with the part where it was said to stand."""
     offset = offset_from(given.offset) if given.offset else None
-    return Mounting(load_machine(given.machine), offset, plan.tool.gauge_length)
+    if given.machine:
+        return Mounting(load_machine(given.machine), offset, plan.tool.gauge_length)
+    if plan.machine is None:
+        return None
+    return Mounting(plan.machine.machine, plan.machine.table_from_part if offset is None else offset,
+                    plan.tool.gauge_length)
 
 
 def _words(text: str) -> tuple[str, ...]:

@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.limits import AxisLimits, parse_limits
+from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.orient.indexed import Task, finished, task
+from toolaxis.orient.indexed import Task, combined, finished, task
 from toolaxis.orient.ledger import Ledger
+from toolaxis.orient.mounted import held_axis
 from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
@@ -28,14 +29,14 @@ Array = NDArray[np.float64]
 
 
 def _limits(plan: Plan) -> AxisLimits | None:
-    """The limits that the plan was made with.
+    """The limits that the plan was made with, its machine's among them.
 
     Raises
     ------
     InvalidInput
         When they were of a class that has no short form: leaving them out could call a forbidden axis free.
     """
-    return parse_limits(plan.inputs.limits) if plan.inputs.limits else None
+    return combined(plan.machine, plan.inputs.limits or None)
 
 
 def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Task:
@@ -154,7 +155,7 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
         When the user asked to stop.
     """
     job = _Remembering(task)
-    t = unit(as_rows(axis, 3, "axis")[0])
+    t = held_axis(job.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
     witness = job.feasibility.witness(t)
     found = Orientation(None, outcome="infeasible")
     if witness is None:

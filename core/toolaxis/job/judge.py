@@ -7,6 +7,7 @@ from typing import Any
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.machine.kinematics import placement
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -78,9 +79,12 @@ def _task(plan: Plan, op: Operation) -> Task:
         return tuple(face for group in around if group.role in roles for face in group.faces
                      if (face.number, face.label) != (op.face.number, op.face.label))
 
+    machine = plan.machine
+    on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
     return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
                 plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines, plan.inputs.tolerance,
-                min(1.0, op.orientation.unreached))
+                min(1.0, op.orientation.unreached), machine=None if machine is None else machine.machine,
+                place=on_table, tool_length=plan.tool.gauge_length)
 
 
 def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:

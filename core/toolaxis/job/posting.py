@@ -1,10 +1,6 @@
 """From a plan's folder to a program and its setup sheet, or to CL files."""
 
-from math import isfinite
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_json
@@ -66,24 +62,3 @@ def verdict_of(folder: Path) -> str:
         return "not judged yet: run toolaxis verify"
     found = read_json(path)
     return "passed" if isinstance(found, dict) and found.get("passed") is True else "FAILED"
-
-
-def offset_from(text: str) -> NDArray[np.float64]:
-    """A work offset from three numbers X,Y,Z, mm.
-
-    Parameters
-    ----------
-    text : str
-
-    Raises
-    ------
-    InvalidInput
-        When there are not three finite numbers.
-    """
-    try:
-        values = [float(part) for part in text.split(",")]
-    except ValueError:
-        values = []
-    if len(values) != 3 or not all(isfinite(value) for value in values):
-        raise InvalidInput(f"offset {text!r} is none: give the part's origin on the table, three numbers X,Y,Z in mm")
-    return np.array(values)

@@ -2,7 +2,11 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isfinite
 from numbers import Integral
+
+import numpy as np
+from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.toolfile import load_holder, load_tool
@@ -36,6 +40,10 @@ class Spec:
         Sub-surfaces for each face; None leaves faces whole.
     orientations : int, "auto" or None
         Greatest number of different axes.
+    machine : str
+        Name in the library, or file; empty for none.
+    offset : str
+        Place of the part on the machine's table, "X,Y,Z"; empty where it is not known.
     """
 
     part: str
@@ -47,6 +55,8 @@ class Spec:
     obstacles: tuple[str, ...] = ()
     regions: int | str | None = None
     orientations: int | str | None = None
+    machine: str = ""
+    offset: str = ""
 
     def resolved_tool(self) -> Tool:
         """The tool with its holder.
@@ -62,6 +72,17 @@ class Spec:
         tool = load_tool(self.tool, **body)
         self.inputs.check_tool(tool)
         return tool
+
+    @property
+    def place(self) -> NDArray[np.float64] | None:
+        """The place of the part on the machine's table, as `toolaxis.plan` takes it.
+
+        Raises
+        ------
+        InvalidInput
+            When there are not three finite numbers.
+        """
+        return offset_from(self.offset) if self.offset else None
 
     @property
     def numbers(self) -> Numbers | str | None:
@@ -93,6 +114,27 @@ def parse_faces(text: str) -> Numbers | str:
             raise InvalidInput(f"face {high or low} is out of range: see toolaxis inspect for the part's faces")
         numbers += range(int(low), int(high or low) + 1)
     return tuple(dict.fromkeys(numbers))
+
+
+def offset_from(text: str) -> NDArray[np.float64]:
+    """A work offset from three numbers X,Y,Z, mm.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    InvalidInput
+        When there are not three finite numbers.
+    """
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != 3 or not all(isfinite(value) for value in values):
+        raise InvalidInput(f"offset {text!r} is none: give the part's origin on the table, three numbers X,Y,Z in mm")
+    return np.array(values)
 
 
 def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[Face, ...]:

@@ -52,6 +52,20 @@ def at_face(limits: AxisLimits | None, face: Face, tool: Tool) -> AxisLimits | N
     return limits.reaching(points, 2 * tool.radius)  # a tip is no farther than that from its contact
 
 
+def held_axis(limits: AxisLimits | None, axis: Array) -> Array:
+    """The axis nearest to one that the machine among limits holds in its steps; itself where there is none.
+
+    Parameters
+    ----------
+    limits : AxisLimits or None
+    axis : (3,) array
+        Unit vector.
+    """
+    mounting = mounting_of(limits)
+    near = np.empty((0, 3)) if mounting is None else mounting.on_steps(axis)
+    return near[0] if len(near) else axis
+
+
 def held(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
     """Candidates at axes that the machine can hold in its steps, best first; as they are where there is no machine.
 

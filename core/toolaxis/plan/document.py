@@ -11,6 +11,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
+from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
@@ -135,6 +136,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Docum
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
             "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel,
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
+            "rotary": _rows(rotary_of(plan.machine, op, plan.tool.gauge_length)),
             "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
 
 
@@ -164,6 +166,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "seconds": plan.seconds,
         "baselines": [asdict(one) for one in plan.baselines],
         "blades": blades_document(plan.blades),
+        "machine": machine_document(plan.machine),
         "options": [asdict(option) for option in plan.options],
         "operations": [_operation_document(op, plan, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
@@ -207,4 +210,4 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 np.array(document["datum"], dtype=float), document["outcome"],
                 tuple(Option(**option) for option in document.get("options", ())),
                 tuple(Baseline(**one) for one in document.get("baselines", ())),
-                blades_from(document.get("blades"), len(operations)))
+                blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.operation import Operation
@@ -159,6 +160,8 @@ class Plan:
         What other methods come to on the same faces, this plan first, where that was asked for.
     blades : Blades, optional
         Where one blade was planned and its operations were turned to the others.
+    machine : Mounting, optional
+        The machine that holds the axes, with the part on its table.
     """
 
     part: Part
@@ -171,6 +174,7 @@ class Plan:
     options: tuple[Option, ...] = ()
     baselines: tuple[Baseline, ...] = ()
     blades: Blades | None = None
+    machine: Mounting | None = None
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.
@@ -188,7 +192,11 @@ class Plan:
         missing = [name for name in ("shank", "holder") if name not in known]
         if not self.obstacles:
             missing.append("obstacles other than the part")
-        return (*missing, "machine")
+        if self.machine is None:
+            return (*missing, "machine")
+        if self.machine.table_from_part is None or self.tool.gauge_length is None:
+            missing.append("travel of the machine's linear axes")
+        return (*missing, "collision with the machine itself")
 
     @property
     def length(self) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from rich.table import Table
 
 from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
+from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan, outcome_of
 from toolaxis.verify.axes import Clearance
@@ -88,9 +89,22 @@ def plan_table(plan: Plan) -> Table:
                 for row, op in zip(rows, shown, strict=True)]
     title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
              f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, different axes {plan.orientations}")
+    if plan.machine is not None:
+        names = "/".join(axis.name for axis in plan.machine.machine.rotary)
+        shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
+        rows = [[*row[:2], _angles(plan, op), *row[2:]] for row, op in zip(rows, shown, strict=True)]
+        title += f", {plan.machine.machine.name}"
     columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("clean-\nup %", "right"),
                ("outcome", "left")]
+    if plan.machine is not None:
+        columns.insert(2, (f"{names}\ndeg", "left"))
     return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan.inputs)}")
+
+
+def _angles(plan: Plan, op: Operation) -> str:
+    """Angles of the rotary axes, the solution with the least turns."""
+    rows = rotary_of(plan.machine, op, plan.tool.gauge_length)
+    return " / ".join(f"{angle:.3f}" for angle in np.degrees(rows[0]) + 0.0) if len(rows) else "-"
 
 
 def _clean_up(op: Operation) -> str:

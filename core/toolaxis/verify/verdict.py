@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
+from toolaxis.machine.configurations import Machine
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.rays import Rays, face_rays
 from toolaxis.verify.removal import Remains, removal
@@ -63,6 +65,12 @@ class Task:
         Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
     depth : float
         How far below a face a gouge is followed, mm; less where a wall of targets and skin is thinner.
+    machine : Machine, optional
+        Judged for the reach of its rotary axes and, with place and tool length, for the travel of its linear ones.
+    place : (4, 4) array, optional
+        Where the part stands on the machine's table, all axes at zero.
+    tool_length : float, optional
+        From the spindle's gauge point to the tip, mm.
     """
 
     name: str
@@ -80,6 +88,9 @@ class Task:
     tolerance: Tolerance = field(default_factory=Tolerance)
     clean_up: float = 0.0
     depth: float = 1.0
+    machine: Machine | None = None
+    place: Array | None = None
+    tool_length: float | None = None
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):
@@ -292,7 +303,8 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, .
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
-                *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms)]
+                *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
+                *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
              for name, room in rooms.items() if room == NOT_CHECKED]
@@ -332,6 +344,12 @@ def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[
     deep = f"{gouge:.4f} mm" if gouge < task.depth else f"{gouge:.3f} mm or more"
     return [f"gouge {deep} at face {worst.face} {_at(worst.point)}, allowed {task.tolerance.gouge} mm, by the "
             f"{_motion(task, worst.motion)}"]
+
+
+def _machine_reasons(task: Task) -> list[str]:
+    if task.machine is None:
+        return []
+    return machine_faults(task.machine, task.tips, task.axes, task.place, task.tool_length)
 
 
 def _edge_reasons(task: Task, edge: Clearance) -> list[str]:

@@ -1,8 +1,8 @@
 """Fanuc 30i, 31i and 32i: the tilted working plane by G68.2 with G53.1, and work offsets alone for any ISO control.
 
-**Source** FANUC Series 30i/31i-A additional manual A-79976E for the feature coordinate system and its G69; G68.2 takes
-the origin X Y Z and the angles I J K of turns about Z, the new X, the new Z.  That length compensation is cancelled
-after G69 and G28 is common practice and not from a manual that was at hand.
+**Source** FANUC Series 30i/31i-A additional manual A-79976E for the feature coordinate system and its G69.  That G68.2
+takes the origin X Y Z and the angles I J K of turns about Z, the new X, the new Z, and that length compensation is
+cancelled after G69 and G28, is common practice and not from a manual that was at hand.
 """
 
 from typing import ClassVar

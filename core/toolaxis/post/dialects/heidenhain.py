@@ -1,9 +1,9 @@
 """Heidenhain TNC 320, 530, 620, 640 and TNC7: the PLANE SPATIAL function in Klartext.
 
 **Source** HEIDENHAIN TNC 620 user's manual for conversational programming, 10/2017, "Defining the working plane with
-the spatial angle": turns about the fixed axes in the order A, B, C, which is C, B, A about the turned ones;
-"Specifying the positioning behavior of the PLANE function": without SEQ the nearest solution inside the ranges is
-taken, which is the one where the axes stand; M140 MB MAX retracts along the tool axis.
+the spatial angle": turns about the fixed axes in the order A, B, C, which is C, B, A about the turned ones.  That
+without SEQ the nearest solution inside the ranges is taken, which is the one where the axes stand, and that M140 MB MAX
+retracts along the tool axis, is common practice and not from a manual that was at hand.
 """
 
 import numpy as np

@@ -2,9 +2,10 @@
 
 **Source** SINUMERIK operating manual 6FC5398-8CP40, "Swivel": axis-by-axis mode turns the coordinate system about each
 axis as the turns before have left it; Direction minus or plus takes the solution with the lower or the higher value of
-the rotary axis that is the direction reference.  SINUMERIK programming manual, CYCLE800(_FR, _TC, _ST, _MODE, X0, Y0,
-Z0, A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE): _FR 1 retracts Z before
-swivelling, _MODE 57 is axis by axis in the order X, Y, Z; without parameters the swivel frames are deleted.
+the rotary axis that is the direction reference.  The order of the arguments, CYCLE800(_FR, _TC, _ST, _MODE, X0, Y0, Z0,
+A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE), with _FR 1 for a retract of Z before swivelling, _MODE 57 for axis by axis in
+the order X, Y, Z, and the empty call that deletes the swivel frames, is that of published programs; no manual for it
+was at hand.
 """
 
 from math import degrees

@@ -1,0 +1,260 @@
+"""Sub-surfaces, axes and operations of one plan: what `toolaxis.plan` sets going."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import Cancelled, ToolAxisError
+from toolaxis.job.abreast import abreast
+from toolaxis.job.axes import frame_of, judged
+from toolaxis.job.pattern import Pattern, shared_out
+from toolaxis.job.rooms import with_rooms
+from toolaxis.job.turned import followed, spread_out, with_refused
+from toolaxis.job.zones import zoned
+from toolaxis.machine.limits import AxisLimits
+from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.indexed import Task, best_axis, combined
+from toolaxis.orient.indexed import task as search_task
+from toolaxis.orient.together import together
+from toolaxis.partition.bosses import distances
+from toolaxis.partition.cover import shared, trade
+from toolaxis.partition.divider import MOST, Divider, Regions
+from toolaxis.partition.regions import checked_count
+from toolaxis.partition.regions import regions as regions_of
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.progress import Progress
+from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import split_at_kinks
+from toolaxis.shape.part import Part
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+#: Methods that search as another one does.
+_SEARCHES = {"ball": "normal"}
+
+
+class Target(NamedTuple):
+    """A sub-surface, the axis that its division reckoned with, if any, and whether it shares that with others."""
+
+    face: Face
+    axis: Array | None = None
+    shared: bool = False
+
+
+def by_axis(targets: list[Target]) -> list[Target]:
+    """Sub-surfaces in an order in which each axis is set once: that of the first one with each axis.
+
+    Parameters
+    ----------
+    targets : list of Target
+        Each with an axis.
+    """
+    names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
+    return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """One plan in the making.
+
+    Attributes
+    ----------
+    part : Part
+    tool : Tool
+    inputs : Inputs
+    limits : AxisLimits or None
+        Of the axis, besides the machine's.
+    bodies : tuple of Part
+        Further bodies to keep clear of.
+    datum : (3,) array
+    regions, orientations : int, "auto" or None
+        As `toolaxis.plan` takes them.
+    workers : int
+        Processes to work with.
+    whole : tuple of Face
+        Faces that are machined undivided after the others.
+    machine : Mounting or None
+    """
+
+    part: Part
+    tool: Tool
+    inputs: Inputs
+    limits: AxisLimits | None
+    bodies: tuple[Part, ...]
+    datum: Array
+    regions: int | str | None = None
+    orientations: int | str | None = None
+    workers: int = 1
+    whole: tuple[Face, ...] = ()
+    machine: Mounting | None = None
+
+    def by(self, method: str) -> "Job":
+        """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
+        return replace(self, inputs=replace(self.inputs, method=method),
+                       tool=self.tool.with_ball_end() if method == "ball" else self.tool)
+
+    def bladed(self, pattern: Pattern, progress: Progress) -> Plan:
+        """The plan of a part with blades: one is planned, what is done there is turned to the others."""
+        share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
+        apart = pattern.blades.apart(self.part, pattern.first[0].number)
+        regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
+        one = replace(self, part=apart, regions=regions,
+                      whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
+        faces = [piece for face in share.divided for piece in split_at_kinks(face)]
+        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share.refused)
+        found = spread_out(pattern, first, _Planner(self), progress)
+        if found.outcome != "cancelled" and pattern.rest:
+            faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]
+            found = followed(found, zoned(self.carried_out(faces, progress), self.workers, progress))
+        return found if found.outcome == "cancelled" else with_rooms(found, progress)
+
+    def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
+        """The plan for faces, divided where asked for, one sub-surface after the other."""
+        options: tuple[Option, ...] = ()
+        try:
+            if self.orientations:
+                targets, options = self._sharing(faces, progress)
+            else:
+                targets = self._divided(faces, progress)
+            targets += [Target(face) for face in self.whole]
+            if self.inputs.method == "one":
+                return self._alike(targets, progress)
+        except Cancelled:
+            return self._plan((), "cancelled", options)
+        return self._machined(targets, options, progress)
+
+    def _machined(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
+        """The plan for sub-surfaces as they are."""
+        done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
+                       self.workers, progress)
+        operations = tuple(replace(op, face=targets[op.number - 1].face) for op in done.results)
+        complete = "complete" if all(op.done for op in operations) else "incomplete"
+        return self._plan(operations, "cancelled" if done.cancelled else complete, options)
+
+    def _alike(self, targets: list[Target], progress: Progress) -> Plan:
+        """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
+        tasks = [self._task(target.face, progress) for target in targets]
+        made = None
+        for axis in together(tasks, progress.within("one axis")):
+            made = self._machined([Target(target.face, axis, True) for target in targets], (), progress)
+            if made.outcome != "incomplete":
+                break
+        return made or self._machined(targets, (), progress)
+
+    def empty(self) -> Plan:
+        """The plan that was cancelled before anything was done."""
+        return self._plan((), "cancelled", ())
+
+    def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
+        return Plan(self.part, self.tool, self.inputs, operations, self.bodies, self.datum, outcome, options,
+                    machine=self.machine)
+
+    def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
+        """Sub-surfaces of each face by itself."""
+        if self.regions is None:
+            return [Target(face) for face in faces]
+
+        def _division(k: int, inner: Progress) -> Regions:
+            named = inner.within(f"face {faces[k].label}")
+            standing = distances(faces[k], self.tool, self.part, self._obstacles)
+            return regions_of(self._task(faces[k], inner), self.regions, progress=named, bosses=standing)
+
+        found = abreast(_division, len(faces), self.workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        return [Target(piece, axis) for one in found.results
+                for piece, axis in zip_longest(one.faces, one.axes)]
+
+    def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
+        """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from."""
+        most = MOST if self.regions is None else checked_count(self.regions) or MOST
+        dividers = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
+                    for face in faces]
+        options: tuple[Option, ...] = ()
+        count = checked_count(self.orientations, "orientations")
+        if count is None:
+            found, knee = trade(dividers, progress=progress)
+            options = tuple(Option(one.orientations, one.pieces, one.length, k == knee) for k, one in enumerate(found))
+            chosen = found[knee]
+        else:
+            chosen = shared(dividers, count, progress=progress)
+        return by_axis([Target(piece, axis, True) for one in chosen.regions
+                        for piece, axis in zip(one.faces, one.axes, strict=True)]), options
+
+    def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
+        """The operation of a sub-surface, with a shared axis where that may be used."""
+        face, axis, number = target.face, target.axis, place[0] + 1
+        inner = progress.within(f"face {face.label} ({number} of {place[1]})")
+        inner.report("search for the axis", 0, 1)
+        try:
+            found, path = Orientation(None), None
+            if axis is not None and target.shared:
+                found, path = judged(self._task(face, inner), axis)
+            if found.axis is None and self.inputs.method == "one":
+                why = found.reasons or ("no axis found that all sub-surfaces allow",)
+                return Operation(number, face, replace(found, reasons=why))
+            if found.axis is None:
+                refused = found.reasons
+                found = self._searched(face, axis, inner)
+                found = replace(found, reasons=(*(f"shared axis refused: {why}" for why in refused), *found.reasons))
+                path = None if found.axis is None else self._traced(face, found, inner)
+        except Cancelled:
+            raise
+        except ToolAxisError as reason:  # this face cannot be done; the others can
+            return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+        if found.outcome == "cancelled":
+            raise Cancelled("cancelled by the user")
+        return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
+
+    def _searched(self, face: Face, start: Array | None, progress: Progress) -> Orientation:
+        method = _SEARCHES.get(self.inputs.method, self.inputs.method)
+        return best_axis(face, self.tool, self.inputs.scallop, self._limits, self._obstacles, method,
+                         self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
+                         tolerance=self.inputs.tolerance, direction=self.inputs.direction, starts=start,
+                         progress=progress)
+
+    @property
+    def _limits(self) -> AxisLimits | None:
+        return combined(self.machine, self.limits)
+
+    @property
+    def _obstacles(self) -> tuple[Face, ...]:
+        return tuple(face for body in self.bodies for face in body.faces)
+
+    def _traced(self, face: Face, found: Orientation, progress: Progress) -> ToolPath:
+        """The very passes, links and ramps included, that the search has proven."""
+        assert found.axis is not None
+        return self._task(face, progress).made(found.axis, found.feed)
+
+    def _task(self, face: Face, progress: Progress) -> Task:
+        return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
+                           objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
+                           tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _Planner:
+    """What plans a face of a part whose blades are told apart."""
+
+    job: Job
+
+    @property
+    def workers(self) -> int:
+        """Processes to work with."""
+        return self.job.workers
+
+    def task(self, part: Part, face: Face, progress: Progress) -> Task:
+        """What decides about an axis."""
+        return replace(self.job, part=part)._task(face, progress)
+
+    def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
+        """The operation, its axis searched."""
+        return replace(replace(self.job, part=part)._operation(Target(face), (number - 1, number), progress), face=face)

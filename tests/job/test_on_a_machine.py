@@ -1,0 +1,88 @@
+"""A whole plan on a machine: its axes, its written form, the judge, and what is not judged."""
+
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.job.axes import try_axis
+from toolaxis.job.folder import read_json, read_plan, write_plan
+from toolaxis.machine.mounting import Mounting
+
+HOLDER = [(10.0, 0.0), (10.0, 40.0)]
+TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=HOLDER)
+
+
+@pytest.fixture(scope="module")
+def plan() -> ta.Part:
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij")
+    face = ta.Face.from_bspline(np.stack([x, y, 3 * np.sin(x / 15) + 2 * np.cos(y / 12)], axis=-1))
+    return ta.plan(face, TOOL, 0.2, machine="mikron-ucp-710", offset=(-20.0, -15.0, 60.0), limits="cone:0,0,1,40")
+
+
+def test_axes_are_held_and_the_plan_says_where(plan, tmp_path: Path) -> None:
+    op = plan.operations[0]
+    assert plan.outcome == "complete", op.orientation.reasons
+    assert plan.machine is not None and plan.inputs.limits == "cone:0,0,1,40"
+    assert "machine" not in plan.not_checked and "collision with the machine itself" in plan.not_checked
+    write_plan(plan, tmp_path)
+    document = read_json(tmp_path / "plan.json")
+    assert document["machine"]["name"] == "Mikron UCP 710" and document["machine"]["kind"] == "table-table"
+    angles = np.array(document["operations"][0]["rotary"])
+    steps = [axis.increment for axis in plan.machine.machine.rotary]
+    for row in angles:
+        assert np.allclose(plan.machine.axis_at(row), op.orientation.axis, atol=1e-9)
+        assert all(step == 0 or abs(value / step - round(value / step)) < 1e-6
+                   for value, step in zip(row, steps, strict=True))
+    again = read_plan(tmp_path)
+    assert again.machine is not None and np.allclose(again.machine.table_from_part, [[1, 0, 0, -20], [0, 1, 0, -15],
+                                                                                     [0, 0, 1, 60], [0, 0, 0, 1]])
+    assert ta.verify(again).passed
+
+
+def test_the_judge_refuses_a_part_that_was_moved_out_of_the_travel(plan) -> None:
+    moved = replace(plan, machine=Mounting(plan.machine.machine, (900.0, 0.0, 60.0)))
+    verdict = ta.verify(moved)
+    assert not verdict.passed and any("would leave its travel by" in reason for reason in verdict.reasons)
+
+
+def test_an_axis_that_is_tried_stands_on_the_machine_s_steps(plan) -> None:
+    op = plan.operations[0]
+    wanted = np.array([0.05, -0.3, 0.95])
+    tried = try_axis(plan, op, wanted)
+    assert tried.done, tried.orientation.reasons
+    held = plan.machine.solutions(tried.orientation.axis)
+    assert len(held) and np.allclose(plan.machine.axis_at(held[0]), tried.orientation.axis, atol=1e-12)
+    beyond = try_axis(plan, op, (0.0, -0.9, 0.436))
+    assert not beyond.done and "outside the limits" in beyond.orientation.reasons[0]
+
+
+def test_travel_is_said_not_to_be_judged_without_a_place(plan) -> None:
+    bare = replace(plan, machine=Mounting(plan.machine.machine))
+    assert "travel of the machine's linear axes" in bare.not_checked
+    short = replace(plan, tool=ta.Tool.torus(diameter=12, corner_radius=2))
+    assert "travel of the machine's linear axes" in short.not_checked
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    ({"machine": "lathe"}, "machine 'lathe' is neither a file nor one of the library"),
+    ({"machine": "cone:0,0,1,40", "offset": (0, 0, 1)}, "without a machine"),
+    ({"offset": (0, 0, 1)}, "without a machine"), ({"machine": "mikron-ucp-710", "offset": (0, 1)}, "work offset")])
+def test_wrong_machines_and_places_are_refused(words, message) -> None:
+    face = ta.Face.from_bspline(np.stack(np.meshgrid([0.0, 9, 20], [0.0, 9, 20], [0.0]), -1)[:, :, 0], degree=(2, 2))
+    with pytest.raises(ta.InvalidInput, match=message):
+        ta.plan(face, "torus:6x1", 0.1, **words)
+
+
+def test_a_machine_with_coarse_steps_still_machines() -> None:
+    coarse = ta.load_machine("dmg-dmu-60t")
+    coarse = replace(coarse, table=tuple(replace(axis, increment=radians(5)) for axis in coarse.table),
+                     head=tuple(replace(axis, increment=radians(5)) for axis in coarse.head))
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij")
+    face = ta.Face.from_bspline(np.stack([x, y, 0.003 * (x - 20) ** 2], axis=-1))
+    made = ta.plan(face, TOOL, 0.2, machine=coarse)
+    angles = np.degrees(made.machine.solutions(made.operations[0].orientation.axis))
+    assert len(angles) and np.allclose(angles / 5, np.round(angles / 5), atol=1e-9)
