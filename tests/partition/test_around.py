@@ -1,10 +1,13 @@
 """Faces divided by the distance to bosses: whole, without overlap, cut at that distance, and taken where cheaper."""
 
+import sys
+
 import numpy as np
 import pytest
 
 import toolaxis as ta
 from toolaxis.orient.indexed import Task, task
+from toolaxis.orient.worth import CLEAN_UP
 from toolaxis.partition.around import Around, candidates, parted
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.divider import Divider
@@ -91,12 +94,24 @@ def test_the_cheaper_division_is_taken(job: Task, divider: Divider, monkeypatch:
     bosses = distances(waved(), TOOL, obstacles=POSTS)
     both = regions(job, 4, bosses=bosses)
     assert len(both) == 4 and sum(both.lengths) <= 1.03 * divider.curve[4]
-    monkeypatch.setattr(Divider, "curve", property(lambda self: self.best.division.curve + 1e5))
+
+    class Dearer(Divider):
+        """Iso-parametric cuts that cost more than any by distance."""
+
+        curve = property(lambda self: self.best.division.curve + 1e5)
+
+    monkeypatch.setattr(sys.modules["toolaxis.partition.regions"], "Divider", Dearer)
     forced = regions(job, 4, bosses=bosses)
-    assert len(forced) == 4 and sum(forced.lengths) >= sum(both.lengths) - 1e-6
+    assert forced.radius > 0 and len(forced) == 4
+    assert sum(forced.lengths) >= sum(both.lengths) - 1e-6
+    assert sum(one.area for one in forced) == pytest.approx(waved().area, rel=1e-6)
 
 
 def test_what_is_left_at_posts_is_charged(divider: Divider) -> None:
     prices = divider.best.prices
     assert prices.left.any() and (prices.extra[~prices.left.any(axis=(1, 2))] == 0).all()
-    assert (prices.extra.sum(axis=(1, 2, 3))[prices.left.any(axis=(1, 2))] > 0).all()
+    assert (prices.extra.sum(axis=(1, 2))[prices.left.any(axis=(1, 2))] > 0).all()
+    whole = prices.left[:, :-1, :-1] & prices.left[:, 1:, :-1] & prices.left[:, :-1, 1:] & prices.left[:, 1:, 1:]
+    cell = tuple(np.argwhere(whole & (divider.lattice.areas > 0))[0])
+    strip = divider.job.worth.clean_up_strip
+    assert prices.extra[cell] == pytest.approx(CLEAN_UP * divider.lattice.areas[cell[1:]] / strip)

@@ -96,14 +96,14 @@ def test_what_cells_cost_besides_is_added_up_over_every_rectangle() -> None:
     rng = np.random.default_rng(3)
     rates = rng.uniform(0.5, 2, (3, 2, 5, 4))
     gaps, pitch = (np.ones((4, 4)), np.ones((5, 3))), (np.ones(4), np.ones(3))
-    extra = rng.uniform(0, 5, (3, 2, 4, 3))
+    extra = rng.uniform(0, 5, (3, 4, 3))
     found = offers(rates, gaps, pitch, 0.7, extra)
     for u0, u1, v0, v1 in np.argwhere(proper(4, 3)):
         box = slice(u0, u1 + 1), slice(v0, v1 + 1)
         one = each_axis(rates[:, :, *box], (gaps[0][u0:u1, box[1]], gaps[1][box[0], v0:v1]),
-                        (pitch[0][u0:u1], pitch[1][v0:v1]), 0.7, extra[:, :, u0:u1, v0:v1])
+                        (pitch[0][u0:u1], pitch[1][v0:v1]), 0.7, extra[:, u0:u1, v0:v1])
         assert found.cost[u0, u1, v0, v1] == pytest.approx(one.min())
         assert found.axis[u0, u1, v0, v1] == one.argmin()
     whole = offers(rates, gaps, pitch, 0.7).cost[0, 4, 0, 3]
-    flat = offers(rates, gaps, pitch, 0.7, np.full((3, 2, 4, 3), 2.5)).cost[0, 4, 0, 3]
+    flat = offers(rates, gaps, pitch, 0.7, np.full((3, 4, 3), 2.5)).cost[0, 4, 0, 3]
     assert flat - whole == pytest.approx(12 * 2.5)

@@ -42,6 +42,8 @@ Bools = NDArray[np.bool_]
 
 #: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
 FINE, COARSE = 0.0003, 0.002
+#: An axis that leaves more than this share of the contacts to a clean-up tool is none.
+MOST_LEFT = 0.9
 _DENSE = 32
 _NOWHERE = np.zeros((0, 0), dtype=bool)
 
@@ -227,7 +229,7 @@ class Feasibility:
         left = trouble.wall & (trouble.reason != FREE)
         bad = (trouble.reason != FREE) & ~left
         unreached = float(contacts.share[left].sum())
-        if not bad.any() and (left | (contacts.share == 0)).all():
+        if not bad.any() and ((left | (contacts.share == 0)).all() or unreached > MOST_LEFT):
             bad = left
         if not bad.any():
             return FREE, 0.0, unreached

@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 
 OBJECTIVES = ("length", "passes")
 FEEDS = ("u", "v")
+#: What a mm of the clean-up tool's passes is worth in mm of this tool's: it comes with another tool, axis and seam, and
+#: only what the cutter cannot reach shall stay for it.
+CLEAN_UP = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +96,8 @@ class Worth:
     def charge(self, length: float, unreached: float) -> float:
         """Factor on passes and length for what is left to a clean-up tool.
 
-        What stays is charged at the strip width of a ball that fits into the corner: of the cutter's corner radius, or
-        of a quarter of its radius if that is larger.
+        What stays is charged `CLEAN_UP` times its cutting length with a ball that fits into the corner: of the
+        cutter's corner radius, or of a quarter of its radius if that is larger.
 
         Parameters
         ----------
@@ -105,7 +108,7 @@ class Worth:
         """
         if unreached <= 0 or not np.isfinite(length):
             return 1.0
-        return 1 - unreached + unreached * (self.face.area / length) / self.clean_up_strip
+        return 1 - unreached + CLEAN_UP * unreached * (self.face.area / length) / self.clean_up_strip
 
     @property
     def clean_up_strip(self) -> float:

@@ -203,7 +203,7 @@ class Divider:
         rates = prices.rates[:, :, u0:u1 + 1, v0:v1 + 1]
         gaps = self._gaps[0][u0:u1, v0:v1 + 1], self._gaps[1][u0:u1 + 1, v0:v1]
         pitch = self._pitch[0][u0:u1], self._pitch[1][v0:v1]
-        return each_axis(rates, gaps, pitch, self._ends, prices.extra[:, :, u0:u1, v0:v1])
+        return each_axis(rates, gaps, pitch, self._ends, prices.extra[:, u0:u1, v0:v1])
 
     def regions(self, count: int) -> Regions:
         """The cheapest division into a number of sub-surfaces, with an axis each.

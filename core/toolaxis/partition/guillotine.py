@@ -48,8 +48,8 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
         Distances of neighbouring lines in u and in v.
     ends : float
         By how much a pass is longer than its line on the face, mm.
-    extra : (k, 2, nu, nv) array, optional
-        What each cell costs besides with feed u and v, mm: what is left to a clean-up tool.
+    extra : (k, nu, nv) array, optional
+        What each cell costs besides, mm: what is left to a clean-up tool.
     """
     nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
     cost = np.full((nu + 1, nu + 1, nv + 1, nv + 1), np.inf)
@@ -62,8 +62,8 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
                 table = _lengths(rates[part, 0], rows[0], pitch[1])
             else:
                 table = _lengths(rates[part, 1].swapaxes(1, 2), rows[1], pitch[0]).transpose(0, 3, 4, 1, 2)
-            if extra is not None and extra[part, number].any():
-                table = table + _boxes(extra[part, number])
+            if extra is not None and extra[part].any():
+                table = table + _boxes(extra[part])
             best = table.argmin(axis=0)
             least = np.take_along_axis(table, best[None], axis=0)[0]
             better = least < np.minimum(cost, _TOO_MUCH)
@@ -95,7 +95,7 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
         row = _ended(gaps[along].sum(axis=along), ends)
         middle = (most[:, 1:] * row[1:] + most[:, :-1] * row[:-1]) / 2
         cost = (middle * pitch[step]).sum(axis=1) + row.mean() / 2
-        cost += 0.0 if extra is None else extra[:, along].sum(axis=(1, 2))
+        cost += 0.0 if extra is None else extra.sum(axis=(1, 2))
         usable = (most.max(axis=1) < _TOO_MUCH) & ((middle * pitch[step]).sum(axis=1) > _NONE)
         both.append(np.where(usable, cost, np.inf))
     return np.minimum(*both)

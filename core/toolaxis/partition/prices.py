@@ -10,7 +10,7 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.contacts import contacts_at
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.verdicts import FREE
-from toolaxis.orient.worth import FEEDS, Worth
+from toolaxis.orient.worth import CLEAN_UP, FEEDS, Worth
 from toolaxis.partition.lattice import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
 
@@ -33,8 +33,8 @@ class Prices:
         the axis may not be used.
     left : (k, nu + 1, nv + 1) array of bool
         Whether the node lies at a wall and is left to a clean-up tool.
-    extra : (k, 2, nu, nv) array
-        What it costs to clean up in each cell, beyond the passes that are reckoned through it with feed u and v, mm.
+    extra : (k, nu, nv) array
+        What it costs to clean up in each cell, mm.
     whole : (nu, nv) array
         Area of the face in each cell, mm^2.
     """
@@ -106,23 +106,18 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)
     everywhere[:, nodes] = left
     rates, everywhere = rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape)
-    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, rates, everywhere), lattice.areas)
+    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, everywhere), lattice.areas)
 
 
-def _clean_up(lattice: Lattice, worth: Worth, rates: Array, left: Bools) -> Array:
-    """What cells cost for the clean-up tool besides the passes reckoned through them, (k, 2, nu, nv) mm.
+def _clean_up(lattice: Lattice, worth: Worth, left: Bools) -> Array:
+    """What it costs to clean up in each cell, (k, nu, nv) mm, as `Worth.charge` reckons.
 
-    The share of a cell is that of its corners; the clean-up tool's strip is that of `Worth.charge`.
+    The share of a cell is that of its corners.  Passes that are reckoned through it are not taken off: where hardly
+    anything of a row is machined, there are none.
     """
-    d = lattice.face.evaluate(lattice.uv.reshape(-1, 2))
-    speed = np.stack([np.linalg.norm(step, axis=1) for step in (d.sv, d.su)]).reshape(2, *lattice.material.shape)
-    priced_ = (rates > 0) & (rates < FORBIDDEN)
-    density = np.where(priced_, rates / np.maximum(speed, np.finfo(float).tiny), 0.0).sum(axis=(2, 3))
-    usual = density / np.maximum(priced_.sum(axis=(2, 3)), 1)
-    dearer = np.maximum(1 / worth.clean_up_strip - usual, 0.0)
     share = left.astype(float)
     share = (share[:, 1:, 1:] + share[:, :-1, 1:] + share[:, 1:, :-1] + share[:, :-1, :-1]) / 4
-    return np.asarray(dearer[:, :, None, None] * (share * lattice.areas)[:, None])
+    return np.asarray(share * lattice.areas * CLEAN_UP / worth.clean_up_strip)
 
 
 def _usable(lattice: Lattice, feasibility: Feasibility, axes: Array, nodes: NDArray[np.intp],

@@ -118,11 +118,12 @@ def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX
     if number is None:
         least = np.min([divider.curve, *(one.curve for one in around)], axis=0)
         number = int(np.argmin(least + index_cost * np.arange(len(least))))
-    best = min(around, key=lambda one: one.curve[number], default=None)
-    if best is not None and np.isfinite(best.curve[number]):
-        best = best.closer(divider, number)
-        found = best.regions(number)
-        if best.curve[number] < divider.curve[number] and len(found) == number and not slivers(found, job.worth.tool):
+    for one in sorted(around, key=lambda one: float(one.curve[number])):
+        if not one.curve[number] < divider.curve[number]:
+            break
+        near = one.closer(divider, number)
+        found = near.regions(number)
+        if near.curve[number] < divider.curve[number] and len(found) == number and not slivers(found, job.worth.tool):
             return found
     if number not in known:
         raise InvalidInput(f"face {label} cannot be divided into {number} sub-surfaces: {_why_not(divider, number)}")
