@@ -23,6 +23,26 @@ def test_a_widget_of_a_wrong_class_is_loaded_again(desk, monkeypatch):
     assert len(loaded) == 3
 
 
+def test_a_form_that_is_dead_is_loaded_again(desk, monkeypatch):
+    from freecad.toolaxis.panels import fields
+
+    loaded = []
+
+    class Dead:
+        def objectName(self):
+            raise RuntimeError("Internal C++ object (PySide6.QtWidgets.QDialogButtonBox) already deleted.")
+
+    class Loader:
+        @staticmethod
+        def loadUi(file, load=fields.FreeCADGui.PySideUic.loadUi):
+            loaded.append(load(file) if loaded else Dead())
+            return loaded[-1]
+
+    monkeypatch.setattr(fields.FreeCADGui, "PySideUic", Loader)
+    form = fields.load_form("verify")
+    assert form is loaded[1] and len(loaded) == 2
+
+
 def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
     from freecad.toolaxis.panels import fields
 

@@ -22,7 +22,8 @@ def load_form(name):
     """The widget of a layout file.
 
     Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
-    is of another class (seen: a QWidget instead of a slider).  Then the layout is loaded again, elsewhere in memory.
+    is of another class or raises when touched (seen: a QWidget instead of a slider, a dead box of buttons instead of
+    the form).  Then the layout is loaded again, elsewhere in memory.
 
     Parameters
     ----------
@@ -30,16 +31,25 @@ def load_form(name):
         Without its ending.
     """
     file = RESOURCES / "ui" / f"{name}.ui"
+    widgets = list(ElementTree.parse(file).iter("widget"))
     expected = {widget.get("name"): getattr(QtWidgets, widget.get("class"), QtWidgets.QWidget)
-                for widget in ElementTree.parse(file).iter("widget")}
+                for widget in widgets[1:]}
     spoilt = []
     for _ in range(_LOADINGS):
         form = FreeCADGui.PySideUic.loadUi(str(file))
-        if all(isinstance(getattr(form, child, None), kind)
-               for child, kind in expected.items() if child != form.objectName()):
+        if _sound(form, widgets[0].get("name"), expected):
             break
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
     return form
+
+
+def _sound(form, name, expected):
+    """Whether a form and its widgets are what the layout says, and none is the object of a dead one."""
+    try:
+        return form.objectName() == name and all(isinstance(getattr(form, child, None), kind)
+                                                 for child, kind in expected.items())
+    except RuntimeError:  # "Internal C++ object already deleted"
+        return False
 
 
 def length_text(value):
