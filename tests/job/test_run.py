@@ -12,6 +12,7 @@ from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.planning import Target, by_axis
 from toolaxis.job.spec import chosen_faces, parse_faces
 from toolaxis.machine.limits import parse_limits
+from toolaxis.orient.indexed import Task
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
 
@@ -158,14 +159,14 @@ def test_faces_by_number_and_by_default() -> None:
 def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
     import toolaxis.job.planning as job
 
-    search = job.best_axis
+    search = job.searched
 
-    def fails_on_the_first(face: ta.Face, *rest: object, **more: object) -> object:
-        if face.number == 1:
+    def fails_on_the_first(task: Task, *rest: object, **more: object) -> object:
+        if task.worth.face.number == 1:
             raise ta.UnsupportedGeometry("face 1 is made of water")
-        return search(face, *rest, **more)  # type: ignore[arg-type]
+        return search(task, *rest, **more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(job, "best_axis", fails_on_the_first)
+    monkeypatch.setattr(job, "searched", fails_on_the_first)
     part = ta.Part.from_faces([ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.0) + np.array([0, 40.0, 0]))])
     made = ta.plan(part, "torus:12x1", 0.1)
     assert made.outcome == "incomplete"

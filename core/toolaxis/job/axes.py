@@ -85,8 +85,13 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
     return work_coordinates(found.axis, feeds, datum, middle)
 
 
-class _Remembering(Task):
-    """A task that keeps the passes it made last."""
+class Remembering(Task):
+    """A task that keeps the passes it made last: those of the axis that was accepted, when a search is over.
+
+    Attributes
+    ----------
+    path : ToolPath or None
+    """
 
     path: ToolPath | None
 
@@ -154,7 +159,7 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
     Cancelled
         When the user asked to stop.
     """
-    job = _Remembering(task)
+    job = Remembering(task)
     t = held_axis(job.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
     witness = job.feasibility.witness(t)
     found = Orientation(None, outcome="infeasible")

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.job.abreast import abreast
-from toolaxis.job.axes import frame_of, judged
+from toolaxis.job.axes import Remembering, frame_of, judged
 from toolaxis.job.pattern import Pattern, shared_out
 from toolaxis.job.rooms import with_rooms
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import Task, best_axis, combined
+from toolaxis.orient.indexed import Task, combined, searched
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.orient.together import together
 from toolaxis.partition.bosses import distances
@@ -203,9 +203,8 @@ class Job:
                 return Operation(number, face, replace(found, reasons=why))
             if found.axis is None:
                 refused = found.reasons
-                found = self._searched(face, axis, inner)
+                found, path = self._searched(face, axis, inner)
                 found = replace(found, reasons=(*(f"shared axis refused: {why}" for why in refused), *found.reasons))
-                path = None if found.axis is None else self._traced(face, found, inner)
         except Cancelled:
             raise
         except ToolAxisError as reason:  # this face cannot be done; the others can
@@ -214,12 +213,11 @@ class Job:
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
-    def _searched(self, face: Face, start: Array | None, progress: Progress) -> Orientation:
-        method = _SEARCHES.get(self.inputs.method, self.inputs.method)
-        return best_axis(face, self.tool, self.inputs.scallop, self._limits, self._obstacles, method,
-                         self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
-                         tolerance=self.inputs.tolerance, direction=self.inputs.direction, starts=start,
-                         progress=progress)
+    def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
+        """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
+        job = Remembering(self._task(face, progress))
+        found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
+        return found, None if found.axis is None else job.path
 
     @property
     def _limits(self) -> AxisLimits | None:
@@ -228,11 +226,6 @@ class Job:
     @property
     def _obstacles(self) -> tuple[Face, ...]:
         return tuple(face for body in self.bodies for face in body.faces)
-
-    def _traced(self, face: Face, found: Orientation, progress: Progress) -> ToolPath:
-        """The very passes, links and ramps included, that the search has proven."""
-        assert found.axis is not None
-        return self._task(face, progress).made(found.axis, found.feed)
 
     def _task(self, face: Face, progress: Progress) -> Task:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,

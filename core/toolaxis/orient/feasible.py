@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.distances import Found, bounded, motions
+from toolaxis.contact.distances import Found, bounded, judged, motions
 from toolaxis.contact.placing import tips
 from toolaxis.machine.limits import AxisLimits, refusal
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
@@ -45,7 +45,6 @@ FINE, COARSE = 0.0003, 0.002
 #: An axis that leaves more than this share of the contacts to a clean-up tool is none.
 MOST_LEFT = 0.9
 _DENSE = 32
-_NOWHERE = np.zeros((0, 0), dtype=bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -413,9 +412,19 @@ class Feasibility:
         within = ROLES if self.neighbours else (OTHER,)
         for part, roles in ((good & inside, within), (good & ~inside, ROLES)):
             if part.any() and any(group.role in roles for group in self.groups):
-                some = Contacts(rows[part], point[part], normal[part], np.zeros(int(part.sum())), _NOWHERE)
-                good[part] = self.trouble(t, some, roles=roles).reason == FREE
+                good[part] = self._stands_free(tips(point[part], normal[part], t, self.tool, self.allowance), t, roles)
         return np.asarray(good)
+
+    def _stands_free(self, places: Array, axis: Array, roles: tuple[str, ...]) -> Bools:
+        """Whether the tool keeps its distances from some groups at tips, (n,)."""
+        free, moves = np.ones(len(places), dtype=bool), motions(places, axis)
+        for group in self.groups:
+            some = np.flatnonzero(free)
+            if group.role in roles and len(some):
+                tool = self._carried_on(places, axis, group) if group.role == OTHER else self.tool
+                required = np.tile(group.required, (len(group.faces), 1))
+                free[some] = judged(group.cells, tool, moves[some], required).blocked < 0
+        return free
 
     def room(self, axis: ArrayLike, most: float = 10.0) -> float:
         """How much more clearance than required an axis leaves at the screening contacts, mm, at most `most`.

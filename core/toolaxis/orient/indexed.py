@@ -224,8 +224,22 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
                progress=progress)
+    return searched(job, method, starts)
+
+
+def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None) -> Orientation:
+    """The axis that `best_axis` finds for a task.
+
+    Parameters
+    ----------
+    job : Task
+    method : str
+        One of `METHODS`.
+    starts : (k, 3) array_like, optional
+        Axes that are worth a look before others.
+    """
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
-    ledger = Ledger(job.feasibility, job.worth, progress, first)
+    ledger = Ledger(job.feasibility, job.worth, job.progress, first)
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
