@@ -122,22 +122,30 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
     job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
               checked_workers(workers), machine=mounting)
+    whole = faces is None and not loaded.selected and method in METHODS
     with heard(progress):
-        try:
-            if faces is None and not loaded.selected and method in METHODS:
-                progress.report("looking for blades", 0, 1)
-                pattern, refusal = recognised(loaded)
-                if pattern is not None:
-                    kept = (_NOT_COMPARED,) if compare else ()
-                    return replace(job, part=loaded.with_warnings(*kept)).bladed(pattern, progress)
-                job = replace(job, part=loaded.with_warnings(*refusal))
-            made = zoned(job.by(method).carried_out(targets, progress), job.workers, progress)
-        except Cancelled:
-            return job.empty()
-        if not compare or made.outcome == "cancelled":
-            return made
-        whole = replace(job, regions=None, orientations=None)
-        return compared(made, targets, lambda name, some: whole.by(name).carried_out(some, progress.within(name)))
+        return _carried_out(job, targets, (whole, compare), progress)
+
+
+def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
+    """The plan of a job: blade by blade where the whole of a bladed part is asked for, else face by face, and compared
+    with other methods where that is asked for."""
+    whole, compare = asked
+    try:
+        if whole:
+            progress.report("looking for blades", 0, 1)
+            pattern, refusal = recognised(job.part)
+            if pattern is not None:
+                kept = (_NOT_COMPARED,) if compare else ()
+                return replace(job, part=job.part.with_warnings(*kept)).bladed(pattern, progress)
+            job = replace(job, part=job.part.with_warnings(*refusal))
+        made = zoned(job.by(job.inputs.method).carried_out(faces, progress), job.workers, progress)
+    except Cancelled:
+        return job.empty()
+    if not compare or made.outcome == "cancelled":
+        return made
+    plain = replace(job, regions=None, orientations=None)
+    return compared(made, faces, lambda name, some: plain.by(name).carried_out(some, progress.within(name)))
 
 
 def _listed(obstacles: Any) -> list[Any]:

@@ -3,6 +3,7 @@
 What all controls have in common stands here; what each says differently stands in `toolaxis.post.dialects`.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, degrees, isfinite, radians
@@ -91,7 +92,7 @@ class Options:
                 raise InvalidInput(f"clamp word {word!r} is none: use words such as M10, joined by commas")
 
 
-class Dialect:
+class Dialect(ABC):
     """What one control calls the things that every program says.
 
     Attributes
@@ -143,21 +144,21 @@ class Dialect:
     release: ClassVar[tuple[str, ...]] = ()
     notes: ClassVar[tuple[str, ...]] = ()
 
+    @abstractmethod
     def start(self, program: Program) -> Lines:
         """Blocks of the safe start: modes, plane off, retract, tool, spindle."""
-        raise NotImplementedError
 
+    @abstractmethod
     def orient(self, program: Program, station: Station) -> Lines:
         """Blocks from a retracted tool to the plane of a station."""
-        raise NotImplementedError
 
+    @abstractmethod
     def leave(self, program: Program, station: Station) -> Lines:
         """Blocks that cancel the plane and retract."""
-        raise NotImplementedError
 
+    @abstractmethod
     def end(self, program: Program) -> Lines:
         """Blocks of the end."""
-        raise NotImplementedError
 
     def comment(self, text: str) -> str:
         """A block that is a comment."""
