@@ -15,12 +15,11 @@ import toolaxis
 from toolaxis.cad.assembling import part_from_record
 from toolaxis.cad.records import ShapeRecord
 from toolaxis.cad.steptext import StepText, read_text
+from toolaxis.cad.units import unit_warnings
 from toolaxis.errors import InvalidInput, MissingBackend, UnsupportedGeometry
 from toolaxis.shape.part import Part
 
 COMMAND = ("-m", "toolaxis.cad.transfer")
-SMALLEST, LARGEST = 10.0, 5000.0
-OTHER_UNITS = (("m", 1000.0), ("inch", 25.4), ("cm", 10.0))
 
 
 def read_step(path: str | PathLike[str], time_limit: float | None = None, accept_lost_faces: bool = False) -> Part:
@@ -53,7 +52,7 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     record.warnings += [lost] if lost else _dangling(text)
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
     part = part_from_record(record, str(file), digest)
-    return _with_unit_warning(part)
+    return part.with_warnings(*unit_warnings(part))
 
 
 def _transferred(file: Path, text: StepText, time_limit: float | None) -> tuple[ShapeRecord, int]:
@@ -117,14 +116,3 @@ def _dangling(text: StepText) -> list[str]:
     if not text.dangling:
         return []
     return [f"the file refers to #{text.dangling[0]}, which it does not define; no face was lost"]
-
-
-def _with_unit_warning(part: Part) -> Part:
-    size = part.diagonal
-    if SMALLEST <= size <= LARGEST:
-        return part
-    otherwise = " or ".join(f"{size * factor:.4g} mm if its numbers were {name}" for name, factor in OTHER_UNITS
-                            if size < SMALLEST) or f"{size / 1000:.4g} mm if its numbers were micrometres"
-    warning = (f"the part is {size:.4g} mm across in the unit that the file declares ({part.unit}): check the unit "
-               f"({otherwise})")
-    return part.with_warnings(warning)

@@ -7,6 +7,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from toolaxis.cad.loading import load
+from toolaxis.cad.units import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
@@ -118,6 +119,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
     loaded = load(part)
+    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
     job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
