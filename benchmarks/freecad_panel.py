@@ -60,9 +60,9 @@ def measured(path, face, tool, scallop):
     FreeCADGui.Selection.addSelection(document.Name, part.Name, face)
     end = time.monotonic() + 1.0
     wait(lambda: time.monotonic() > end)
+    begin = time.perf_counter()
     from freecad.toolaxis.panels.planning import PlanPanel
 
-    begin = time.perf_counter()
     panel = PlanPanel(document)
     FreeCADGui.Control.showDialog(panel)
     yield "panel opened", time.perf_counter() - begin, 0.0

@@ -1,6 +1,7 @@
 """Work off the GUI thread: one outcome, on the GUI thread, whatever the computation does."""
 
 import gc
+import sys
 import threading
 import time
 
@@ -53,7 +54,8 @@ def test_a_result_arrives_once_on_the_gui_thread(desk):
 
 def test_stages_are_told_but_not_each_report(desk):
     work, ears = started(patient)
-    desk.pump(1.0)
+    desk.wait(lambda: ears.stages, "a stage is told")
+    desk.pump(0.8)
     work.cancel()
     desk.wait(lambda: ears.heard, "it stops")
     assert ears.heard == [("cancelled", None)]
@@ -113,6 +115,25 @@ def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotte
     from freecad.toolaxis import tasks
 
     desk.wait(lambda: not tasks._running, "the thread is let go")
+
+
+@pytest.mark.parametrize("end", ["cancel", "leave"])
+def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterwards(desk, end):
+    """A full collection over all objects of FreeCAD and the libraries takes more than 0.1 s."""
+    from freecad.toolaxis import tasks
+
+    assert gc.get_freeze_count() == 0
+    usual, first = sys.getswitchinterval(), started(patient)
+    second = started(patient)[0]
+    desk.wait(lambda: first[1].stages, "it computes")
+    looked_at = len(gc.get_objects())
+    assert gc.get_freeze_count() > 10 * looked_at and gc.isenabled() and sys.getswitchinterval() < usual
+    getattr(first[0], end)()
+    desk.wait(lambda: len(tasks._running) == 1, "one has ended")
+    assert gc.get_freeze_count() > 0 and sys.getswitchinterval() < usual, "the other one still computes"
+    getattr(second, end)()
+    desk.wait(lambda: not tasks._running, "the other one has ended")
+    assert gc.get_freeze_count() == 0 and sys.getswitchinterval() == usual
 
 
 def test_the_end_of_the_application_waits_for_what_stops(desk):

@@ -2,8 +2,14 @@
 
 The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded,
 however often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
+
+While something is computed, Python's collector leaves alone what was there before: a full collection over all objects
+of FreeCAD and of the libraries holds the interpreter, and the window with it, for more than 0.1 s.  The interpreter
+also changes hands more often, since the window asks for it several times in drawing one picture.
 """
 
+import gc
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -20,6 +26,8 @@ _TICK = 150
 _PACE = 0.4
 #: How long the end of the application waits for a computation that was told to stop, ms.
 _PATIENCE = 3000
+#: How long a computation keeps the interpreter from the window that waits for it, and what it is without one, s.
+_TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
 
 #: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
 _running: set["_Thread"] = set()
@@ -42,6 +50,7 @@ class _Thread(QtCore.QThread):
     def run(self) -> None:
         """Compute; called in the thread."""
         try:
+            _load()
             from toolaxis.errors import Cancelled, ToolAxisError
             from toolaxis.progress import Progress
         except ImportError as reason:
@@ -72,6 +81,22 @@ class _Thread(QtCore.QThread):
             digested = self.digest(make())
             if digested is not None:
                 self.interim, self.taken = digested, monotonic()
+
+
+@cache
+def _load() -> None:
+    """Load the libraries that computations need; the collector does not look at them while one runs."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        import scipy.spatial  # noqa: F401
+
+        import toolaxis.job.axes
+        import toolaxis.job.run  # noqa: F401
+    finally:
+        if collecting:
+            gc.enable()
+    gc.freeze()
 
 
 def sentence(reason: BaseException) -> str:
@@ -126,6 +151,8 @@ class Work(QtCore.QObject):
         self._thread.finished.connect(_keeper().sweep)
         self.running = True
         self._timer.start()
+        gc.freeze()
+        sys.setswitchinterval(_TURN)
         self._thread.start(QtCore.QThread.LowPriority)
         return self
 
@@ -168,10 +195,13 @@ class _Keeper(QtCore.QObject):
     """Lets go of threads that have ended, on the GUI thread, and stops the others when the application ends."""
 
     def sweep(self) -> None:
-        """Let go of threads that have ended."""
+        """Let go of threads that have ended, and after the last one of what they needed of the interpreter."""
         for thread in [thread for thread in _running if thread.isFinished()]:
             thread.wait()
             _running.discard(thread)
+        if not _running:
+            gc.unfreeze()
+            sys.setswitchinterval(_USUAL_TURN)
 
 
 @cache

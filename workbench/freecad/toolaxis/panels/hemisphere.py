@@ -216,13 +216,12 @@ def _place(event):
 def _disc_image(picture, size, dark):
     """The coloured square around the disc at the size of the screen's pixels, so that hatches stay crisp."""
     index = np.minimum((np.arange(size) + 0.5) * SIDE / size, SIDE - 1).astype(int)
-    rows = picture.nearest[np.ix_(index, index)]
-    inside = np.maximum(rows, 0)
-    reason = picture.reason[inside]
-    rgb = coloured(picture.width[inside], *picture.span)
+    rows = np.maximum(picture.nearest[np.ix_(index, index)], 0)
     ground, line = palette.greys(dark)
-    y, x = np.mgrid[:size, :size]
-    hatched = palette.hatch(reason, x, y)
-    rgb = np.where((reason > 0)[..., None], np.where(hatched[..., None], line, ground), rgb).astype(np.uint8)
+    colour = coloured(picture.width, *picture.span)
+    colour[picture.reason > 0] = ground
+    rgb = colour[rows]
+    y, x = np.ogrid[:size, :size]
+    rgb[palette.hatch(picture.reason[rows], x, y)] = line
     # the border of the disc lies within its pixels: those just off it take the colour of their neighbours
     return palette.image_of(rgb)

@@ -1,20 +1,27 @@
 """What the panel shows in the 3D view before anything is in the document: passes, tool with holder, and frame."""
 
 from contextlib import suppress
+from functools import partial
 from itertools import pairwise
 
 import FreeCADGui
 import numpy as np
+from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
+from PySide import QtCore
 
 _CUT, _LINK = (0.90, 0.38, 0.0), (0.45, 0.45, 0.45)
 _COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder": (0.35, 0.45, 0.60)}
 _CLEAR = {"cutter": 0.0, "shank": 0.15, "holder": 0.35}
 _TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.35, 0.90)))
 _AROUND = 48
+#: Time between the parts that are put into the view, ms: the first drawing of each is slow.
+_STEP = 20
 
 
 class Preview:
     """Things in the scene of a document's 3D view that are no objects; gone when the panel closes.
+
+    They appear one by one, so that the window answers in between.
 
     Parameters
     ----------
@@ -26,7 +33,10 @@ class Preview:
         self.root = self.transform = None
         self.view = None
         self.stations = None
-        self.share = 0.0
+        self._left = []
+        self._timer = QtCore.QTimer()
+        self._timer.setInterval(_STEP)
+        self._timer.timeout.connect(self._grow)
 
     def show(self, plan, op):
         """Show an operation that has passes.
@@ -36,8 +46,6 @@ class Preview:
         plan : toolaxis.plan.plan.Plan
         op : toolaxis.plan.operation.Operation
         """
-        from pivy import coin
-
         self.clear()
         view = view_of(self.name)
         if view is None:
@@ -46,17 +54,24 @@ class Preview:
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
         root.addChild(style)
-        root.addChild(_lines(op.path))
-        root.addChild(_frame(op.frame, 0.35 * op.face.diagonal))
-        self.transform = coin.SoTransform()
         tool = coin.SoSeparator()
+        self.transform = coin.SoTransform()
         tool.addChild(self.transform)
-        for name, outline in solids(plan.tool):
-            tool.addChild(_revolved(name, outline))
         root.addChild(tool)
+        self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
+                      *((tool, partial(_revolved, *solid)) for solid in solids(plan.tool))]
         self.stations = Stations(op.path)
         self.root, self.view = root, view
         view.getSceneGraph().addChild(root)
+        self._timer.start()
+
+    def _grow(self):
+        """Add one part; called until none is left."""
+        if not self._left:
+            self._timer.stop()
+            return
+        above, make = self._left.pop(0)
+        above.addChild(make())
 
     def move(self, share):
         """Move the tool along the passes.
@@ -69,8 +84,6 @@ class Preview:
         if self.root is None:
             return
         tip, axis = self.stations.at(share)
-        from pivy import coin
-
         self.transform.translation.setValue(*(float(x) for x in tip))
         self.transform.rotation.setValue(coin.SbRotation(coin.SbVec3f(0, 0, 1), coin.SbVec3f(*map(float, axis))))
 
@@ -84,6 +97,7 @@ class Preview:
     def forget(self):
         """Let go without touching the view."""
         self.root = self.transform = self.view = self.stations = None
+        self._left = []
 
 
 def view_of(name):
@@ -147,8 +161,6 @@ def solids(tool):
 
 
 def _coloured(colour, clear=0.0, lit=True):
-    from pivy import coin
-
     node = coin.SoSeparator()
     model = coin.SoLightModel()
     model.model = coin.SoLightModel.PHONG if lit else coin.SoLightModel.BASE_COLOR
@@ -163,8 +175,6 @@ def _coloured(colour, clear=0.0, lit=True):
 
 
 def _polylines(colour, lines, width):
-    from pivy import coin
-
     node = _coloured(colour, lit=False)
     style = coin.SoDrawStyle()
     style.lineWidth = width
@@ -180,8 +190,6 @@ def _polylines(colour, lines, width):
 
 def _lines(path):
     """The way of the tool's tip, in one colour where it cuts and in another between the passes."""
-    from pivy import coin
-
     from toolaxis.cldata.toolpath import Motion
 
     node = coin.SoSeparator()
@@ -195,8 +203,6 @@ def _lines(path):
 
 
 def _frame(frame, size):
-    from pivy import coin
-
     node = coin.SoAnnotation()  # drawn over everything: part of it may lie inside the part
     for (name, colour), way in zip(_TRIAD, (frame.x, frame.y, frame.z), strict=True):
         tip = frame.shown_at + size * way
@@ -215,8 +221,6 @@ def _frame(frame, size):
 
 
 def _revolved(name, outline):
-    from pivy import coin
-
     node = _coloured(_COLOURS.get(name, _COLOURS["shank"]), _CLEAR.get(name, 0.3))
     hints = coin.SoShapeHints()
     hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
