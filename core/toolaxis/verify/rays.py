@@ -145,19 +145,29 @@ def border_points(face: Face, spacing: float) -> Array:
     spacing : float
         mm
     """
-    pieces = []
-    for loop in face.outline:
-        ends = np.roll(loop, -1, axis=0)
-        fine = 257 if len(loop) <= 16 else 9
-        share = np.linspace(0.0, 1.0, fine)
-        line = loop[:, None] + share[None, :, None] * (ends - loop)[:, None]
-        point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
-        longest = (fine - 1) * np.linalg.norm(np.diff(point, axis=1), axis=2).max(axis=1)
-        parts = np.maximum(1, np.ceil(longest / spacing)).astype(np.int64)
-        owner = np.repeat(np.arange(len(loop)), parts)
-        step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
-        pieces.append(loop[owner] + step[:, None] * (ends - loop)[owner])
-    return np.concatenate(pieces)
+    return np.concatenate([loop_points(face, loop, spacing) for loop in face.outline])
+
+
+def loop_points(face: Face, loop: Array, spacing: float) -> Array:
+    """Parameters along one loop, no further apart than the spacing, (k, 2).
+
+    Parameters
+    ----------
+    face : Face
+    loop : (m, 2) array
+    spacing : float
+        mm
+    """
+    ends = np.roll(loop, -1, axis=0)
+    fine = 257 if len(loop) <= 16 else 9
+    share = np.linspace(0.0, 1.0, fine)
+    line = loop[:, None] + share[None, :, None] * (ends - loop)[:, None]
+    point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
+    longest = (fine - 1) * np.linalg.norm(np.diff(point, axis=1), axis=2).max(axis=1)
+    parts = np.maximum(1, np.ceil(longest / spacing)).astype(np.int64)
+    owner = np.repeat(np.arange(len(loop)), parts)
+    step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
+    return np.asarray(loop[owner] + step[:, None] * (ends - loop)[owner])
 
 
 def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:

@@ -16,6 +16,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.edges import depth_at_edges
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.rays import Rays, face_rays
@@ -228,24 +229,31 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     seen: list[float] = []
     samples: list[Rays] = []
 
-    def measure(point: Array, normal: Array) -> Remains:
+    def measure(face: Face, point: Array, normal: Array) -> Remains:
         foot = point + task.allowance * normal
         left = cut((foot, normal), depth=task.depth)
         seen.append(left.uncertainty)
         deep = np.flatnonzero(left.gouge > task.tolerance.gouge)
-        if len(deep):
-            if not samples:
-                samples.extend(face_rays(face) for face in (*task.targets, *task.skin))
-            limit = wall_depth(foot[deep], normal[deep], tuple(samples), task.depth)
-            thin = limit < task.depth
-            if thin.any():
-                rows = deep[thin]
-                less = cut((foot[rows], normal[rows]), depth=np.maximum(limit[thin], 1e-3))
-                left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
+        if not len(deep):
+            return left
+        if not samples:
+            samples.extend(face_rays(one) for one in (*task.targets, *task.skin))
+        limit = wall_depth(foot[deep], normal[deep], tuple(samples), task.depth)
+        thin = limit < task.depth
+        if thin.any():
+            rows = deep[thin]
+            less = cut((foot[rows], normal[rows]), depth=np.maximum(limit[thin], 1e-3))
+            left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
+        left.gouge[deep] = depth_at_edges(
+            face, (point[deep], normal[deep], left.gouge[deep]), (task.touching, beyond(face)),
+            lambda feet, ways: cut((feet + task.allowance * ways, ways), depth=task.depth).gouge)
         return left
 
-    targets = tuple(surface_map(face, measure, spacing) for face in task.targets)
-    skin = tuple(surface_map(face, measure, spacing) for face in task.skin)
+    def beyond(face: Face) -> tuple[Face, ...]:
+        return tuple(one for one in (*task.targets, *task.skin, *task.surroundings) if one is not face)
+
+    targets = tuple(surface_map(face, partial(measure, face), spacing) for face in task.targets)
+    skin = tuple(surface_map(face, partial(measure, face), spacing) for face in task.skin)
     link_cut = _link_cut(task, targets, partial(cut, cutting=(Motion.LINK,), among=(Motion.LINK,)))
     edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
                      enough=task.tolerance.gouge, threads=threads, progress=progress)

@@ -1,0 +1,106 @@
+"""Gouges beside convex edges and open borders: as deep as they lie below the part's surface, none is missed."""
+
+import numpy as np
+import pytest
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.tools.profile import Profile
+from toolaxis.verify.verdict import Task, judge
+
+FLAT = Profile(1.5, 0.0, 0.0, 20.0)
+LEAN = np.radians(70.0)
+
+
+def plane(corner, one, two, label):
+    s, t = np.meshgrid(np.linspace(0, 1, 4), np.linspace(0, 1, 4), indexing="ij")
+    points = np.asarray(corner) + s[..., None] * np.asarray(one) + t[..., None] * np.asarray(two)
+    return Face.from_bspline(points).trimmed((), label)
+
+
+TOP = plane([0, 0, 0], [8, 0, 0], [0, 6, 0], "top")
+SIDE = plane([8, 0, -30], [0, 6, 0], [0, 0, 30], "side")
+OTHER = plane([8, 0, 0], [5, 0, 0], [0, 6, 0], "other")
+
+
+def cut_along_the_edge(tips, axis, target=TOP, **change):
+    """A cutter that stands at a few tips, judged for gouge alone."""
+    tips, axis = np.atleast_2d(tips), np.asarray(axis) / np.linalg.norm(axis)
+    kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
+    given = {"touching": (SIDE,), **change}
+    return judge(Task("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02, clean_up=1.0, **given),
+                 spacing=0.2)
+
+
+def chamfer(depth):
+    """The bottom of a cutter that leans outwards by 70 deg takes a triangle off the edge x = 8, so deep there."""
+    axis = np.array([np.sin(LEAN), 0.0, np.cos(LEAN)])
+    return np.array([[8.0, 2.0, -depth], [8.0, 4.0, -depth]]), axis
+
+
+@pytest.mark.parametrize("touching", [(SIDE,), ()], ids=["edge", "open border"])
+@pytest.mark.parametrize("depth", [0.0037, 0.012])
+def test_a_sliver_off_the_edge_is_as_deep_as_it_is_below_the_surface(depth, touching):
+    """Deepest is where it is as far from both faces; the face behind the edge is entered as far as the edge itself."""
+    found = cut_along_the_edge(*chamfer(depth), touching=touching)
+    deepest = depth / (1.0 + np.tan(LEAN))
+    assert max(place.value for one in found.maps for place in one.worst("gouge")) == pytest.approx(deepest, rel=0.06)
+    assert found.gouge_max == pytest.approx(depth * np.cos(LEAN) if touching else deepest, rel=0.06)
+    assert found.passed == (depth == 0.0037), found.reasons
+
+
+@pytest.mark.parametrize("touching", [(SIDE,), ()], ids=["edge", "open border"])
+@pytest.mark.parametrize("width", [0.006, 0.03, 1.0])
+def test_a_planted_gouge_at_the_border_is_found_whole(touching, width):
+    """The flat bottom runs 0.005 mm too deep along the border, on a strip of any width from there."""
+    at = 8.0 - width + FLAT.flat_radius
+    found = cut_along_the_edge([[at, -3.0, -0.005], [at, 9.0, -0.005]], [0, 0, 1], touching=touching)
+    assert not found.passed
+    assert found.gouge_max == pytest.approx(0.005, rel=0.06)
+    assert found.worst_gouge[0].face == "top"
+
+
+@pytest.mark.parametrize("slope", [-60.0, -20.0, 20.0, 60.0])
+def test_edges_of_any_angle(slope):
+    """The face behind the edge leans out or in: the strip is measured to the nearer of the two faces."""
+    down = 30.0 * np.array([np.sin(np.radians(slope)), 0.0, -np.cos(np.radians(slope))])
+    side = plane(down + [8, 0, 0], [0, 6, 0], -down, "side")
+    assert side.normal(np.array([[0.5, 0.5]]))[0, 0] > 0
+    at = 8.0 - 1.0 + FLAT.flat_radius
+    found = cut_along_the_edge([[at, -3.0, -0.005], [at, 9.0, -0.005]], [0, 0, 1], touching=(side,))
+    assert found.gouge_max == pytest.approx(0.005, rel=0.06)
+    assert not found.passed
+
+
+@pytest.mark.parametrize("change", [{"skin": (OTHER,)}, {"surroundings": (OTHER,)}], ids=["skin", "other"])
+def test_where_the_part_goes_on_nothing_is_forgiven(change):
+    found = cut_along_the_edge(*chamfer(0.0037), touching=(), **change)
+    assert max(place.value for place in found.worst_gouge) >= 0.0036
+
+
+def test_a_seam_is_no_border():
+    """A groove of a sharp corner along the seam of a cylinder, 0.004 mm deep."""
+    surface = Cylinder(5.0, v_range=(0.0, 8.0)).nurbs()
+    tube = Face(surface, label="tube")
+    assert tube.normal(np.array([[0.3, 4.0]]))[0] @ tube.evaluate(np.array([[0.3, 4.0]])).point[0] > 0
+    seam = tube.evaluate(np.array([[tube.bounds[0], 4.0]])).point[0]
+    out = seam * [1, 1, 0] / np.linalg.norm(seam[:2])
+    aside = np.cross([0, 0, 1], out)
+    axis = (out + aside) / np.sqrt(2.0)
+    towards = (aside - out) / np.sqrt(2.0)
+    tip = seam - 0.004 * out - FLAT.flat_radius * towards
+    tips = tip + np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+    found = cut_along_the_edge(tips, axis, target=tube, touching=())
+    assert found.gouge_max == pytest.approx(0.004, abs=2e-4)
+
+
+def test_the_numbers_do_not_depend_on_where_the_part_stands():
+    rigid = np.eye(4)
+    rigid[:3, :3] = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
+    rigid[:3, :3] *= np.linalg.det(rigid[:3, :3])
+    rigid[:3, 3] = 3.0, -7.0, 11.0
+    tips, axis = chamfer(0.012)
+    moved = cut_along_the_edge(np.array(tips) @ rigid[:3, :3].T + rigid[:3, 3], rigid[:3, :3] @ axis,
+                               touching=(SIDE.transformed(rigid),), target=TOP.transformed(rigid))
+    assert moved.gouge_max == pytest.approx(cut_along_the_edge(tips, axis).gouge_max, rel=1e-3)
