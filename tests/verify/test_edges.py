@@ -65,7 +65,7 @@ def test_a_planted_gouge_at_the_border_is_found_whole(touching, width):
 def test_edges_of_any_angle(slope):
     """The face behind the edge leans out or in: the strip is measured to the nearer of the two faces."""
     down = 30.0 * np.array([np.sin(np.radians(slope)), 0.0, -np.cos(np.radians(slope))])
-    side = plane(down + [8, 0, 0], [0, 6, 0], -down, "side")
+    side = plane(np.add(down, [8, 0, 0]), [0, 6, 0], -down, "side")
     assert side.normal(np.array([[0.5, 0.5]]))[0, 0] > 0
     at = 8.0 - 1.0 + FLAT.flat_radius
     found = cut_along_the_edge([[at, -3.0, -0.005], [at, 9.0, -0.005]], [0, 0, 1], touching=(side,))
