@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from toolaxis.cad.loading import load as load
     from toolaxis.contact.clearance import clearance as clearance
+    from toolaxis.contact.drop import drop_cutter as drop_cutter
     from toolaxis.contact.gouge import gouge as gouge
     from toolaxis.contact.placing import place as place
     from toolaxis.contact.strip import strip_width as strip_width
@@ -40,8 +41,8 @@ __version__ = "0.1.0"
 _HOME = {
     "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
     "load": "cad.loading", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
-    "clearance": "contact.clearance", "sample_points": "path.sampling", "estimate": "path.estimate",
-    "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
+    "clearance": "contact.clearance", "drop_cutter": "contact.drop", "sample_points": "path.sampling",
+    "estimate": "path.estimate", "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
     "Cancelled": "errors", "load_machine": "machine.catalogue", "Mounting": "machine.mounting",
