@@ -20,7 +20,9 @@ def operation(desk, wavy):
 def opened(desk, operation):
     operation.ViewObject.doubleClicked()
     desk.wait(lambda: desk.form("ToolAxisOperation") is not None, "the panel opens")
-    return desk.form("ToolAxisOperation")
+    form = desk.form("ToolAxisOperation")
+    assert not form.results.geometry().intersects(form.mapPlace.geometry()), "the map lies over the table"
+    return form
 
 
 def test_the_slider_moves_the_tool_and_it_stays(desk, operation):

@@ -31,7 +31,8 @@ class AxisView(QtCore.QObject):
     def __init__(self, form, preview):
         super().__init__()
         self.form, self.preview = form, preview
-        self.map, self.legend = HemisphereMap(form), Legend(form)
+        empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
+        self.map, self.legend = HemisphereMap(form, empty), Legend(form)
         self.map.setObjectName("axisMap")
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)

@@ -40,6 +40,7 @@ def load_form(name):
         if _sound(form, widgets[0].get("name"), expected):
             break
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
+    form.layout().setSizeConstraint(QtWidgets.QLayout.SetMinimumSize)  # else FreeCAD squeezes widgets over one another
     return form
 
 

@@ -11,24 +11,31 @@ from .legend import draw_mark
 
 translate = FreeCAD.Qt.translate
 
-_MARGIN = 12
+_MARGIN, _HEIGHT = 12, 300
 
 
 class HemisphereMap(QtWidgets.QWidget):
-    """Draws an `AxisPicture`; empty without one."""
+    """Draws an `AxisPicture`; without one, a circle with a few words.
+
+    Parameters
+    ----------
+    parent : QWidget
+    empty : str
+        The words.
+    """
 
     picked = QtCore.Signal(object)
     """The axis that was clicked, (3,) array."""
     hovered = QtCore.Signal(str)
     """What stands under the pointer; empty when it leaves."""
 
-    def __init__(self, parent=None):
+    def __init__(self, parent, empty):
         super().__init__(parent)
+        self.empty = empty
         self.setMouseTracking(True)
-        self.setMinimumSize(200, 200)
-        policy = QtWidgets.QSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
-        policy.setHeightForWidth(True)
-        self.setSizePolicy(policy)
+        self.setMinimumWidth(200)
+        self.setFixedHeight(_HEIGHT)
+        self.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Fixed)
         self.setAccessibleName(translate("ToolAxis", "Map of the tool axes"))
         self.picture = None
         self.tried = None
@@ -54,18 +61,6 @@ class HemisphereMap(QtWidgets.QWidget):
         """
         self.tried = axis
         self.update()
-
-    def sizeHint(self):
-        """Room for a readable map."""
-        return QtCore.QSize(260, 260)
-
-    def hasHeightForWidth(self):
-        """The map is square."""
-        return True
-
-    def heightForWidth(self, width):
-        """Height that suits a width."""
-        return min(width, 300)
 
     def disc(self):
         """Centre and radius of the disc, pixels."""
@@ -155,8 +150,7 @@ class HemisphereMap(QtWidgets.QWidget):
         painter.setPen(QtGui.QPen(colour, 1, QtCore.Qt.DashLine))
         painter.drawEllipse(centre, radius, radius)
         box = QtCore.QRectF(centre.x() - 0.7 * radius, centre.y() - radius / 2, 1.4 * radius, radius)
-        painter.drawText(box, QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap,
-                         translate("ToolAxis", "The map of the tool axes appears here after Compute."))
+        painter.drawText(box, QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap, self.empty)
 
     def _draw_disc(self, painter):
         centre, radius = self.disc()

@@ -34,7 +34,7 @@ class OperationPanel(Panel):
         self.operation = operation
         self.form.setWindowTitle(operation.Label)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
-        self.map, self.legend = HemisphereMap(self.form), Legend(self.form)
+        self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
         self.map.setObjectName("axisMap")
         self.form.mapPlace.layout().addWidget(self.map)
         self.form.legendPlace.layout().addWidget(self.legend)
@@ -88,9 +88,10 @@ class OperationPanel(Panel):
         except Exception as reason:  # the part is gone: no map
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return
+        self.map.empty = translate("ToolAxis", "The map is being drawn.")
         self.work = Work(lambda progress: _picture(source, number, found, progress))
         self.work.done.connect(self._drawn)
-        self.work.failed.connect(lambda text: tell(self.form.message, text, bad=True))
+        self.work.failed.connect(self._not_drawn)
         self.work.start()
 
     def _drawn(self, picture):
@@ -98,6 +99,12 @@ class OperationPanel(Panel):
         self.map.show_picture(picture)
         self.map.setCursor(QtCore.Qt.ArrowCursor)
         self.legend.show_picture(picture)
+
+    def _not_drawn(self, message):
+        self.work = None
+        self.map.empty = translate("ToolAxis", "The map could not be drawn.")
+        self.map.update()
+        tell(self.form.message, message, bad=True)
 
     def _plan_again(self):
         from .planning import PlanPanel
