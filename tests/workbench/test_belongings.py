@@ -148,6 +148,10 @@ def test_undo_of_planning_and_redo_again(document, parts, part):
         assert names(document) == after
 
 
+def kinds(document):
+    return [thing.TypeId for thing in document.Objects]
+
+
 def reopened(document, path, change):
     """A saved document with a change of its text, open."""
     document.recompute()
@@ -163,7 +167,7 @@ def reopened(document, path, change):
 
 
 def test_a_frame_that_cannot_be_opened_is_told_and_made_again(document, operation, tmp_path):
-    kind = frame_of(operation).TypeId
+    kind, before = frame_of(operation).TypeId, sorted(kinds(document))
     opened = reopened(document, tmp_path / "Newer.FCStd", lambda text: text.replace(kind, "Part::FrameOfTomorrow"))
     try:
         again = next(thing for thing in opened.Objects if is_operation(thing))
@@ -171,6 +175,20 @@ def test_a_frame_that_cannot_be_opened_is_told_and_made_again(document, operatio
         assert again.Stale and FRAME in again.StaleReasons[0] and bridge.is_stale(again)
         bridge.recompute(again)
         assert frame_of(again).TypeId == kind_of_frame(opened) and whole(again)
+        assert sorted(kinds(opened)) == before, "nothing of the lost frame stays"
+    finally:
+        FreeCAD.closeDocument(opened.Name)
+
+
+def test_what_a_lost_frame_left_behind_goes_with_its_operation_alone(document, parts, part, operation, tmp_path):
+    other = parts.planned(document, (part, parts.sculptured_name(part)))[0]
+    kind, name, mine = frame_of(operation).TypeId, operation.Name, document.addObject("App::Line", "Mine").Name
+    kept, gone = {mine, *other.FrameFeatures}, set(operation.FrameFeatures)
+    opened = reopened(document, tmp_path / "Newer.FCStd", lambda text: text.replace(kind, "Part::FrameOfTomorrow"))
+    try:
+        assert not kept & gone and all(opened.getObject(name) for name in kept | gone)
+        opened.removeObject(name)
+        assert all(map(opened.getObject, kept)) and not any(map(opened.getObject, gone))
     finally:
         FreeCAD.closeDocument(opened.Name)
 

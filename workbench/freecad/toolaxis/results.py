@@ -6,7 +6,7 @@ from dataclasses import replace
 import FreeCAD
 
 from .faces import facts_of
-from .objects.belongings import child, frame_of
+from .objects.belongings import child, frame_of, loose
 from .objects.frames import add_frame, place_frame
 from .objects.operation import Operation, mark, set_inputs, set_results
 from .objects.passes import commands, fill_passes
@@ -149,8 +149,10 @@ def _standing_frame(operation, op, part, title):
     document = operation.Document
     frame = frame_of(operation)
     if frame is None:
+        remove(loose(operation))
         frame = add_frame(document)
         operation.addObject(frame)
+        operation.FrameFeatures = [feature.Name for feature in getattr(frame, "OriginFeatures", ())]
         if FreeCAD.GuiUp:
             frame.ViewObject.Visibility = True
     frame.Label = translate("ToolAxis", "Work coordinates {}").format(title)

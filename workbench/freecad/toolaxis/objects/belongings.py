@@ -6,6 +6,7 @@ from .properties import assign
 
 #: FreeCAD's own coordinate systems, the newer first; documents of either kind are opened in both.
 FRAMES = ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem")
+_FEATURES = ("App::Line", "App::Plane", "App::Point")
 
 
 def child(operation, kind):
@@ -50,6 +51,17 @@ def belongings(operation):
     """
     return [thing for thing in operation.Group if _is_frame(thing) or _is_passes(thing) or _is_map(thing)
             or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
+
+
+def loose(operation):
+    """Axes and planes that a work coordinate system left behind, where a FreeCAD opened them but not the system.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    there = (operation.Document.getObject(name) for name in operation.FrameFeatures)
+    return [thing for thing in there if thing is not None and thing.TypeId in _FEATURES and not thing.InList]
 
 
 def missing(operation, without=None):
@@ -129,7 +141,7 @@ class Keeper:
     def _take(self, document, operation):
         self.going.add(operation.Name)
         try:
-            for name in [thing.Name for thing in belongings(operation)]:
+            for name in [thing.Name for thing in (*belongings(operation), *loose(operation))]:
                 if document.getObject(name) is not None:
                     document.removeObject(name)
         finally:

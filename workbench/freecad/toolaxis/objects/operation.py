@@ -42,6 +42,7 @@ KEPT = (
     Property("String", "Details", _KEPT, "Sub-surface and method, JSON", True, True),
     Property("String", "PlannedWith", _KEPT, "Inputs at the time of planning, JSON", True, True),
     Property("FloatList", "Signature", _KEPT, "Shapes at the time of planning", True, True),
+    Property("StringList", "FrameFeatures", _KEPT, "Axes and planes of the work coordinate system", True, True),
     Property("IntegerList", "Motions", _KEPT, "Kind of each motion", True, True),
     Property("IntegerList", "Starts", _KEPT, "Where each pass starts", True, True))
 VERDICT = (
