@@ -4,7 +4,7 @@ import argparse
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import import_module
 from types import FrameType
@@ -141,19 +141,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
     """
     given = parser().parse_args(arguments)
+    work = import_module(given.module).run
     with _Interrupt() as interrupt:
-        return _answer(given, interrupt)
+        return _answer(work, given, interrupt)
 
 
-def command() -> NoReturn:
-    """Run the command as a process: before and after the work there is nothing that Ctrl-C could stop."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    sys.exit(main())
-
-
-def _answer(given: argparse.Namespace, interrupt: "_Interrupt") -> int:
+def _answer(work: Callable[[argparse.Namespace, Callable[[], bool]], int], given: argparse.Namespace,
+            interrupt: "_Interrupt") -> int:
     try:
-        code: int = import_module(given.module).run(given, interrupt.asked)
+        code = work(given, interrupt.asked)
         sys.stdout.flush()
         return code
     except (KeyboardInterrupt, Cancelled):
@@ -216,4 +212,6 @@ class _Interrupt:
 
 
 if __name__ == "__main__":
+    from toolaxis.cli.start import command
+
     command()
