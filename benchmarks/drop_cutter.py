@@ -73,7 +73,7 @@ def row(width: int, side: int, count: int, aim: int) -> None:
 def dropped() -> None:
     """Points per second on meshes of several sizes."""
     print("torus 12x1 on a freeform patch, points/s of processor time, trees already built; differ: greatest")
-    print("difference of heights from opencamlib, mm; off face: the same from tips on the exact face that do not gouge, mm")
+    print("difference of heights from opencamlib, mm; off face: from tips on the exact face that do not gouge, mm")
     print(f"{'patch mm':>8}{'triangles':>10}{'toolaxis':>10}{'numpy twin':>11}{'opencamlib':>11}{'buckets':>9}"
           f"{'ratio':>7}{'ratio':>7}{'aim':>5}{'differ':>10}{'off face':>10}{'tree s':>8}{'whole call':>11}")
     drop_cutter(mesh(patch(), np.eye(3), 2), Tool.torus(12, 1), [[50, 50]])
