@@ -99,8 +99,8 @@ def test_an_operation_takes_with_it_what_belongs_to_it(document, parts, part, op
     other = parts.planned(document, (part, parts.sculptured_name(part)))[0]
     note = document.addObject("App::FeaturePython", "Note")
     operation.addObject(note)
-    gone = {thing.Name for thing in belongings(operation)}
-    assert len(gone) == 5
+    gone = {thing.Name for thing in (*belongings(operation), *operation.InList)}
+    assert len(gone) == 5 + 1, "the group of this planning, with nothing else in it, too"
     left = [name for name in names(document) if "Axis" not in name and "Plane" not in name
             and not name.startswith("Origin") and name not in {operation.Name, *gone}]
     document.removeObject(operation.Name)
@@ -122,7 +122,7 @@ def test_undo_and_redo_of_a_deleted_operation(document, parts, part, transaction
     if transaction:
         document.commitTransaction()
     after = names(document)
-    assert after == sorted({part.Name, "Orientations"})
+    assert after == [part.Name]
     for _ in range(2):
         document.undo()
         assert names(document) == before
@@ -150,6 +150,20 @@ def test_undo_of_planning_and_redo_again(document, parts, part):
 
 def kinds(document):
     return [thing.TypeId for thing in document.Objects]
+
+
+def test_a_group_stays_until_nothing_is_in_it(document, parts, part):
+    first = parts.planned(document, (part, parts.sculptured_name(part)))[0]
+    group, = first.InList
+    name = group.Name
+    second = parts.planned(document, (part, parts.sculptured_name(part)))[0]
+    group.addObject(second)
+    document.removeObject(first.Name)
+    assert document.getObject(name) is not None and second in group.Group
+    note = document.addObject("App::FeaturePython", "Note")
+    group.addObject(note)
+    document.removeObject(second.Name)
+    assert group.Group == [note], "what the user has put there stays"
 
 
 def reopened(document, path, change):

@@ -95,7 +95,7 @@ def test_delete_takes_the_whole_operation_and_undo_brings_it_back(desk, operatio
     pick(desk, operation)
     assert run(desk, "Std_Delete") == ""
     left = names(document)
-    assert document.getObject(name) is None and set(left) <= {part.Name, "Orientations", *_origins(document)}
+    assert document.getObject(name) is None and set(left) <= {part.Name, *_origins(document)}
     desk.shot("51-deleted")
     for _ in range(2):
         run(desk, "Std_Undo")
@@ -112,6 +112,21 @@ def test_delete_takes_the_whole_operation_and_undo_brings_it_back(desk, operatio
 def _origins(document):
     """Objects that were in the part's file besides it."""
     return {thing.Name for thing in document.Objects if thing.TypeId == "App::Part"}
+
+
+def test_delete_takes_a_group_with_all_that_is_in_it(desk, operation, wavy):
+    document, part = operation.Document, wavy[0]
+    above = document.addObject("App::DocumentObjectGroup", "Above")
+    above.addObject(operation.InList[0])
+    before = names(document)
+    for chosen in (operation.InList[0], above):
+        left = set(names(document)) - {chosen.Name, "Orientations"}
+        pick(desk, chosen)
+        run(desk, "Std_Delete")
+        assert operation_in(document) is None and document.getObject("Orientations") is None
+        assert set(names(document)) <= left and part.Name in names(document)
+        run(desk, "Std_Undo")
+        assert names(document) == before and not operation_in(document).Stale
 
 
 def test_an_operation_selected_together_with_what_is_in_it(desk, operation):

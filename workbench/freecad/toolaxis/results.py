@@ -6,7 +6,7 @@ from dataclasses import replace
 import FreeCAD
 
 from .faces import facts_of
-from .objects.belongings import child, frame_of, loose
+from .objects.belongings import GROUP, child, frame_of, loose
 from .objects.frames import add_frame, place_frame
 from .objects.operation import Operation, mark, set_inputs, set_results
 from .objects.passes import commands, fill_passes
@@ -90,7 +90,7 @@ def _group_for(document, replaces):
         above = [thing for thing in replaces.InList if thing.hasExtension("App::GroupExtension")]
         if above:
             return above[0]
-    group = document.addObject("App::DocumentObjectGroup", "Orientations")
+    group = document.addObject("App::DocumentObjectGroup", GROUP)
     group.Label = translate("ToolAxis", "Orientations")
     return group
 

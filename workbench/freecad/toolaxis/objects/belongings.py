@@ -1,11 +1,15 @@
 """What belongs to an operation: frame, passes, tool and maps; what of it is missing, and what goes with it."""
 
+import FreeCAD
+
 from . import is_operation
 from .maps import colour
 from .properties import assign
 
 #: FreeCAD's own coordinate systems, the newer first; documents of either kind are opened in both.
 FRAMES = ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem")
+#: Name of the group that planning makes, at least how it begins.
+GROUP = "Orientations"
 _FEATURES = ("App::Line", "App::Plane", "App::Point")
 
 
@@ -141,8 +145,26 @@ class Keeper:
     def _take(self, document, operation):
         self.going.add(operation.Name)
         try:
-            for name in [thing.Name for thing in (*belongings(operation), *loose(operation))]:
+            going = [*belongings(operation), *loose(operation), *self._emptied(operation)]
+            for name in [thing.Name for thing in going]:
                 if document.getObject(name) is not None:
                     document.removeObject(name)
         finally:
             self.going.discard(operation.Name)
+
+    def _emptied(self, operation):
+        """The group of planning, where this was its last operation and it is not deleted itself just now."""
+        if not _deleted_alone(operation.Document):
+            return []
+        return [above for above in operation.InList if above.TypeId == "App::DocumentObjectGroup"
+                and above.Name.startswith(GROUP) and all(one.Name in self.going for one in above.Group)]
+
+
+def _deleted_alone(document):
+    """Whether the user deletes operations, not what they stand in: FreeCAD then still holds on to that."""
+    if not FreeCAD.GuiUp:
+        return True
+    import FreeCADGui
+
+    chosen = FreeCADGui.Selection.getSelection(document.Name)
+    return not any(thing.TypeId != "App::DocumentObjectGroupPython" and hasattr(thing, "Group") for thing in chosen)
