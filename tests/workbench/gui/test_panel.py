@@ -58,6 +58,46 @@ def test_the_map_grows_while_computing(desk, form):
     assert len(chart.picture.axes) >= looked and "chosen" in chart.picture.marks
 
 
+def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
+    from types import SimpleNamespace
+
+    import numpy as np
+    from freecad.toolaxis.panels.axispicture import SIDE, AxisPicture
+    from freecad.toolaxis.panels.axisview import AxisView
+    from freecad.toolaxis.panels.fields import load_form
+
+    def picture():
+        up = np.array([[0.0, 0.0, 1.0]])
+        return AxisPicture(up, np.ones(1), np.ones(1), np.zeros(1, int), np.zeros(1), up[0], np.array([1.0, 0, 0]),
+                           np.zeros((SIDE, SIDE), int))
+
+    form, titles = load_form("plan"), {2: "Face 2", 5: "Face 5", 7: "Face 7"}
+    view = AxisView(form, SimpleNamespace(clear=lambda: None))
+    faces = {number: SimpleNamespace(number=number, label=str(number)) for number in titles}
+    first, second, third = picture(), picture(), picture()
+
+    def shown():
+        return form.operation.currentText(), view.map.picture, form.cost.text()
+
+    view.show_growing(first, faces[2], titles)
+    assert shown() == ("Face 2", first, "Face 2 (1 of 3): the axes looked at so far")
+    assert not form.operation.isHidden() and form.operation.itemText(2) == "Face 7: not begun"
+    view.show_growing(second, faces[5], titles)
+    assert shown() == ("Face 5", second, "Face 5 (2 of 3): the axes looked at so far"), "follows what is computed"
+    form.operation.setCurrentIndex(2)
+    assert shown() == ("Face 7: not begun", None, "Face 7 (3 of 3): no axis looked at yet")
+    form.operation.setCurrentIndex(0)
+    assert shown()[1] is first
+    view.show_growing(third, faces[5], titles)
+    assert shown()[1] is first, "stays where the user looks"
+    form.operation.setCurrentIndex(1)
+    assert shown()[1] is third
+    view.show_growing(second, faces[7], titles)
+    assert shown() == ("Face 7", second, "Face 7 (3 of 3): the axes looked at so far")
+    view.clear()
+    assert view.map.picture is None and form.operation.isHidden()
+
+
 def test_pointer_and_click_on_the_map(desk, form):
     desk.computed(form)
     chart = form.findChild(desk.widgets.QWidget, "axisMap")

@@ -38,6 +38,7 @@ class AxisView(QtCore.QObject):
         form.legendPlace.layout().addWidget(self.legend)
         self.plan = self.found = None
         self.pictures, self.titles = {}, {}
+        self.growing, self.computed = {}, None
         self.tried = None
         self.work = None
         self.map.hovered.connect(form.pointer.setText)
@@ -57,8 +58,8 @@ class AxisView(QtCore.QObject):
     def clear(self):
         """Show no plan."""
         self.leave()
-        self.plan, self.found, self.pictures = None, None, {}
-        self.form.operation.clear()
+        self.plan, self.found, self.pictures, self.growing = None, None, {}, {}
+        self._offer([], -1)
         self._show_operation()
 
     def show(self, plan, pictures, titles=None):
@@ -73,30 +74,61 @@ class AxisView(QtCore.QObject):
             What the faces are called, by their numbers.
         """
         self.titles = titles or {}
-        self.plan, self.found, self.pictures = plan, plan, pictures
+        self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
+        undone = [k for k, op in enumerate(plan.operations) if not op.done]
+        self._offer([self._title(op) for op in plan.operations], undone[0] if undone else 0)
+        self._show_operation()
+
+    def _offer(self, names, index):
+        """Let the user choose from names."""
         combo = self.form.operation
         blocked = combo.blockSignals(True)
         combo.clear()
-        combo.addItems([self._title(op) for op in plan.operations])
-        undone = [k for k, op in enumerate(plan.operations) if not op.done]
-        combo.setCurrentIndex(undone[0] if undone else 0)
+        combo.addItems(names)
+        combo.setCurrentIndex(index)
         combo.blockSignals(blocked)
-        self._show_operation()
+        combo.setVisible(len(names) > 1)
 
-    def show_growing(self, picture, title):
-        """Show the map of a search that goes on; the last plan's numbers disappear.
+    def show_growing(self, picture, face, titles):
+        """Show the map of a search that goes on, unless the user looks at another face's; the last plan disappears.
 
         Parameters
         ----------
-        picture : AxisPicture or None
-        title : str
+        picture : AxisPicture
+        face : toolaxis.shape.face.Face
             Which face it is of.
+        titles : dict of int to str
+            What all the faces are called, by their numbers, in their order.
         """
-        if self.plan is not None:
+        if not self.growing:
             self.clear()
-        self.form.cost.setText(translate("ToolAxis", "{}: the axes looked at so far").format(title))
-        self.map.show_picture(picture)
-        self.legend.show_picture(picture)
+            self.titles, self.growing, self.computed = titles, dict.fromkeys(titles), None
+        shown = self._grown
+        self.growing[face.number] = picture, title_of(face, titles)
+        follows = shown in (None, self.computed)
+        self.computed = face.number
+        texts = [title if self.growing[number] else translate("ToolAxis", "{}: not begun").format(title)
+                 for number, title in titles.items()]
+        self._offer(texts, list(titles).index(face.number if follows else shown))
+        if self._grown == face.number:
+            self._show_operation()
+
+    @property
+    def _grown(self):
+        """Number of the face whose growing map is shown; None without one."""
+        index = self.form.operation.currentIndex()
+        return list(self.growing)[index] if self.growing and index >= 0 else None
+
+    def _growth(self):
+        """A growing map, or None, and the sentence about it."""
+        number = self._grown
+        picture, title = self.growing[number] or (None, self.titles[number])
+        if len(self.growing) > 1:
+            place = list(self.growing).index(number) + 1
+            title = translate("ToolAxis", "{} ({} of {})").format(title, place, len(self.growing))
+        if picture is None:
+            return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
+        return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)
 
     def _title(self, op):
         title = title_of(op.face, self.titles)
@@ -112,13 +144,16 @@ class AxisView(QtCore.QObject):
         self.leave()
         op = self.operation
         self.tried = None
-        picture = self.pictures.get(op.number) if op is not None else None
+        picture, text = self.pictures.get(op.number) if op is not None else None, ""
+        if self.growing:
+            picture, text = self._growth()
         self.map.show_picture(picture)
         self.legend.show_picture(picture)
-        self.form.operation.setVisible(self.plan is not None and len(self.plan.operations) > 1)
         self.form.pointer.setText("")
         self._show_numbers()
         self.show_tool()
+        if text:
+            self.form.cost.setText(text)
 
     def show_tool(self):
         """Show passes and tool of the tried axis, or of the plan's, in the 3D view."""

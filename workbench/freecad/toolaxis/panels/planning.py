@@ -10,7 +10,7 @@ from .. import RESOURCES, bridge
 from ..cam import speeds
 from ..reading import titles_of
 from ..tasks import Work, sentence
-from .axisview import AxisView, title_of
+from .axisview import AxisView
 from .fields import load_form, tell
 from .panel import Panel
 from .planform import PlanForm
@@ -196,8 +196,8 @@ class PlanPanel(Panel):
             self._show_state()
             return
         titles = titles_of(inputs)
-        self.work = Work(lambda progress: _planned(task, progress), None, lambda found: _growing(found, titles))
-        self.work.interim.connect(lambda found: self._growing(*found))
+        self.work = Work(lambda progress: _planned(task, progress), None, _growing)
+        self.work.interim.connect(lambda found: self._growing(*found, titles))
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(self._not_computed)
@@ -221,12 +221,12 @@ class PlanPanel(Panel):
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
         self._tell(f"{stage[:1].upper()}{stage[1:]}")
 
-    def _growing(self, picture, title):
+    def _growing(self, picture, face, titles):
         """The map of the axes looked at so far for one of the faces."""
         if self.work is not None:
-            if self.view.plan is not None or self.view.map.picture is None:
+            if not self.view.growing:
                 self.form.tabs.setCurrentWidget(self.form.resultTab)
-            self.view.show_growing(picture, title)
+            self.view.show_growing(picture, face, titles)
 
     def _computed(self, inputs, plan, pictures, titles):
         self.work = None
@@ -276,19 +276,13 @@ class PlanPanel(Panel):
         self.preview.clear()
 
 
-def _growing(offered, titles):
-    """Picture and title of an intermediate result, None while it is too coarse; runs off the GUI thread."""
+def _growing(offered):
+    """Picture and face of an intermediate result, None while it is too coarse; runs off the GUI thread."""
     from .axispicture import picture_of
 
     face, found = offered
     picture = picture_of(face, found) if len(found.axis) >= _ENOUGH else None
-    if picture is None:
-        return None
-    title = title_of(face, titles)
-    if len(titles) > 1:
-        which = list(titles).index(face.number) + 1
-        title = translate("ToolAxis", "{} ({} of {})").format(title, which, len(titles))
-    return picture, title
+    return None if picture is None else (picture, face)
 
 
 def _planned(task, progress):
