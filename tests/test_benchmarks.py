@@ -19,3 +19,12 @@ def test_benchmarks_go_on_where_there_is_no_freecad() -> None:
                          capture_output=True, text=True, timeout=120)
     assert run.returncode == 0, run.stderr
     assert run.stdout.count("not measured: no FreeCAD") == 2 and "--- startup" in run.stdout
+
+
+def test_operations_are_counted_as_they_run() -> None:
+    code = ("from benchmarks._count import KINDS, TALLY, counted, root\n"
+            "import numpy as np\n"
+            "x = counted(np.array([3.0, 4.0]))\n"
+            "y = -root(x[0] ** 2 + x[1] * x[1]) / 2.0 - abs(1.0 - x[0])\n"
+            "assert y == -4.5 and [TALLY[kind] for kind in KINDS] == [3, 2, 1, 1], (y, TALLY)\n")
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=60)
