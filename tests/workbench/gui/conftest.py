@@ -6,7 +6,8 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -213,6 +214,12 @@ class Desk:
         assert not self.errors, self.errors
         return self.form("ToolAxisPlan")
 
+    def operation_in(self, document):
+        """The first operation of a document, or None."""
+        from freecad.toolaxis.objects import is_operation
+
+        return next(filter(is_operation, document.Objects), None)
+
     def down(self, form, widget):
         """Scroll the task panel until a widget is in sight."""
         above = form.parentWidget()
@@ -298,6 +305,50 @@ def wavy(desk, part_file):
     part = desk.open(part_file)
     kinds = [type(face.Surface).__name__ for face in part.Shape.Faces]
     return part, f"Face{kinds.index('BSplineSurface') + 1}"
+
+
+@pytest.fixture(scope="session")
+def _recalling(_desk):
+    """Where this is entered, the same inputs for the same shapes are computed once in a session."""
+    from freecad.toolaxis import bridge
+
+    plans, task = {}, bridge.task
+
+    def recalled(inputs):
+        compute = task(inputs)
+        shapes = [thing.Shape.exportBrepToString() for thing in (*inputs.things, *inputs.obstacles)]
+        key = repr((replace(inputs, faces=(), obstacles=()), [name for _, name in inputs.faces], shapes))
+        return lambda progress: plans[key] if key in plans else plans.setdefault(key, compute(progress))
+
+    @contextmanager
+    def recalling():
+        bridge.task = recalled
+        try:
+            yield
+        finally:
+            bridge.task = task
+
+    return recalling
+
+
+@pytest.fixture
+def remembered(_recalling):
+    """For tests of what follows on planning: a plan that was made already is taken again."""
+    with _recalling():
+        yield
+
+
+@pytest.fixture
+def operation(desk, wavy, _recalling):
+    """An operation in a document, as the planning panel leaves it."""
+    part, face = wavy
+    with _recalling():
+        form = desk.start(part, face)
+        desk.type(form.scallop, "0.2 mm")
+        desk.computed(form)
+        desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    return desk.operation_in(part.Document)
 
 
 @pytest.fixture

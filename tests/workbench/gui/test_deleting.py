@@ -2,27 +2,7 @@
 
 from pathlib import Path
 
-import pytest
-
 ICONS = Path(__file__).resolve().parents[3] / "resources" / "icons"
-
-
-@pytest.fixture
-def operation(desk, wavy):
-    """An operation in a document, as the planning panel leaves it."""
-    part, face = wavy
-    form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
-    desk.computed(form)
-    desk.press(desk.standard_button("Ok"))
-    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    return operation_in(part.Document)
-
-
-def operation_in(document):
-    from freecad.toolaxis.objects import is_operation
-
-    return next((thing for thing in document.Objects if is_operation(thing)), None)
 
 
 def names(document):
@@ -100,7 +80,7 @@ def test_delete_takes_the_whole_operation_and_undo_brings_it_back(desk, operatio
     for _ in range(2):
         run(desk, "Std_Undo")
         assert names(document) == before
-        again = operation_in(document)
+        again = desk.operation_in(document)
         assert not again.Stale and len(again.Group) == 5 and again.Verdict == "passed"
         assert all(colours(document.getObject(one)) for one in maps), "the maps keep their colours"
         run(desk, "Std_Redo")
@@ -123,10 +103,10 @@ def test_delete_takes_a_group_with_all_that_is_in_it(desk, operation, wavy):
         left = set(names(document)) - {chosen.Name, "Orientations"}
         pick(desk, chosen)
         run(desk, "Std_Delete")
-        assert operation_in(document) is None and document.getObject("Orientations") is None
+        assert desk.operation_in(document) is None and document.getObject("Orientations") is None
         assert set(names(document)) <= left and part.Name in names(document)
         run(desk, "Std_Undo")
-        assert names(document) == before and not operation_in(document).Stale
+        assert names(document) == before and not desk.operation_in(document).Stale
 
 
 def test_an_operation_selected_together_with_what_is_in_it(desk, operation):
@@ -186,10 +166,10 @@ def test_undo_and_redo_of_planning_and_verifying(desk, operation):
     desk.press(desk.standard_button("Close"))
     run(desk, "Std_Undo")
     run(desk, "Std_Undo")
-    assert operation_in(document) is None
+    assert desk.operation_in(document) is None
     desk.shot("57-planning-undone")
     run(desk, "Std_Redo")
-    again = operation_in(document)
+    again = desk.operation_in(document)
     assert names(document) == planned and again.Passes == passes and not again.Stale
     desk.shot("58-planning-redone")
     assert form is not None
@@ -206,7 +186,7 @@ def test_an_operation_deleted_while_it_is_planned_again(desk, operation):
     desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    assert operation_in(document) is not None
+    assert desk.operation_in(document) is not None
 
 
 def test_the_growing_map_says_whose_it_is(desk, part_file):
@@ -214,7 +194,7 @@ def test_the_growing_map_says_whose_it_is(desk, part_file):
     sides = [f"Face{k}" for k, face in enumerate(part.Shape.Faces, 1) if type(face.Surface).__name__ != "Plane"][:3]
     form = desk.start(part, *sides)
     form.tabs.setCurrentWidget(form.jobTab)
-    desk.type(form.scallop, "0.05 mm")
+    desk.type(form.scallop, "0.2 mm")
     seen, titles = [], [f"Face {name.removeprefix('Face')} ({k} of {len(sides)})" for k, name in enumerate(sides, 1)]
     timer = desk.qt.QTimer()
     timer.setInterval(20)

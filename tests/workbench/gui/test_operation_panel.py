@@ -3,20 +3,6 @@
 import pytest
 
 
-@pytest.fixture
-def operation(desk, wavy):
-    """An operation in a document, as the planning panel leaves it."""
-    part, face = wavy
-    form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
-    desk.computed(form)
-    desk.press(desk.standard_button("Ok"))
-    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    from freecad.toolaxis.objects import is_operation
-
-    return next(thing for thing in part.Document.Objects if is_operation(thing))
-
-
 def opened(desk, operation):
     operation.ViewObject.doubleClicked()
     desk.wait(lambda: desk.form("ToolAxisOperation") is not None, "the panel opens")

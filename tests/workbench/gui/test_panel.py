@@ -20,7 +20,7 @@ def test_the_workbench_is_there_with_its_commands(desk):
     assert set(names) >= {"ToolAxis_PlanOrientations", "ToolAxis_Verify", "ToolAxis_Recompute"}
 
 
-def test_plan_from_selection_to_objects_and_back(desk, wavy, form):
+def test_plan_from_selection_to_objects_and_back(desk, wavy, form, remembered):
     document = wavy[0].Document
     before = [thing.Name for thing in document.Objects]
     assert form.faces.count() == 1 and wavy[1] in form.faces.item(0).text()
@@ -98,7 +98,7 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
     assert view.map.picture is None and form.operation.isHidden()
 
 
-def test_pointer_and_click_on_the_map(desk, form):
+def test_pointer_and_click_on_the_map(desk, form, remembered):
     desk.computed(form)
     chart = form.findChild(desk.widgets.QWidget, "axisMap")
     centre, radius = chart.disc()
@@ -120,7 +120,7 @@ def test_pointer_and_click_on_the_map(desk, form):
     assert form.results.item(1, 0).text() == passes[0]
 
 
-def test_a_forbidden_axis_says_why_and_cannot_be_locked(desk, form):
+def test_a_forbidden_axis_says_why_and_cannot_be_locked(desk, form, remembered):
     desk.computed(form)
     chart = form.findChild(desk.widgets.QWidget, "axisMap")
     desk.click(chart, spot(chart, free=False))
@@ -129,7 +129,7 @@ def test_a_forbidden_axis_says_why_and_cannot_be_locked(desk, form):
     assert "Infeasible" in form.reasons.text()
 
 
-def test_the_slider_moves_the_tool(desk, form):
+def test_the_slider_moves_the_tool(desk, form, remembered):
     desk.computed(form)
     form.slide.setValue(0)
     desk.pump(0.1)
@@ -153,7 +153,7 @@ def test_impossible_values_lock_compute_with_the_reason(desk, form, field, text,
     assert form.compute.isEnabled(), form.message.text()
 
 
-def test_a_change_after_computing_locks_ok(desk, form):
+def test_a_change_after_computing_locks_ok(desk, form, remembered):
     desk.computed(form)
     assert desk.standard_button("Ok").isEnabled()
     form.tabs.setCurrentWidget(form.jobTab)
@@ -172,7 +172,7 @@ def test_limits_that_leave_no_axis(desk, form):
 
 
 @pytest.mark.parametrize("schema", ["ImperialDecimal", "MmMin", "Internal"])
-def test_units_follow_freecads_settings(desk, wavy, schema):
+def test_units_follow_freecads_settings(desk, wavy, remembered, schema):
     import FreeCAD
 
     names = FreeCAD.Units.listSchemas()

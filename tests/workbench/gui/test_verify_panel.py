@@ -4,15 +4,9 @@ import pytest
 
 
 @pytest.fixture
-def planned(desk, wavy):
-    """A document with an operation, as the planning panel leaves it."""
-    part, face = wavy
-    form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
-    desk.computed(form)
-    desk.press(desk.standard_button("Ok"))
-    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    return part.Document
+def planned(operation):
+    """A document with an operation."""
+    return operation.Document
 
 
 def opened(desk):
