@@ -5,17 +5,24 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.vectors import dot
+from toolaxis.orient.contacts import around
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.setting import MARGIN
+from toolaxis.orient.setting import MARGIN, TOUCHING
 from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.plan.orientation import REASONS
+from toolaxis.shape.nearest import nearest
 
 Array = NDArray[np.float64]
 
 COUNTED = ("free", "outside the limits", "on the back of the surface",
            "with a contact that wanders over the flat bottom", "with a gouge", "with a collision of the cutter",
            "with a collision of the shank", "with a collision of the holder")
+
+
+#: Points of a border, and how many of them next to a place are looked at for a step at an edge.
+_BORDER, _NEAREST = 400, 20
 
 
 def place(point: Array) -> str:
@@ -58,7 +65,25 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
     how = f"meets face {found.label} by {-found.distance:.2g} mm" if found.distance <= 0 else (
         f"comes within {found.distance:.3g} mm of face {found.label}, less than the required {needed:g} mm and "
         f"{MARGIN:g} mm to be sure,")
-    return f"the {name} {how} {at}"
+    return f"the {name} {how} {at}{_proud(found, feasibility)}"
+
+
+def _proud(found: Witness, feasibility: Feasibility) -> str:
+    """Where the cutter meets a face behind a convex edge because that face stands out over the machined one."""
+    behind = [face for group in feasibility.groups if group.role == TOUCHING for face in group.faces
+              if face.label == found.label]
+    if found.reason != CUTTER or not behind:
+        return ""
+    own, allowed = feasibility.face, feasibility.tolerance.gouge
+    border = behind[0].evaluate(around(behind[0], _BORDER)).point
+    near = border[np.argsort(np.linalg.norm(border - found.point, axis=1), kind="stable")[:_NEAREST]]
+    foot = nearest(own, near)
+    out = float(dot(near - foot.point, own.normal(foot.uv)).max())
+    if out < 0.5 * allowed:
+        return ""
+    return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: their edge is no more accurate "
+            f"than that, and {allowed:g} mm of gouge are allowed; repair the edge, or plan with a larger gouge in "
+            "tolerance")
 
 
 def tally(ledger: Ledger) -> str:

@@ -1,0 +1,30 @@
+"""Found: a face was refused because its neighbour stands 0.003 mm out over it at their edge, and nothing said so."""
+
+import numpy as np
+import pytest
+
+from toolaxis.orient.feasible import Feasibility
+from toolaxis.orient.reasons import sentence
+from toolaxis.orient.setting import SKIN, TOUCHING, Group
+from toolaxis.orient.verdicts import CUTTER, Witness
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+
+def plane(corner, one, two, number):
+    s, t = np.meshgrid(np.linspace(0, 1, 4), np.linspace(0, 1, 4), indexing="ij")
+    face = Face.from_bspline(np.asarray(corner) + s[..., None] * np.asarray(one) + t[..., None] * np.asarray(two))
+    return face.trimmed((), str(number))
+
+
+@pytest.mark.parametrize("step", [0.0, 0.003])
+def test_the_step_is_named(step):
+    top, side = plane([0, 0, 0], [20, 0, 0], [0, 10, 0], 1), plane([20, 0, -9], [0, 10, 0], [0, 0, 9 + step], 2)
+    far = [-1.0, 0.5, 1.0]
+    groups = (Group(SKIN, (top,), np.array([-0.001, *far[1:]])), Group(TOUCHING, (side,), np.array([-0.001, *far[1:]])))
+    found = Witness(CUTTER, 0.002, "2", np.array([20.0, 4.0, -0.1]), np.array([1.0, 0.4]), -0.003)
+    said = sentence(found, Feasibility(top, Tool.ball(6), groups, Tolerance()))
+    assert said.startswith("the cutter meets face 2 by 0.003 mm at (20, 4, -0.1)")
+    assert ("face 2 stands 0.003 mm out over face 1" in said) == (step > 0)
+    assert ("0.002 mm of gouge are allowed; repair the edge" in said) == (step > 0)
