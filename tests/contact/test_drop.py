@@ -14,6 +14,7 @@ TOOLS = {
     "torus": Tool.torus(12, 1), "ball": Tool.ball(8), "flat": Tool.flat(10),
     "nearly ball": Tool.torus(8, 3.99), "nearly flat": Tool.torus(10, 0.01),
     "tapered": Tool.tapered(6, 1, 4, flute_length=15), "tapered ball": Tool.tapered(6, 3, 12, flute_length=15),
+    "tapered flat": Tool.tapered(6, 0, 10, flute_length=15),
 }
 
 
@@ -69,6 +70,17 @@ def test_on_a_plane_as_the_normal_says(tool, slope):
         rim = a + r * np.cos(beta) + (tool.flute_length - r + r * np.sin(beta)) * np.tan(beta)
         offset = rim * slope - tool.flute_length
     np.testing.assert_allclose(ta.drop_cutter([triangle], tool, points), slope * (points @ way) + offset, atol=1e-11)
+
+
+@pytest.mark.parametrize("numba", [True, False])
+def test_huge_triangles_keep_their_facets(numba, monkeypatch):
+    monkeypatch.setattr(drop._compiled, "available", numba and drop._compiled.available)
+    rise = 4 * np.sqrt(1 + 3.3**2 + 1.7**2) - 4
+    for turn in np.linspace(0, 2, 20):
+        angle = turn + np.array([0, 2, 4])
+        x, y = 3.1e6 * np.cos(angle), 3.1e6 * np.sin(angle)
+        triangle = np.column_stack([x, y, 3.3 * x - 1.7 * y])
+        assert ta.drop_cutter([triangle], TOOLS["ball"], [[0, 0]])[0] == pytest.approx(rise, abs=1e-6)
 
 
 def test_on_a_vertex_and_on_level_and_upright_edges():

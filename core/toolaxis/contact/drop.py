@@ -171,7 +171,8 @@ def _rows(corners: Array, cutter: Cutter) -> Array:
         steepness = np.hypot(*slope.T)
         miss = np.maximum(*(np.abs((slope * d[:, :2]).sum(axis=1) - d[:, 2]) for d in (ab, ac)))
         thin = np.abs(area) < THIN * np.maximum((ab[:, :2] ** 2).sum(axis=1), (ac[:, :2] ** 2).sum(axis=1))
-        sure = np.isfinite(steepness) & ((miss <= MISS) | (steepness > STEEP))
+        rough = (miss > MISS) | (steepness > STEEP)
+        sure = np.isfinite(steepness) & ((miss <= MISS) | (steepness > STEEP) | ~thin)
     slope[~sure], steepness[~sure] = 0.0, 0.0
     arc = sine * steepness <= cosine
     lean = np.hypot(1.0, steepness)
@@ -179,5 +180,5 @@ def _rows(corners: Array, cutter: Cutter) -> Array:
     side = corner * (1 - sine) + (widest - flat - corner * cosine) * (cosine / sine if sine > 0 else 0.0)
     rise = np.where(arc, corner * (steepness / lean) * (steepness / (lean + 1)), side)
     touch = slope * (rho / np.where(steepness > 0, steepness, 1.0))[:, None]
-    kind = np.where(sure, np.where(thin | (steepness > STEEP), NARROW, PLAIN) * np.sign(area), EDGES_ONLY)
+    kind = np.where(sure, np.where(thin | rough, NARROW, PLAIN) * np.sign(area), EDGES_ONLY)
     return np.column_stack([corners.reshape(-1, 9), slope, touch, rise, kind, corners[..., 2].max(axis=1)])

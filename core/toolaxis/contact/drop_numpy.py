@@ -95,8 +95,9 @@ def facet_tips_numpy(cutter: Cutter, corners: Array) -> tuple[Array, Array]:
         aside = touch[:, None] - corners[..., :2]
         inside = ((turned[..., 0] * aside[..., 1] - turned[..., 1] * aside[..., 0]) * area[:, None] >= 0).all(axis=1)
         miss = np.abs((slope[:, None] * sides[..., :2]).sum(axis=2) - sides[..., 2]).max(axis=1)
-        real = (miss <= MISS) | (steep > STEEP)
-        plain = real & (steep <= STEEP) & (np.abs(area) >= THIN * longest)
+        thin = ~(np.abs(area) >= THIN * longest)
+        real = (miss <= MISS) | (steep > STEEP) | ~thin
+        plain = (miss <= MISS) & (steep <= STEEP) & ~thin
     tips = np.where(plain, rest, np.minimum(rest, corners[..., 2].max(axis=1))) - fall
     return np.where(inside & real, tips, -np.inf), np.where(plain, tips, np.inf)
 

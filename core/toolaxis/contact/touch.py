@@ -21,11 +21,11 @@ Tree: TypeAlias = tuple[Array, Array, Counts]
 FAN = 4
 """Triangles of a leaf, and children of a node."""
 EDGES_ONLY, PLAIN, NARROW = 0.0, 1.0, 2.0
-"""What a row says of its facet: no area from above, well seen from above, or steep or thin; negative if clockwise."""
+"""What a row says of its facet: no area from above, a sure plane, or one that rounding turns; negative if clockwise."""
 STEEP, THIN = 1e4, 1e-6
 """Slope above which a facet counts as steep, and area over its longest side's square below which it counts as thin."""
 MISS = 1e-9
-"""A plane that is not steep and misses its own corners by more comes from rounding alone, mm."""
+"""Rounding has turned a plane that misses its own corners by more, mm; if it is thin as well, rounding made it."""
 _TURNS = 60
 _CLOSE = 1e-14
 _SHIFT, _LEVEL = 6, 63
