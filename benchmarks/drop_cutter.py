@@ -5,7 +5,7 @@ import time
 import numpy as np
 from benchmarks.bounds_rates import patch, seconds
 
-from toolaxis.contact.drop import drop_cutter, drop_many, tree_of
+from toolaxis.contact.drop import cutter_of, drop_cutter, drop_many, tree_of
 from toolaxis.contact.drop_numpy import drop_numpy
 from toolaxis.contact.gouge import gouges
 from toolaxis.contact.placing import place
@@ -53,7 +53,7 @@ def theirs(triangles: np.ndarray, xy: np.ndarray) -> tuple[list[float], np.ndarr
 def row(width: int, side: int, count: int, aim: int) -> None:
     """Print what one mesh gives."""
     face, tool, axis = patch().transformed(np.diag([width / 100] * 3 + [1])), Tool.torus(12, 1), AXIS
-    frame, cutter, out = np.array([*perpendicular(axis), axis]), (5.0, 1.0, 0.0, 1.0, 6.0), np.empty(POINTS)
+    frame, cutter, out = np.array([*perpendicular(axis), axis]), cutter_of(tool), np.empty(POINTS)
     tips = place(face, tool, np.random.default_rng(4).uniform(0.1, 0.9, (POINTS, 2)), axis)
     xyz = tips @ frame.T
     xy, some = np.ascontiguousarray(xyz[:, :2]), slice(0, count)

@@ -225,10 +225,9 @@ def test_the_tree_loses_nothing_on_fine_meshes(name):
     p = np.stack([x, y, 3 * np.sin(x / 3) + 2 * np.cos(y / 2) + x], axis=-1)
     low, a, b, high = p[:-1, :-1], p[1:, :-1], p[:-1, 1:], p[1:, 1:]
     mesh = np.concatenate([np.stack(half, axis=2).reshape(-1, 3, 3) for half in ((low, a, high), (low, high, b))])
-    xy, profile = np.random.default_rng(9).uniform(0, 40, (60, 2)), TOOLS[name].profile
-    cutter = (profile.flat_radius, profile.corner_radius, np.sin(profile.half_angle), np.cos(profile.half_angle),
-              profile.top_radius)
-    np.testing.assert_allclose(ta.drop_cutter(mesh, TOOLS[name], xy), drop_numpy(cutter, mesh, xy), rtol=0, atol=1e-11)
+    xy, tool = np.random.default_rng(9).uniform(0, 40, (60, 2)), TOOLS[name]
+    every = drop_numpy(drop.cutter_of(tool), mesh, xy)
+    np.testing.assert_allclose(ta.drop_cutter(mesh, tool, xy), every, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize(("mesh", "points", "axis", "message"), [

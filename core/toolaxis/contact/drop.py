@@ -3,6 +3,8 @@
 Faces have `placing` and `gouge`, which are exact on the surface itself; this is for what comes as a mesh.
 """
 
+from math import cos, sin
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -68,10 +70,7 @@ def drop_cutter(mesh: ArrayLike | tuple[ArrayLike, ArrayLike], tool: Tool, point
     frame = np.array([*perpendicular(z[0]), z[0]])
     corners = _corners(mesh) @ frame.T
     xy = np.ascontiguousarray((_points(points, z[0]) @ frame.T)[:, :2])
-    profile = tool.profile
-    cutter = (profile.flat_radius, profile.corner_radius, float(np.sin(profile.half_angle)),
-              float(np.cos(profile.half_angle)), profile.top_radius)
-    out = np.empty(len(xy))
+    cutter, out = cutter_of(tool), np.empty(len(xy))
     tree = tree_of(corners, cutter) if _compiled.available else None
     for first in range(0, len(xy), _POINTS_AT_ONCE):
         breathe()
@@ -81,6 +80,18 @@ def drop_cutter(mesh: ArrayLike | tuple[ArrayLike, ArrayLike], tool: Tool, point
         else:
             drop_many(cutter, tree, xy[some], out[some])
     return out
+
+
+def cutter_of(tool: Tool) -> Cutter:
+    """What the kernel knows of a cutter's underside.
+
+    Parameters
+    ----------
+    tool : Tool
+    """
+    profile = tool.profile
+    return (profile.flat_radius, profile.corner_radius, sin(profile.half_angle), cos(profile.half_angle),
+            profile.top_radius)
 
 
 def _corners(mesh: ArrayLike | tuple[ArrayLike, ArrayLike]) -> Array:
