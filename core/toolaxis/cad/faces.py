@@ -59,7 +59,8 @@ def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
             converted, warnings = record_of_face(face, number, share)
         except UnsupportedGeometry as reason:
             record.endless += isinstance(reason, EndlessFace)
-            record.warnings.append(f"face {number} was left out: {reason}")
+            record.warnings.append(f"face {number} was left out: {reason}; until then it is neither machined nor "
+                                   "kept clear of")
         else:
             record.faces.append(converted)
             record.warnings += [f"face {number}: {text}" for text in warnings]

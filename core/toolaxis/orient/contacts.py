@@ -11,6 +11,9 @@ from toolaxis.shape.nearest import nearest
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
+#: Points of a wall along each parameter, to see that it is near.
+_ALONG = 16
+
 
 class Contacts(NamedTuple):
     """Places on a face.
@@ -49,13 +52,20 @@ def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], re
 
 
 def _near(points: Array, walls: tuple[Face, ...], reach: float) -> Bools:
-    """Which walls are within reach of each point, (n, walls)."""
+    """Which walls are within reach of each point, (n, walls): by any point of a wall, else by the nearest."""
+    from scipy.spatial import cKDTree
+
     found = np.zeros((len(points), len(walls)), dtype=bool)
     for k, wall in enumerate(walls):
         gap = np.maximum(np.maximum(wall.box[0] - points, points - wall.box[1]), 0.0)
-        close = np.linalg.norm(gap, axis=1) <= reach
-        if close.any():
-            found[close, k] = nearest(wall, points[close]).distance <= reach
+        close = np.flatnonzero(np.linalg.norm(gap, axis=1) <= reach)
+        if not len(close):
+            continue
+        some = wall.evaluate(np.concatenate([wall.grid(_ALONG, _ALONG), around(wall, 8 * _ALONG)])).point
+        found[close, k] = cKDTree(some).query(points[close])[0] <= reach
+        rest = close[~found[close, k]]
+        if len(rest):
+            found[rest, k] = nearest(wall, points[rest]).distance <= reach
     return found
 
 

@@ -99,8 +99,12 @@ class Feasibility:
         uv : (n, 2) array_like
         """
         rows = as_rows(uv, 2, "uv")
-        return self._with(("normals", "dense", "cloud"),
-                          watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
+        new = self._with(("normals", "dense", "cloud"),
+                         watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
+        if "sparse" in self.__dict__:
+            more = zip(self.sparse, self._contacts(rows, 0), strict=True)
+            new.__dict__["sparse"] = Contacts(*(np.concatenate(both) for both in more))
+        return new
 
     def learning(self, points: Array) -> "Feasibility":
         """The same with more points of the skin held against axes in screening.
