@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.distances import Found, bounded, judged, motions
+from toolaxis.contact.distances import bounded, motions
 from toolaxis.contact.placing import tips
 from toolaxis.machine.limits import AxisLimits, refusal
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
@@ -22,6 +22,8 @@ from toolaxis.orient.cloud import deepest
 from toolaxis.orient.contacts import Contacts, around, contacts_at
 from toolaxis.orient.normals import NormalField
 from toolaxis.orient.setting import OTHER, ROLES, SKIN, Group
+from toolaxis.orient.standing import COARSE, Scene, stands_free, trouble_at
+from toolaxis.orient.standing import FINE as FINE
 from toolaxis.orient.verdicts import (
     BACK,
     CUTTER,
@@ -40,8 +42,6 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
-FINE, COARSE = 0.0003, 0.002
 #: An axis that leaves more than this share of the contacts to a clean-up tool is none.
 MOST_LEFT = 0.9
 _DENSE = 32
@@ -144,6 +144,10 @@ class Feasibility:
         """Faces that continue this one: smooth to touch, but too narrow for the cutter where they are hollow."""
         return tuple(face for face in self.groups[0].faces
                      if self.groups[0].role == SKIN and face.number != self.face.number)
+
+    @cached_property
+    def _scene(self) -> Scene:
+        return Scene(self.face.number, self.tool, self.groups, self.neighbours)
 
     @property
     def walls(self) -> tuple[Face, ...]:
@@ -253,71 +257,7 @@ class Feasibility:
             Groups that are looked at.
         """
         places = tips(contacts.point, contacts.normal, axis, self.tool, self.allowance)
-        moves, n = motions(places, axis), len(places)
-        worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
-                        np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
-        for number, group in enumerate(self.groups):
-            if group.role not in roles:
-                continue
-            fine = FINE if group.role != OTHER else COARSE
-            left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
-            tool = self._carried_on(places, axis, group) if group.role == OTHER else self.tool
-            found = bounded(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
-            beside = np.zeros(n, dtype=bool)
-            if group.role == OTHER and len(contacts.near):
-                hit = np.asarray((found.lower < group.required).any(axis=1))
-                beside = self._beside(tool, group, moves, (hit, contacts.near[:, :len(group.faces)]))
-            elif len(contacts.near) and self.neighbours:
-                near = contacts.near[:, -len(self.neighbours):].any(axis=1)
-                hit = np.asarray(near & (found.lower < group.required).any(axis=1))
-                beside = self._into_neighbours(group, moves, hit, left_out) if group.role == SKIN else hit
-            worst = self._worse(worst, found, number, beside)
-        return worst
-
-    def _carried_on(self, places: Array, axis: Array, group: Group) -> Tool:
-        """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it."""
-        highest = float(np.maximum(*(group.box * axis)).sum())
-        return self.tool.carried_on(highest - float((places @ axis).min()))
-
-    def _into_neighbours(self, group: Group, moves: Array, hit: Bools, left_out: Array | None) -> Bools:
-        """Which of the positions that were hit are so by faces that continue this one alone, as a boss's fillet."""
-        into, rows = hit.copy(), np.flatnonzero(hit)
-        if len(rows):
-            only = np.full((len(group.faces), 3), -np.inf)
-            own = [face.number == self.face.number for face in group.faces]
-            only[own] = 0.0 if left_out is None else left_out[own]
-            found = bounded(group.cells, self.tool, moves[rows], group.required + 2 * FINE, FINE, only)
-            into[rows] = (found.lower >= group.required).all(axis=1)
-        return into
-
-    @staticmethod
-    def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Bools, Bools]) -> Bools:
-        """Which of the positions that were hit come too near to a wall that is near them."""
-        hit, near = at
-        beside = np.zeros(len(hit), dtype=bool)
-        for k in np.flatnonzero(near[hit].any(axis=0)):
-            rows = np.flatnonzero(hit & near[:, k] & ~beside)
-            if len(rows):
-                only = np.full((len(group.faces), 3), -np.inf)
-                only[k] = 0.0
-                found = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
-                beside[rows] = (found.lower < group.required).any(axis=1)
-        return beside
-
-    def _worse(self, worst: Trouble, found: Found, number: int, wall: Bools) -> Trouble:
-        """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
-        group = self.groups[number]
-        for c in range(3):
-            amount = group.required[c] - found.lower[:, c]
-            hit = amount > 0
-            before = worst.reason != FREE
-            take = hit & (~before | (wall & ~worst.wall) | ((worst.wall == wall) & (amount > worst.amount)))
-            code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
-            point = np.where(take[:, None], found.point[:, c], worst.point)
-            worst = Trouble(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
-                            np.where(take, wall, worst.wall), np.where(take, found.face[:, c], worst.face),
-                            np.where(take, number, worst.group), point)
-        return worst
+        return trouble_at(self._scene, places, axis, contacts.near, (thorough, roles))
 
     def witness(self, axis: ArrayLike) -> Witness | None:
         """The proof form: what forbids an axis, at dense contacts and with bounds of the normals between them.
@@ -416,19 +356,9 @@ class Feasibility:
         within = ROLES if self.neighbours else (OTHER,)
         for part, roles in ((good & inside, within), (good & ~inside, ROLES)):
             if part.any() and any(group.role in roles for group in self.groups):
-                good[part] = self._stands_free(tips(point[part], normal[part], t, self.tool, self.allowance), t, roles)
+                good[part] = stands_free(self._scene, tips(point[part], normal[part], t, self.tool, self.allowance),
+                                         t, roles)
         return np.asarray(good)
-
-    def _stands_free(self, places: Array, axis: Array, roles: tuple[str, ...]) -> Bools:
-        """Whether the tool keeps its distances from some groups at tips, (n,)."""
-        free, moves = np.ones(len(places), dtype=bool), motions(places, axis)
-        for group in self.groups:
-            some = np.flatnonzero(free)
-            if group.role in roles and len(some):
-                tool = self._carried_on(places, axis, group) if group.role == OTHER else self.tool
-                required = np.tile(group.required, (len(group.faces), 1))
-                free[some] = judged(group.cells, tool, moves[some], required).blocked < 0
-        return free
 
     def room(self, axis: ArrayLike, most: float = 10.0) -> float:
         """How much more clearance than required an axis leaves at the screening contacts, mm, at most `most`.

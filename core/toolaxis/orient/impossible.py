@@ -6,9 +6,10 @@ import numpy as np
 
 from toolaxis.contact.descent import BUDGET
 from toolaxis.contact.distances import bounded, motions
-from toolaxis.orient.feasible import FINE, Feasibility
+from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.reasons import place
 from toolaxis.orient.setting import SKIN
+from toolaxis.orient.standing import FINE
 from toolaxis.tools.assembly import Tool
 
 

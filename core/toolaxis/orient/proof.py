@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import bounded, judged, segment_motions
-from toolaxis.orient.feasible import COARSE, FINE
 from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.orient.standing import COARSE, FINE
 from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.assembly import Tool

@@ -1,0 +1,134 @@
+"""What stands in the way of a tool at given positions: which face, with what part of the tool, and by how much."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.distances import Found, bounded, judged, motions
+from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.orient.verdicts import CUTTER, FREE, GOUGE, Trouble
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
+FINE, COARSE = 0.0003, 0.002
+
+
+class Scene(NamedTuple):
+    """A tool at a face: the face's number, the tool, the groups around, and the faces that continue the face."""
+
+    number: int
+    tool: Tool
+    groups: tuple[Group, ...]
+    neighbours: tuple[Face, ...]
+
+
+def trouble_at(scene: Scene, places: Array, axis: Array, near: Bools, asked: tuple[bool, tuple[str, ...]]) -> Trouble:
+    """What is worst at each position.
+
+    Parameters
+    ----------
+    scene : Scene
+    places : (n, 3) array
+        Tool tips, mm.
+    axis : (3,) array
+    near : (n, k) bool
+        Which walls are near, as in `toolaxis.orient.contacts.Contacts`.
+    asked : bool, tuple of str
+        Whether gouges of the skin are looked for too; the groups that are looked at.
+    """
+    thorough, roles = asked
+    moves, n = motions(places, axis), len(places)
+    worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
+                    np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
+    for number, group in enumerate(scene.groups):
+        if group.role not in roles:
+            continue
+        fine = FINE if group.role != OTHER else COARSE
+        left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
+        tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
+        found = bounded(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
+        beside = np.zeros(n, dtype=bool)
+        if group.role == OTHER and len(near):
+            hit = np.asarray((found.lower < group.required).any(axis=1))
+            beside = _beside(tool, group, moves, (hit, near[:, :len(group.faces)]))
+        elif len(near) and scene.neighbours:
+            continued = near[:, -len(scene.neighbours):].any(axis=1)
+            hit = np.asarray(continued & (found.lower < group.required).any(axis=1))
+            beside = _into_neighbours(scene, group, moves, hit, left_out) if group.role == SKIN else hit
+        worst = _worse(worst, found, (group, number), beside)
+    return worst
+
+
+def stands_free(scene: Scene, places: Array, axis: Array, roles: tuple[str, ...]) -> Bools:
+    """Whether the tool keeps its distances from some groups at positions, (n,).
+
+    Parameters
+    ----------
+    scene : Scene
+    places : (n, 3) array
+        Tool tips, mm.
+    axis : (3,) array
+    roles : tuple of str
+        Groups that are looked at.
+    """
+    free, moves = np.ones(len(places), dtype=bool), motions(places, axis)
+    for group in scene.groups:
+        some = np.flatnonzero(free)
+        if group.role in roles and len(some):
+            tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
+            required = np.tile(group.required, (len(group.faces), 1))
+            free[some] = judged(group.cells, tool, moves[some], required).blocked < 0
+    return free
+
+
+def _carried_on(tool: Tool, places: Array, axis: Array, group: Group) -> Tool:
+    """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it."""
+    highest = float(np.maximum(*(group.box * axis)).sum())
+    return tool.carried_on(highest - float((places @ axis).min()))
+
+
+def _into_neighbours(scene: Scene, group: Group, moves: Array, hit: Bools, left_out: Array | None) -> Bools:
+    """Which of the positions that were hit are so by faces that continue this one alone, as a boss's fillet."""
+    into, rows = hit.copy(), np.flatnonzero(hit)
+    if len(rows):
+        only = np.full((len(group.faces), 3), -np.inf)
+        own = [face.number == scene.number for face in group.faces]
+        only[own] = 0.0 if left_out is None else left_out[own]
+        found = bounded(group.cells, scene.tool, moves[rows], group.required + 2 * FINE, FINE, only)
+        into[rows] = (found.lower >= group.required).all(axis=1)
+    return into
+
+
+def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Bools, Bools]) -> Bools:
+    """Which of the positions that were hit come too near to a wall that is near them."""
+    hit, near = at
+    beside = np.zeros(len(hit), dtype=bool)
+    for k in np.flatnonzero(near[hit].any(axis=0)):
+        rows = np.flatnonzero(hit & near[:, k] & ~beside)
+        if len(rows):
+            only = np.full((len(group.faces), 3), -np.inf)
+            only[k] = 0.0
+            found = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
+            beside[rows] = (found.lower < group.required).any(axis=1)
+    return beside
+
+
+def _worse(worst: Trouble, found: Found, which: tuple[Group, int], wall: Bools) -> Trouble:
+    """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
+    group, number = which
+    for c in range(3):
+        amount = group.required[c] - found.lower[:, c]
+        hit = amount > 0
+        before = worst.reason != FREE
+        take = hit & (~before | (wall & ~worst.wall) | ((worst.wall == wall) & (amount > worst.amount)))
+        code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
+        point = np.where(take[:, None], found.point[:, c], worst.point)
+        worst = Trouble(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
+                        np.where(take, wall, worst.wall), np.where(take, found.face[:, c], worst.face),
+                        np.where(take, number, worst.group), point)
+    return worst
