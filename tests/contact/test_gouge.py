@@ -5,7 +5,16 @@ import pytest
 
 from toolaxis.contact import distances
 from toolaxis.contact.distances import bounded, judged, motions, segment_motions
-from toolaxis.contact.gouge import RESOLUTION, gouge, gouges, penetration, segment_gouges, segment_penetration
+from toolaxis.contact.gouge import (
+    RESOLUTION,
+    depth_from_distance,
+    gouge,
+    gouges,
+    least_distance,
+    penetration,
+    segment_gouges,
+    segment_penetration,
+)
 from toolaxis.contact.placing import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
@@ -241,3 +250,30 @@ def test_a_ball_touches_the_pole_of_a_sphere_without_gouge(radius, swapped):
     uv = uv[:, ::-1] if swapped else uv
     for row in uv:
         assert gouge(face, Tool.ball(2 * radius), [row], face.normal([row])[0])[0] <= 0.0004
+
+
+@pytest.mark.parametrize("dipped", [Tool.flat(diameter=3), Tool.torus(diameter=3, corner_radius=0.001),
+                                    Tool.torus(diameter=3, corner_radius=0.5),
+                                    Tool.tapered(diameter=3, corner_radius=0.001, half_angle_deg=20)], ids=str)
+@pytest.mark.parametrize("lean", [5.0, 30.0, 45.0, 60.0])
+def test_the_depth_below_a_plane_is_that_of_the_cutter(dipped, lean):
+    """A sharp corner reaches deeper below the skin than any point of the skin lies inside the cutter."""
+    s, t = np.meshgrid(np.linspace(-10, 10, 4), np.linspace(-10, 10, 4), indexing="ij")
+    plane, normal = Face.from_bspline(np.stack([s, t, 0 * s], axis=-1)), np.array([0.0, 0.0, 1.0])
+    axis = np.array([np.sin(np.radians(lean)), 0.0, np.cos(np.radians(lean))])
+    across = (normal - normal @ axis * axis) / np.linalg.norm(normal - normal @ axis * axis)
+    tip = dipped.corner_radius * (normal - axis) + dipped.flat_radius * across - 0.0028 * normal
+    depth = penetration(dipped, tip[None], axis, [plane])[0]
+    assert 0.0028 - 1e-9 <= depth <= np.sqrt(2) * (0.0028 + 0.0003)
+    if dipped.corner_radius > 0.1:
+        assert depth <= 0.0028 + 0.0003
+    assert gouges(dipped, tip[None], axis, [plane], 0.0027)[0]
+
+
+def test_distance_and_depth_undo_each_other():
+    for corner in (0.0, 0.001, 1.0):
+        some = Tool.torus(diameter=6, corner_radius=corner) if corner else Tool.flat(diameter=6)
+        for allowance in (0.0, 0.0015, 0.3):
+            for depth in (0.0005, 0.002, 0.01):
+                kept = least_distance(some, depth, allowance)
+                assert depth_from_distance(some, np.array(kept), allowance) == pytest.approx(depth, abs=1e-12)

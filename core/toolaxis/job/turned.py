@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import judged as decided
 from toolaxis.contact.distances import segment_motions
+from toolaxis.contact.gouge import least_distance
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import frame_of, judged
@@ -239,7 +240,7 @@ def _proven(op: Operation, task: Task, groups: tuple[Group, ...], datum: Array) 
     moves = segment_motions(path.cl, path.axis[0])
     least = {name: value - _SLACK for name, value in found.clearance.items()}
     depth = found.gouge + _FINER
-    same = all((decided(group.cells, tool, moves, np.tile(_asked(group, least, allowance - depth),
+    same = all((decided(group.cells, tool, moves, np.tile(_asked(group, least, least_distance(tool, depth, allowance)),
                                                            (len(group.faces), 1))).blocked < 0).all()
                for group in groups)
     if same:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.gouge import least_distance
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.machine.limits import AllOf, AxisLimits
 from toolaxis.machine.mounting import MachineLike, machine_limits
@@ -139,7 +140,8 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     chord = min(given.chord_for(scallop), given.gouge / 2)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
-    strict, groups = (grouped(face, limit, allowance, part=part, skin=skin, surroundings=surroundings,
+    strict, groups = (grouped(face, replace(limit, gouge=allowance - least_distance(tool, limit.gouge, allowance)),
+                              allowance, part=part, skin=skin, surroundings=surroundings,
                               obstacles=obstacles) for limit in (kept, given))
     reach = at_face(limits, face, tool)
     return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, progress, direction)

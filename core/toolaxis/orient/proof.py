@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import bounded, judged, segment_motions
+from toolaxis.contact.gouge import depth_from_distance
 from toolaxis.orient.setting import OTHER, SKIN, Group
 from toolaxis.orient.standing import COARSE, FINE
 from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
@@ -81,7 +82,7 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role == SKIN:
             depth = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
-            gouge = max(allowance - max(float(depth), float(group.required[0])), 0.0)
+            gouge = float(depth_from_distance(tool, np.maximum(depth, group.required[0]), allowance))
         asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
