@@ -169,6 +169,11 @@ def unit(v):
     return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
+def told_at_most(tool, inside):
+    """How deep a cutter may be told to reach where the skin lies so far inside it: sharp corners count as dips."""
+    return inside if tool.corner_radius > 0 else inside / np.sin((np.pi / 2 + tool.half_angle) / 2)
+
+
 def contacts(rng, face, tool, lean):
     """Contacts with a standing tool anywhere on a face."""
     (u0, u1), (v0, v1) = face.surface.domain

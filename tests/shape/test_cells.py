@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
+from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds, third_derivative_bounds
 from toolaxis.shape.cells import cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.gridlines import grid_lines
@@ -79,6 +79,14 @@ def test_leaves_enclose_the_face(name):
     d = np.linalg.norm(points - shape[:, :3] - share[:, :1] * shape[:, 3:6] - share[:, 1:] * shape[:, 6:9], axis=1)
     assert (d <= shape[:, 9] * (1 + 1e-9)).all()
     assert (np.linalg.norm(points - shape[:, :3], axis=1) <= shape[:, 10] * (1 + 1e-9)).all()
+    curved = np.linalg.norm(points - _second_order(tree, rows[index], share), axis=1)
+    assert (curved <= tree.bend[rows[index], 9] * (1 + 1e-9)).all()
+
+
+def _second_order(tree, rows, share):
+    (s, t), shape, bend = share.T[:, :, None], tree.shape[rows], tree.bend[rows]
+    return (shape[:, :3] + s * shape[:, 3:6] + t * shape[:, 6:9]
+            + (s * s * bend[:, :3] + 2 * s * t * bend[:, 3:6] + t * t * bend[:, 6:9]) / 2)
 
 
 @pytest.mark.parametrize("name", FACES)
@@ -95,6 +103,42 @@ def test_every_node_encloses_what_is_below(name):
             assert inside
             below = [c for n in inside for c in tree.link[n, :2] if c >= 0]
             level = below if not any(tree.link[n, 3] >= 0 for n in inside) else []
+
+
+@pytest.mark.parametrize("name", ["wavy", "high degree", "creased", "rational"])
+def test_second_order_forms_enclose_every_node(name):
+    """Untrimmed nodes are halved at the middle or at a knot: their rectangles follow from those of their leaves."""
+    face = FACES[name]
+    tree = cells(face)
+    low, high = np.full((len(tree.shape), 2), np.inf), np.full((len(tree.shape), 2), -np.inf)
+    leaves = np.flatnonzero(tree.link[:, 3] >= 0)
+    leaf = tree.leaf[tree.link[leaves, 3]]
+    low[leaves], high[leaves] = leaf[:, :2] - leaf[:, 2:4], leaf[:, :2] + leaf[:, 2:4]
+    for node in range(len(tree.shape) - 1, -1, -1):
+        below = [c for c in tree.link[node, :2] if c >= 0]
+        if below:
+            low[node], high[node] = low[below].min(axis=0), high[below].max(axis=0)
+    rng, tight = np.random.default_rng(8), []
+    for node in np.concatenate([np.arange(min(60, len(low))), rng.choice(len(low), 60)]):
+        share = rng.uniform(-1, 1, (60, 2))
+        points = face.evaluate((low[node] + high[node]) / 2 + share * (high[node] - low[node]) / 2).point
+        off = np.linalg.norm(points - _second_order(tree, np.full(60, node), share), axis=1)
+        assert off.max() <= tree.bend[node, 9] * (1 + 1e-9)
+        tight.append(off.max() / tree.bend[node, 9])
+    assert np.median(tight) > 0.05  # and they are not idle
+    assert (tree.link[:, 4] == 2).all()
+
+
+def test_nodes_that_loops_cross_are_not_whole():
+    face = FACES["hole"]
+    tree = cells(face)
+    leaves = np.flatnonzero(tree.link[:, 3] >= 0)
+    whole = leaves[tree.link[leaves, 4] == 2]
+    cut = np.diff(tree.edge_start)[tree.link[leaves, 3]] > 0
+    assert cut.any() and not np.isin(leaves[cut], whole).any()
+    leaf = tree.leaf[tree.link[whole, 3]]
+    for side in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
+        assert face.contains(leaf[:, :2] + np.array(side) * leaf[:, 2:4] * (1 - 1e-6)).all()
 
 
 def _holds(shape, point):
@@ -164,6 +208,27 @@ def test_second_derivative_bounds(name):
         assert (seen <= bounds[i, j] * (1 + 1e-9)).all()
         ratio = np.maximum(ratio, seen / np.maximum(bounds[i, j], 1e-300))
     assert (ratio > 0.4).all()  # and they are not idle
+
+
+@pytest.mark.parametrize("name", ["wavy", "high degree", "rational"])
+def test_third_derivative_bounds(name):
+    """Differences of second derivatives are means of third ones."""
+    face = FACES[name]
+    data, (u, v) = face.surface.data, face.surface.domain
+    lines = grid_lines(data[0], data[3], *u), grid_lines(data[1], data[4], *v)
+    bounds = third_derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]))
+    rng, ratio, step = np.random.default_rng(6), np.zeros(4), 1e-4
+    for _ in range(30):
+        i, j = rng.integers(len(lines[0]) - 1), rng.integers(len(lines[1]) - 1)
+        width = np.array([np.diff(lines[0])[i], np.diff(lines[1])[j]])
+        uv = np.array([lines[0][i], lines[1][j]]) + rng.uniform(0.001, 0.999, (100, 2)) * width
+        here, right, up = (face.evaluate(uv + np.array(d) * step * width) for d in ((0, 0), (1, 0), (0, 1)))
+        du, dv = step * width
+        seen = [np.linalg.norm(x, axis=1).max() for x in ((right.suu - here.suu) / du, (up.suu - here.suu) / dv,
+                                                          (up.suv - here.suv) / dv, (up.svv - here.svv) / dv)]
+        assert (seen <= bounds[i, j] * (1 + 1e-5) + 1e-6).all()
+        ratio = np.maximum(ratio, seen / np.maximum(bounds[i, j], 1e-300))
+    assert (ratio > 0.2).all()
 
 
 def test_forest_holds_every_face():

@@ -4,72 +4,22 @@ The signed distance phi to a convex piece is a convex function of the point, so 
 phi(x) >= phi(y) + g (x - y) for all x.  Over a cell {q + s a + t b + d, with s and t in [-1, 1] and d no longer than e}
 the right side is least at a corner: a bound that holds between all points.  A straight motion of the tip adds a third
 direction c, since only places relative to the tip count.  The bound is taken at the centre, from the plane of the cell
-itself, and at the point that looks nearest; near a minimum its error falls as the square of the cell's size.
-
-Vectors are tuples of numbers here: they stay in registers.
+itself, and at the point that looks nearest; near a minimum its error falls as the square of the cell's size, and that
+of `enclosing_gap` as its cube.
 """
-
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.enclosing import enclosing_gap
+from toolaxis.contact.sight import Bend, Frame, Piece, Steps, Triple, View, cross, dot, look, slopes_along, spread
 from toolaxis.numeric.compiled import built_in
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
-Triple: TypeAlias = tuple[float, float, float]
-# q from the tip; the axis; a; b; c
-Frame: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple]
-# rho, z, 1 / rho (0 on the axis), the direction outwards
-View: TypeAlias = tuple[float, float, float, Triple]
-# of a, b and c each: the parts outwards, along the axis and around it
-Steps: TypeAlias = tuple[Triple, Triple, Triple]
-Piece: TypeAlias = tuple[float, float, float, float, float, float, float]
 
-
-@built_in
-def dot(x: Triple, y: Triple) -> float:
-    """Scalar product."""
-    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-
-
-@built_in
-def cross(x: Triple, y: Triple) -> Triple:
-    """Vector product."""
-    return x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
-
-
-@built_in
-def row(table: Array, k: int, first: int) -> Triple:
-    """Three neighbours of a row."""
-    return table[k, first], table[k, first + 1], table[k, first + 2]
-
-
-@built_in
-def look(w: Triple, axis: Triple) -> View:
-    """Where a point, seen from the tip, stands to the axis."""
-    z = dot(w, axis)
-    p = (w[0] - z * axis[0], w[1] - z * axis[1], w[2] - z * axis[2])
-    rho = np.sqrt(dot(p, p))
-    scale = 1.0 / rho if rho > 1e-12 else 0.0
-    return rho, z, scale, (p[0] * scale, p[1] * scale, p[2] * scale)
-
-
-@built_in
-def spread(frame: Frame, outwards: Triple) -> Steps:
-    """Parts of a, b and c outwards, along the axis and around it."""
-    _, axis, a, b, c = frame
-    around = cross(axis, outwards)
-    return ((dot(a, outwards), dot(a, axis), dot(a, around)), (dot(b, outwards), dot(b, axis), dot(b, around)),
-            (dot(c, outwards), dot(c, axis), dot(c, around)))
-
-
-@built_in
-def slopes_along(steps: Steps, rise: float, climb: float) -> Triple:
-    """Slopes along a, b and c of a function with slopes ``rise`` along rho and ``climb`` along z."""
-    a, b, c = steps
-    return rise * a[0] + climb * a[1], rise * b[0] + climb * b[1], rise * c[0] + climb * c[1]
+#: Shares of the distance at the centre and of e below which what a second-order form leaves makes it worth a look.
+SLIGHT, BETTER = 0.05, 0.5
 
 
 @built_in
@@ -199,8 +149,8 @@ def bound_inside(piece: Piece, steps: Steps, rho: float, z: float) -> float:
 
 
 @built_in
-def bound_over_cell(frame: Frame, piece: Piece, view: View, reach: Triple) -> tuple[float, float]:
-    """Least phi of one piece over a whole cell: a lower bound, and phi at the centre.
+def bound_over_cell(frame: Frame, piece: Piece, view: View, bend: Bend, reach: Triple) -> tuple[float, float]:
+    """Least phi of one piece over a whole cell: a lower bound, and one that some point of a whole cell stays under.
 
     Parameters
     ----------
@@ -208,30 +158,34 @@ def bound_over_cell(frame: Frame, piece: Piece, view: View, reach: Triple) -> tu
     piece : tuple
     view : tuple
         From `look` at the centre.
+    bend : tuple
     reach : (float, float, float)
         e; radius around q, half the motion included; the value from which more effort is not wanted.
     """
     (rho, z, over_rho, outwards), (e, radius, wanted) = view, reach
-    value, rise, climb, bend = piece_distance(piece, rho, z)
-    lower = value - radius
+    value, rise, climb, curved = piece_distance(piece, rho, z)
+    lower, upper = value - radius, value
     if lower >= wanted or e >= radius:
-        return lower, value
+        return lower, upper
     steps = spread(frame, outwards)
     slopes = slopes_along(steps, rise, climb)
     lower = max(lower, value - abs(slopes[0]) - abs(slopes[1]) - abs(slopes[2]) - e)
+    if lower < wanted and bend[3] < min(SLIGHT * (value - wanted), BETTER * e):
+        ball, seen = enclosing_gap(frame, piece, bend)
+        lower, upper = max(lower, ball), min(upper, seen)
+    if lower >= wanted or value - e < wanted:
+        return lower, upper
     ring = rise * over_rho
-    if lower >= wanted:
-        return lower, value
     if value < 0.0:
         lower = max(lower, bound_inside(piece, steps, rho, z) - e)
-    if lower >= wanted or (bend == 0.0 and ring == 0.0):
-        return lower, value
+    if lower >= wanted or (curved == 0.0 and ring == 0.0):
+        return lower, upper
     lower = max(lower, plane_gap(frame, piece, (rise, climb), outwards) - e)
     if lower >= wanted:
-        return lower, value
-    at = nearest_share(steps, (rise, climb, bend, ring))
+        return lower, upper
+    at = nearest_share(steps, (rise, climb, curved, ring))
     seen, slopes = seen_from(frame, piece, at)
-    return max(lower, seen + fall_over_cell(slopes, at) - e), value
+    return max(lower, seen + fall_over_cell(slopes, at) - e), upper
 
 
 @built_in

@@ -6,12 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.bounds import BETTER
 from toolaxis.contact.descent import BUDGET, DECIDED, ToolData
+from toolaxis.contact.enclosing_numpy import Curved, enclosing_gap_numpy
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.cells import Cells
 from toolaxis.shape.face import Face
-from toolaxis.shape.subdivision import clipped, margin_of, reached, remainder
+from toolaxis.shape.subdivision import clipped, margin_of, reached, remainder, second_remainder
 from toolaxis.tools.solid import piece_distance_numpy
 
 Array = NDArray[np.float64]
@@ -46,10 +48,11 @@ class _Corners(NamedTuple):
 
 
 class _Cells(NamedTuple):
-    """Enclosures: shape (n, 12) with q, a, b, e, radius, extra; whether q counts as a sample; corners."""
+    """Enclosures: shape (n, 12) with q, a, b, e, radius, extra; bend (n, 10); how much counts as samples; corners."""
 
     shape: Array
-    real: Flags
+    bend: Array
+    real: Indices
     corners: _Corners
 
 
@@ -109,6 +112,7 @@ def _enclosed(cells: Cells, front: _Front) -> tuple[_Front, _Cells]:
     front, _, corners = _trimmed(cells, front)
     link, leaf = cells.link[front.node], cells.leaf[cells.link[front.node, 3]]
     shape = np.column_stack([cells.shape[front.node], np.where(link[:, 3] >= 0, leaf[:, 7], 0.0)])
+    bend = cells.bend[front.node]
     for k in np.unique(link[front.below, 2]):
         rows = np.flatnonzero(front.below & (link[:, 2] == k))
         half = front.rect[rows, 2:]
@@ -117,8 +121,11 @@ def _enclosed(cells: Cells, front: _Front) -> tuple[_Front, _Cells]:
         e = remainder(leaf[rows, 4:7], half) + leaf[rows, 7]
         radius = np.maximum(np.linalg.norm(a + b, axis=1), np.linalg.norm(a - b, axis=1)) + e
         shape[rows] = np.column_stack([d[:, 0], a, b, e, radius, leaf[rows, 7]])
-    real = np.where(front.below, ~corners.cut, link[:, 4] == 1)
-    return front, _Cells(shape, real, corners)
+        bend[rows] = np.column_stack([d[:, 3] * half[:, :1]**2, d[:, 4] * half[:, :1] * half[:, 1:],
+                                      d[:, 5] * half[:, 1:]**2,
+                                      second_remainder(leaf[rows, 11:], half) + leaf[rows, 7]])
+    real = np.where(front.below, np.where(corners.cut, 0, 2), link[:, 4])
+    return front, _Cells(shape, bend, real, corners)
 
 
 class _Sight(NamedTuple):
@@ -211,6 +218,16 @@ def _lowest(slopes: Array, at: Array, corners: _Corners) -> tuple[Array, Array]:
     return fall, share
 
 
+def _curved(sight: _Sight, found: _Cells, value: Array) -> tuple[Array, Array]:
+    """The bounds of `enclosing_gap_numpy` where they are worth a look."""
+    lower, upper = np.full(len(value), -np.inf), np.full(len(value), np.inf)
+    rest, e = found.bend[:, 9], found.shape[:, 9]
+    worth = ~found.corners.cut & (rest < BETTER * e) & (rest < np.maximum(np.abs(value), found.shape[:, 10]))
+    lower[worth], upper[worth] = enclosing_gap_numpy(
+        Curved(sight.w[worth], sight.axis[worth], sight.span[worth], found.bend[worth], sight.piece[worth]))
+    return lower, upper
+
+
 def _bounds(sight: _Sight, found: _Cells) -> tuple[Array, Array]:
     """Lower bounds of phi over the cells, and values that some of their points do not exceed."""
     e, radius = found.shape[:, 9], found.shape[:, 10] + np.linalg.norm(sight.span[:, 2], axis=1)
@@ -223,8 +240,9 @@ def _bounds(sight: _Sight, found: _Cells) -> tuple[Array, Array]:
     at = np.where(cut[:, None], share, _nearest(slopes, form))
     seen, slopes, _ = sight.look(at)
     fall, _ = _lowest(slopes, at, found.corners)
-    upper = np.where(cut, seen + e, np.where(found.real, value, np.inf))
-    return np.maximum(lower, seen + fall - e), upper
+    ball, over = _curved(sight, found, value)
+    upper = np.where(found.real > 1, np.minimum(value, over), np.where(found.real > 0, value, np.inf))
+    return np.maximum(np.maximum(lower, seen + fall - e), ball), np.where(cut, seen + e, upper)
 
 
 def _parts(cells: Cells, front: _Front, found: _Cells, sweep: Array) -> _Front:

@@ -5,11 +5,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.bounds import Triple, bound_over_cell, bound_over_region, dot, look, row
+from toolaxis.contact.bounds import bound_over_cell, bound_over_region
+from toolaxis.contact.sight import Bend, Triple, dot, look, row
 from toolaxis.contact.trimming import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
 from toolaxis.numeric.compiled import borrowed, built_in, compiled
 from toolaxis.shape.cells import ForestData
+from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -33,8 +35,8 @@ Stack: TypeAlias = tuple[Array, Indices]
 State: TypeAlias = tuple[Array, Indices]
 # tip half-way, half of its way (zero for a standing tool), axis
 Motion: TypeAlias = tuple[Triple, Triple, Triple]
-# q, a, b; e, radius, and what of e no splitting removes
-Cell: TypeAlias = tuple[Triple, Triple, Triple, Triple]
+# q, a, b; e, radius, and what of e no splitting removes; the second-order form
+Cell: TypeAlias = tuple[Triple, Triple, Triple, Triple, Bend]
 # u, v, du, dv, middle and half of the motion
 Item: TypeAlias = tuple[float, float, float, float, float, float]
 
@@ -53,7 +55,7 @@ def close_enough(least: float, resolution: float) -> float:
 
 @built_in
 def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
-            tag: tuple[int, int, bool, int, float, float], state: State) -> tuple[int, float]:
+            tag: tuple[int, int, int, int, float, float], state: State) -> tuple[int, float]:
     """Which pieces are still open over one cell, and the lowest of their bounds.
 
     Parameters
@@ -62,12 +64,12 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         See the aliases.
     region : (k, 2) array
         Corners of what trims leave.
-    tag : (int, int, bool, int, float, float)
-        Face, open pieces as bits, whether the centre is a point of the face, corners that trims leave, and the part of
-        the motion.
+    tag : (int, int, int, int, float, float)
+        Face, open pieces as bits, whether the centre (1) or all of the cell (2) is known to be of the face, corners
+        that trims leave, and the part of the motion.
     """
     pieces, limits, (low, wide, resolution) = tool
-    (q, a, b, (e, radius, extra)), (tip, way, axis) = cell, motion
+    (q, a, b, (e, radius, extra), bend), (tip, way, axis) = cell, motion
     face, mask, real, count, middle, half = tag
     found, tags = state
     c = (-half * way[0], -half * way[1], -half * way[2])
@@ -91,8 +93,11 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
             continue
         piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
         if count == 0:
-            lower, upper = bound_over_cell(frame, piece, view, (e, radius, wanted))
-            upper = upper if real else np.inf
+            lower, upper = bound_over_cell(frame, piece, view, bend, (e, radius, wanted))
+            if real == 1:
+                upper = piece_distance(piece, view[0], view[1])[0]
+            elif real == 0:
+                upper = np.inf
         else:
             lower, upper = bound_over_region(frame, piece, (e, radius, wanted), region, count)
         if upper < found[0, k]:
@@ -115,10 +120,11 @@ def tree_cell(shape: Array, node: int) -> Cell:
 
     Parameters
     ----------
-    shape : (n, 12) array
+    shape : (n, 22) array
     node : int
     """
-    return row(shape, node, 0), row(shape, node, 3), row(shape, node, 6), row(shape, node, 9)
+    bend = row(shape, node, 12), row(shape, node, 15), row(shape, node, 18), shape[node, 21]
+    return row(shape, node, 0), row(shape, node, 3), row(shape, node, 6), row(shape, node, 9), bend
 
 
 @built_in
@@ -148,7 +154,12 @@ def part_cell(data: ForestData, node: int, rect: tuple[float, float, float, floa
     extra = leaf[number, 7]
     e = leaf[number, 4] * du * du / 2.0 + leaf[number, 5] * du * dv + leaf[number, 6] * dv * dv / 2.0 + extra
     radius = np.sqrt(dot(a, a) + dot(b, b) + 2.0 * abs(dot(a, b))) + e
-    return row(d, 0, 0), a, b, (e, radius, extra)
+    rest = (leaf[number, 11] * du * du * du + 3.0 * (leaf[number, 12] * du + leaf[number, 13] * dv) * du * dv
+            + leaf[number, 14] * dv * dv * dv) / 6.0 + extra
+    bend = ((d[3, 0] * du * du, d[3, 1] * du * du, d[3, 2] * du * du),
+            (d[4, 0] * du * dv, d[4, 1] * du * dv, d[4, 2] * du * dv),
+            (d[5, 0] * dv * dv, d[5, 1] * dv * dv, d[5, 2] * dv * dv), rest)
+    return row(d, 0, 0), a, b, (e, radius, extra), bend
 
 
 @built_in
@@ -225,7 +236,7 @@ def admit(data: ForestData, tool: ToolData, motion: Motion, tag: tuple[int, int,
     shape, link, leaf, start, edges, _, _, _ = data
     items, tags = stack
     node, kind, mask, (u, v, du, dv, middle, half) = tag
-    face, number, real, count = link[node, 2], link[node, 3], link[node, 4] == 1, 0
+    face, number, real, count = link[node, 2], link[node, 3], link[node, 4], 0
     if kind == TREE:
         cell = tree_cell(shape, node)
     else:
@@ -237,7 +248,7 @@ def admit(data: ForestData, tool: ToolData, motion: Motion, tag: tuple[int, int,
             if count == 0:
                 kind = WHOLE
         cell = part_cell(data, node, (u, v, du, dv), work)
-        real = kind == WHOLE
+        real = 2 if kind == WHOLE else 0
     left, key = examine(tool, cell, motion, work[0], (face, mask, real, count, middle, half), state)
     if left != 0:
         items[depth, 0], items[depth, 1], items[depth, 2], items[depth, 3] = u, v, du, dv

@@ -1,8 +1,10 @@
-"""Pieces of a B-spline surface as Bezier nets, and what their control points prove about second derivatives.
+"""Pieces of a B-spline surface as Bezier nets, and what their control points prove about its derivatives.
 
 A Bezier patch lies in the hull of its control points; so do its derivatives in the hull of the difference nets.  The
 greatest norm of a difference net is therefore a bound that holds between all parameters.
 """
+
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +80,40 @@ def _peak(net: Array) -> Array:
     return np.asarray(size.max(axis=(2, 3)))
 
 
+class _Bounds:
+    """Bounds of a surface's derivatives over Bezier patches, each from those of lower order.
+
+    With S = c + A / w and c inside the patch, w Suu = Auu - 2 wu Su - wuu (S - c), and so on after Leibniz; each
+    factor is bounded by its net.
+    """
+
+    def __init__(self, nets: Array, width_u: Array, width_v: Array) -> None:
+        self.degree, self.width = (nets.shape[2] - 1, nets.shape[3] - 1), (width_u[:, None], width_v[None, :])
+        self.w = nets[..., 3:]
+        self.a = nets[..., :3] - self.w * (nets[..., :3] / self.w).mean(axis=(2, 3), keepdims=True)
+        self.least = self.w.min(axis=(2, 3, 4))
+        self.known: dict[tuple[int, int], Array] = {(0, 0): _peak(self.a / self.w)}
+
+    def slope(self, net: Array, order: tuple[int, int]) -> Array:
+        """Bound of a derivative of a net of control points."""
+        for axis in (0, 1):
+            for k in range(order[axis]):
+                width = self.width[axis][..., None, None, None]
+                net = np.diff(net, axis=axis + 2) * ((self.degree[axis] - k) / width)
+        return _peak(net)
+
+    def of(self, u: int, v: int) -> Array:
+        """Bound of the derivative of orders u and v of the surface, (nu, nv)."""
+        if (u, v) not in self.known:
+            total = self.slope(self.a, (u, v))
+            for i in range(u + 1):
+                for j in range(v + 1):
+                    if i + j:
+                        total = total + comb(u, i) * comb(v, j) * self.slope(self.w, (i, j)) * self.of(u - i, v - j)
+            self.known[u, v] = total / self.least
+        return self.known[u, v]
+
+
 def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Array:
     """Bounds of |Suu|, |Suv| and |Svv| over Bezier patches.
 
@@ -91,28 +127,24 @@ def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Arr
     Returns
     -------
     (nu, nv, 3) array
-
-    Notes
-    -----
-    With S = c + A / w and c inside the patch, w Suu = Auu - 2 wu Su - wuu (S - c); each factor is bounded by its net.
     """
-    pu, pv = nets.shape[2] - 1, nets.shape[3] - 1
-    w = nets[..., 3:]
-    middle = (nets[..., :3] / w).mean(axis=(2, 3), keepdims=True)
-    a = nets[..., :3] - w * middle
-    hu, hv = width_u[:, None], width_v[None, :]
-    least = w.min(axis=(2, 3, 4))
-    reach = _peak(a / w)
+    bounds = _Bounds(nets, width_u, width_v)
+    return np.stack([bounds.of(2, 0), bounds.of(1, 1), bounds.of(0, 2)], axis=-1)
 
-    def slope(net: Array, order_u: int, order_v: int) -> Array:
-        for axis, order, degree, width in ((2, order_u, pu, hu), (3, order_v, pv, hv)):
-            for k in range(order):
-                net = np.diff(net, axis=axis) * ((degree - k) / width)[..., None, None, None]
-        return net
 
-    wu, wv = _peak(slope(w, 1, 0)), _peak(slope(w, 0, 1))
-    su, sv = (_peak(slope(a, 1, 0)) + wu * reach) / least, (_peak(slope(a, 0, 1)) + wv * reach) / least
-    suu = (_peak(slope(a, 2, 0)) + 2 * wu * su + _peak(slope(w, 2, 0)) * reach) / least
-    suv = (_peak(slope(a, 1, 1)) + wu * sv + wv * su + _peak(slope(w, 1, 1)) * reach) / least
-    svv = (_peak(slope(a, 0, 2)) + 2 * wv * sv + _peak(slope(w, 0, 2)) * reach) / least
-    return np.stack([suu, suv, svv], axis=-1)
+def third_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Array:
+    """Bounds of |Suuu|, |Suuv|, |Suvv| and |Svvv| over Bezier patches.
+
+    Parameters
+    ----------
+    nets : (nu, nv, pu + 1, pv + 1, 4) array
+        Homogeneous nets.
+    width_u, width_v : (nu,), (nv,) array
+        Parameter widths of the patches.
+
+    Returns
+    -------
+    (nu, nv, 4) array
+    """
+    bounds = _Bounds(nets, width_u, width_v)
+    return np.stack([bounds.of(3 - k, k) for k in range(4)], axis=-1)

@@ -1,8 +1,9 @@
 """Faces as trees of cells that enclose them: each cell is a parallelogram with a proven distance around it.
 
 Every point of the face inside a cell is q + s a + t b + d with s and t in [-1, 1] and d no longer than e, and lies
-within a radius R of q.  Leaves take e from bounds of the second derivatives, parents from their children.  What a trim
-cuts away is left out: cells outside the loops are dropped, cells across a loop shrink to what is inside.
+within a radius R of q.  It is as well q + s a + t b + (s^2 A + 2 s t B + t^2 C) / 2 + d' with d' no longer than e'.
+Leaves take e and e' from bounds of the second and third derivatives, parents from their children.  What a trim cuts
+away is left out: cells outside the loops are dropped, cells across a loop shrink to what is inside.
 """
 
 from collections.abc import Sequence
@@ -35,12 +36,15 @@ class Cells:
     faces : tuple of Face
     shape : (n, 11) array
         q, a, b (three numbers each), e and R of every node, mm.
+    bend : (n, 10) array
+        A, B, C (three numbers each) and e' of every node, mm.
     link : (n, 5) array of int
         Left and right child (-1 for none), face (index in `faces`, -1 above them), leaf (-1 above leaves), and
-        whether q is a point of the face (1 or 0).
-    leaf : (m, 11) array
+        whether q is a point of the face (1 or 0), or the whole cell is (2).
+    leaf : (m, 15) array
         Centre u, v and half widths of the leaf's rectangle; bounds of |Suu|, |Suv|, |Svv| over it; what is added to
-        Taylor's remainder, mm; a reference point u, v and whether that is inside the loops (1 or 0).
+        Taylor's remainder, mm; a reference point u, v and whether that is inside the loops (1 or 0); bounds of |Suuu|,
+        |Suuv|, |Suvv| and |Svvv|.
     edge_start : (m + 1,) array of int
         Trim edges that run through leaf k are ``edges[edge_start[k]:edge_start[k + 1]]``.
     edges : (k, 4) array
@@ -49,6 +53,7 @@ class Cells:
 
     faces: tuple[Face, ...]
     shape: Array
+    bend: Array
     link: Indices
     leaf: Array
     edge_start: Indices
@@ -56,7 +61,10 @@ class Cells:
 
     @cached_property
     def data(self) -> ForestData:
-        """The tuple that kernels take: the trees (what is added to e beside them), then the surfaces, all in a row."""
+        """The tuple that kernels take: the trees, then the surfaces, all in a row.
+
+        The first array is shape, what is added to e, and bend.
+        """
         knots: list[Array] = []
         control: list[Array] = []
         layout = []
@@ -68,7 +76,7 @@ class Cells:
             control.append(net.reshape(-1))
             at_knot, at_number = at_knot + len(ku) + len(kv), at_number + net.size
         extra = np.where(self.link[:, 3] >= 0, self.leaf[self.link[:, 3], 7], 0.0)
-        return (np.column_stack([self.shape, extra]), self.link, self.leaf, self.edge_start, self.edges,
+        return (np.column_stack([self.shape, extra, self.bend]), self.link, self.leaf, self.edge_start, self.edges,
                 np.concatenate(knots), np.concatenate(control), np.array(layout, dtype=np.int64))
 
 
@@ -117,9 +125,11 @@ def joined(parts: Sequence[Cells]) -> Cells:
     edges = np.cumsum([0, *(len(p.edges) for p in parts)])
     nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
     top_shape, top_link = _branches(np.stack([p.shape[0] for p in parts]), nodes[:-1])
+    top_bend = np.tile([*[0.0] * 9, np.inf], (len(top_shape), 1))
     links = [_shifted(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
     start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
     return Cells(tuple(f for p in parts for f in p.faces), np.vstack([top_shape, *(p.shape for p in parts)]),
+                 np.vstack([top_bend, *(p.bend for p in parts)]),
                  np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
                  np.vstack([p.edges for p in parts]))
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
+from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds, third_derivative_bounds
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.gridlines import graded, grid_lines
@@ -27,6 +27,7 @@ class Tree(NamedTuple):
     """The arrays of `toolaxis.shape.cells.Cells`, for one face."""
 
     shape: Array
+    bend: Array
     link: Indices
     leaf: Array
     edge_start: Indices
@@ -163,7 +164,7 @@ class _Builder:
         ku, kv, _, pu, pv, _ = face.surface.data
         lines = (grid_lines(ku, pu, *self.rect[0, :2]), grid_lines(kv, pv, *self.rect[0, 2:]))
         self.lines = (graded(face, lines, 0, fineness), graded(face, lines, 1, fineness))
-        self.bounds = self._second_derivatives()
+        self.bounds = self._derivatives()
         self.edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in face.trims]
                                     or [np.empty((0, 4))])
         self.margin = margin_of(face)
@@ -172,12 +173,15 @@ class _Builder:
         self.centres: list[Array] = []
         self.ready: list[Flags] = []
 
-    def _second_derivatives(self) -> Array:
+    def _derivatives(self) -> Array:
+        """Bounds of the three second and the four third derivatives over the base cells."""
         bu, bv = self.lines
         step = max(1, 400_000 // (len(bv) * 4 * (self.face.surface.degree[0] + 1) * (self.face.surface.degree[1] + 1)))
-        rows = [second_derivative_bounds(bezier_nets(self.face.surface.data, bu[i:i + step + 1], bv),
-                                         np.diff(bu[i:i + step + 1]), np.diff(bv))
-                for i in range(0, len(bu) - 1, step)]
+        rows = []
+        for i in range(0, len(bu) - 1, step):
+            patches = (bezier_nets(self.face.surface.data, bu[i:i + step + 1], bv), np.diff(bu[i:i + step + 1]),
+                       np.diff(bv))
+            rows.append(np.concatenate([second_derivative_bounds(*patches), third_derivative_bounds(*patches)], axis=2))
         return np.concatenate(rows)
 
     def trimmed(self, level: _Level) -> _Level:
@@ -209,15 +213,20 @@ class _Builder:
         return level._replace(owner=owner, edge=edge).chosen(kept, np.where(shrunk[:, None], box, level.rect))
 
     def centred(self, level: _Level) -> tuple[Array, Flags]:
-        """q, a, b and e of every node (e only counts in single base cells), and which of them need no splitting."""
+        """q, a, b, e and the second-order form of every node, and which of them need no splitting.
+
+        What is left (e, and the last column) only counts in single base cells.
+        """
         half = level.half
         d = self.face.evaluate(level.middle)
         a, b = d.su * half[:, :1], d.sv * half[:, 1:]
-        e = remainder(self.bounds[level.base[:, 0], level.base[:, 2]], half) + self.extra
+        bend = np.hstack([d.suu * half[:, :1]**2, d.suv * half[:, :1] * half[:, 1:], d.svv * half[:, 1:]**2])
+        bounds = self.bounds[level.base[:, 0], level.base[:, 2]]
+        e, rest = remainder(bounds, half) + self.extra, second_remainder(bounds[:, 3:], half) + self.extra
         longest = 2 * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) + 2 * e
         fine = (e <= self.fineness + self.extra) & (longest <= self.face.diagonal / _COARSEST)
         done = fine | (longest <= self.face.diagonal / _FINEST) | (len(self.levels) >= _DEEPEST)
-        return np.column_stack([d.point, a, b, e]), level.single & done
+        return np.column_stack([d.point, a, b, e, bend, rest]), level.single & done
 
     def split(self) -> None:
         """All levels, the root first."""
@@ -242,8 +251,8 @@ class _Builder:
         counts = np.array([a.sum() for a in alive])
         offset = np.concatenate([[0], np.cumsum(counts)])
         number = [np.where(a, np.cumsum(a) - 1 + o, -1) for a, o in zip(alive, offset[:-1], strict=True)]
-        shape = np.vstack([np.column_stack([c, r])[a]
-                           for c, r, a in zip(self.centres, radius, alive, strict=True)])
+        rows = np.vstack([np.column_stack([c, r])[a] for c, r, a in zip(self.centres, radius, alive, strict=True)])
+        shape, bend = np.column_stack([rows[:, :10], rows[:, -1]]), rows[:, 10:-1]
         link = np.full((len(shape), 5), -1, dtype=np.int64)
         for depth in range(1, len(self.levels)):
             rows = number[depth][alive[depth]]
@@ -256,16 +265,18 @@ class _Builder:
         ready = np.concatenate([r[a] for r, a in zip(self.ready, alive, strict=True)])
         link[ready, 3] = np.arange(ready.sum())
         middle = np.vstack([level.middle[a] for level, a in zip(self.levels, alive, strict=True)])
-        link[:, 4] = self.face.contains(middle)
-        return Tree(shape, link, *self._leaves())
+        crossed = [np.bincount(level.owner, minlength=len(a))[a] > 0
+                   for level, a in zip(self.levels, alive, strict=True)]
+        link[:, 4] = self.face.contains(middle) * np.where(np.concatenate(crossed), 1, 2)
+        return Tree(shape, bend, link, *self._leaves())
 
     def _leaves(self) -> tuple[Array, Indices, Array]:
         rows, edges, counts = [], [], []
         for level, ready in zip(self.levels, self.ready, strict=True):
             reference = level.rect[:, 0::2] + 2 * level.half * _REFERENCE
             m = self.bounds[level.base[:, 0], level.base[:, 2]]
-            rows.append(np.column_stack([level.middle, level.half, m, np.full(len(m), self.extra), reference,
-                                         self.face.contains(reference)])[ready])
+            rows.append(np.column_stack([level.middle, level.half, m[:, :3], np.full(len(m), self.extra), reference,
+                                         self.face.contains(reference), m[:, 3:]])[ready])
             kept = ready[level.owner]
             order = np.argsort(level.owner[kept], kind="stable")
             edges.append(self.edges[level.edge[kept][order]])
@@ -288,21 +299,37 @@ def remainder(bounds: Array, half: Array) -> Array:
     return np.asarray(bounds[:, 0] * du**2 / 2 + bounds[:, 1] * du * dv + bounds[:, 2] * dv**2 / 2)
 
 
+def second_remainder(bounds: Array, half: Array) -> Array:
+    """Greatest distance of a surface from its second-order form, by Taylor's formula.
+
+    Parameters
+    ----------
+    bounds : (n, 4) array
+        Bounds of |Suuu|, |Suuv|, |Suvv| and |Svvv|.
+    half : (n, 2) array
+        Half widths of the cells.
+    """
+    du, dv = half[:, 0], half[:, 1]
+    return np.asarray((bounds[:, 0] * du**3 + 3 * bounds[:, 1] * du**2 * dv + 3 * bounds[:, 2] * du * dv**2
+                       + bounds[:, 3] * dv**3) / 6)
+
+
 def enclosed(levels: list[_Level], centres: list[Array], ready: list[Flags]) -> tuple[list[Flags], list[Array]]:
-    """Write e of the parents into ``centres``; which nodes hold something, and the radius of each around its q.
+    """Write what is left of the parents into ``centres``; which nodes hold something, the radius of each around its q.
 
     Parameters
     ----------
     levels : list of levels, the root first
-    centres : list of (n, 10) arrays
-        q, a, b, e.
+    centres : list of (n, 20) arrays
+        q, a, b, e, the second-order form's three vectors, and what that leaves.
     ready : list of (n,) bool arrays
         Which nodes are leaves.
 
     Notes
     -----
     A child's point is q' + s a' + t b' + d', the parent's own is q + S a + T b at the same parameters; what differs
-    is q' - q - S0 a - T0 b, and a' and b' less their shares of a and b.
+    is q' - q - S0 a - T0 b, and a' and b' less their shares of a and b.  With the second-order forms it is the
+    difference of two quadratic forms, coefficient by coefficient.
     """
     alive = [np.zeros(len(c), dtype=bool) for c in centres]
     radius = [np.zeros(len(c)) for c in centres]
@@ -310,7 +337,7 @@ def enclosed(levels: list[_Level], centres: list[Array], ready: list[Flags]) -> 
         c, leaf = centres[depth], ready[depth]
         alive[depth] |= leaf
         tall = ~leaf
-        c[tall, 9] = 0.0
+        c[tall, 9] = c[tall, 19] = 0.0
         around = np.full(len(c), 0.0)
         if depth + 1 < len(levels):
             _add_children(levels, centres, depth, (alive[depth + 1], radius[depth + 1], around))
@@ -330,14 +357,19 @@ def _add_children(levels: list[_Level], centres: list[Array], depth: int,
     p = down.parent[k]
     half = np.where(up.half[p] > 0, up.half[p], 1.0)
     place, share = (down.middle[k] - up.middle[p]) / half, down.half[k] / half
-    c, own = centres[depth + 1][k], centres[depth][p]
-    gap = c[:, :3] - own[:, :3]
-    off = (np.linalg.norm(gap - place[:, :1] * own[:, 3:6] - place[:, 1:] * own[:, 6:9], axis=1)
-           + np.linalg.norm(c[:, 3:6] - share[:, :1] * own[:, 3:6], axis=1)
-           + np.linalg.norm(c[:, 6:9] - share[:, 1:] * own[:, 6:9], axis=1) + c[:, 9])
-    worst = centres[depth][:, 9]
-    np.maximum.at(worst, p, off)
-    centres[depth][:, 9] = worst
+    child, own = centres[depth + 1][k], centres[depth][p]
+    gap = child[:, :3] - own[:, :3]
+    (s, t), (ks, kt) = place.T[:, :, None], share.T[:, :, None]
+    a, b, suu, suv, svv = (own[:, i:i + 3] for i in (3, 6, 10, 13, 16))
+    straight = gap - s * a - t * b
+    first = (straight, child[:, 3:6] - ks * a, child[:, 6:9] - kt * b)
+    second = (straight - (s * s * suu + 2 * s * t * suv + t * t * svv) / 2,
+              child[:, 3:6] - ks * (a + s * suu + t * suv), child[:, 6:9] - kt * (b + s * suv + t * svv),
+              (child[:, 10:13] - ks * ks * suu) / 2, child[:, 13:16] - ks * kt * suv,
+              (child[:, 16:19] - kt * kt * svv) / 2)
+    for column, differences in ((9, first), (19, second)):
+        off = child[:, column] + sum(np.linalg.norm(d, axis=1) for d in differences)
+        np.maximum.at(centres[depth][:, column], p, off)
     np.maximum.at(around, p, np.linalg.norm(gap, axis=1) + radius[k])
 
 
