@@ -170,8 +170,9 @@ def unit(v):
 
 
 def told_at_most(tool, inside):
-    """How deep a cutter may be told to reach where the skin lies so far inside it: sharp corners count as dips."""
-    return inside if tool.corner_radius > 0 else inside / np.sin((np.pi / 2 + tool.half_angle) / 2)
+    """How deep a cutter may be told to reach where the skin lies so far inside it: its corner counts as a dip."""
+    r, wedge = tool.corner_radius, np.sin((np.pi / 2 + tool.half_angle) / 2)
+    return np.where(inside <= r, inside, r + (inside - r) / wedge)
 
 
 def contacts(rng, face, tool, lean):

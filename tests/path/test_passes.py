@@ -172,6 +172,19 @@ def test_a_given_height_and_plain_plunges(make):
     assert np.allclose(into, -3.0 * axis, atol=1e-9)
 
 
+@pytest.mark.parametrize("run_in", [0.0, 1.0])
+@pytest.mark.parametrize("lean", [0, 5, 10])
+def test_flanks_are_left_sideways(make, run_in, lean):
+    """A retract along an axis that runs along the surface would scrape what stands between the passes."""
+    face, angle = make["flat"](20, 10), np.radians(90 - lean)
+    axis = np.array([np.sin(angle), 0.0, np.cos(angle)])
+    path = passes(face, TORUS, axis, H, feed="v", linking=Linking(height=80.0, run_in=run_in))
+    gone = np.flatnonzero((path.kind[1:] == Motion.LINK) | (path.kind[:-1] == Motion.LINK))
+    lowest = np.minimum(path.cl[gone, 2], path.cl[gone + 1, 2])
+    side = path.cl[_cut_points(path), 2].max()
+    assert (lowest > side + 0.3).all(), "the tool leaves the plane before it rises along the axis at rapid"
+
+
 def test_stock_is_left_on(make):
     face, axis = make["flat"](20, 10), make["leaning"](10)
     path = passes(face, TORUS, axis, H, allowance=0.5)

@@ -11,6 +11,10 @@ from toolaxis.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
+#: Cosine of the angle between axis and normal below which a retract along the axis does not leave the surface, and the
+#: way aside before it, mm, where no ramp is asked for.
+FLANK, ASIDE = 0.2, 1.0
+
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
@@ -66,8 +70,9 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
     """Join strokes by retracts along the axis.
 
     Each stroke is entered and left on a ramp at 45 degrees between feed and axis, and by a short move along the axis;
-    between strokes the tip rises to a crossing height, goes across, and comes down.  The path begins and ends at the
-    greatest one.
+    where the axis runs along the surface the ramp leads away from it, for a retract would scrape what stands between
+    passes.  Between strokes the tip rises to a crossing height, goes across, and comes down.  The path begins and ends
+    at the greatest one.
 
     Parameters
     ----------
@@ -134,26 +139,29 @@ def _kinds(before: int, cutting: int, after: int) -> NDArray[np.int8]:
                     + [Motion.CUT] * (cutting - 1) + [Motion.EXIT] * (after - 1) + [Motion.LINK], dtype=np.int8)
 
 
-def _ramp(start: Array, inner: Array, axis: Array, run_in: float) -> Array:
-    """The far end of a ramp that leaves `start` away from `inner` and upwards, mm."""
-    out = start - inner
-    size = np.linalg.norm(out)
-    if run_in == 0 or size == 0:
+def _ramp(end: tuple[Array, Array], normal: Array, axis: Array, run_in: float) -> Array:
+    """The far end of a ramp that leaves the first of two tips, away from the second and upwards, mm."""
+    start, inner = end
+    flank = float(normal @ axis) < FLANK
+    size = np.linalg.norm(start - inner)
+    direction = axis + normal if flank else axis
+    if run_in > 0 and size > 0:
+        direction = direction + (start - inner) / size
+    elif not flank:
         return np.empty((0, 3))
-    direction = out / size + axis
     long = np.linalg.norm(direction)
-    return np.empty((0, 3)) if long < 1e-6 else (start + run_in * direction / long)[None]
+    return np.empty((0, 3)) if long < 1e-6 else (start + (run_in or ASIDE) * direction / long)[None]
 
 
 def _entry(stroke: Stroke, axis: Array, linking: Linking) -> Array:
     """Points before the first cut point: above the ramp, at its top."""
-    ramp = _ramp(stroke.tip[0], stroke.tip[1], axis, linking.run_in)
+    ramp = _ramp((stroke.tip[0], stroke.tip[1]), stroke.normal[0], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[0]
     return np.concatenate([(low + linking.approach * axis)[None], ramp])
 
 
 def _exit(stroke: Stroke, axis: Array, linking: Linking) -> Array:
     """Points after the last cut point: the end of the ramp, above it."""
-    ramp = _ramp(stroke.tip[-1], stroke.tip[-2], axis, linking.run_in)
+    ramp = _ramp((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[-1]
     return np.concatenate([ramp, (low + linking.approach * axis)[None]])
