@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 #: Cosine of the angle between axis and normal below which a retract along the axis does not leave the surface, and the
 #: way aside before it, mm, where no ramp is asked for.
-FLANK, ASIDE = 0.2, 1.0
+FLANK, ASIDE = 0.03, 0.3
 
 
 @dataclass(frozen=True, eq=False)
