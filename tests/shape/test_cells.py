@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds, third_derivative_bounds
+from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.shape.cells import cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.gridlines import grid_lines
@@ -198,7 +198,7 @@ def test_second_derivative_bounds(name):
     face = FACES[name]
     data, (u, v) = face.surface.data, face.surface.domain
     lines = grid_lines(data[0], data[3], *u), grid_lines(data[1], data[4], *v)
-    bounds = second_derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]))
+    bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
     rng, ratio = np.random.default_rng(5), np.zeros(3)
     for _ in range(20):
         i, j = rng.integers(len(lines[0]) - 1), rng.integers(len(lines[1]) - 1)
@@ -216,7 +216,7 @@ def test_third_derivative_bounds(name):
     face = FACES[name]
     data, (u, v) = face.surface.data, face.surface.domain
     lines = grid_lines(data[0], data[3], *u), grid_lines(data[1], data[4], *v)
-    bounds = third_derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]))
+    bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 3)
     rng, ratio, step = np.random.default_rng(6), np.zeros(4), 1e-4
     for _ in range(30):
         i, j = rng.integers(len(lines[0]) - 1), rng.integers(len(lines[1]) - 1)

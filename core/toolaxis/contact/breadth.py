@@ -309,7 +309,7 @@ class Breadth:
         lower, upper = _bounds(sight, found)
         still = self.weigh(front, found, (lower, upper))
         cut = np.isin(np.arange(len(still)), np.flatnonzero(still))
-        found = found._replace(shape=found.shape[cut])
+        found = found._replace(shape=found.shape[cut], bend=found.bend[cut])
         return _parts(self.cells, front.take(still), found, np.linalg.norm(span[still, 2], axis=1))
 
     def weigh(self, front: _Front, found: _Cells, bound: tuple[Array, Array]) -> Flags:

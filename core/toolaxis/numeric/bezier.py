@@ -114,8 +114,8 @@ class _Bounds:
         return self.known[u, v]
 
 
-def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Array:
-    """Bounds of |Suu|, |Suv| and |Svv| over Bezier patches.
+def derivative_bounds(nets: Array, width_u: Array, width_v: Array, *orders: int) -> Array:
+    """Bounds of all derivatives of some orders over Bezier patches.
 
     Parameters
     ----------
@@ -123,28 +123,13 @@ def second_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Arr
         Homogeneous nets.
     width_u, width_v : (nu,), (nv,) array
         Parameter widths of the patches.
+    *orders : int
+        2 for |Suu|, |Suv| and |Svv|, 3 for |Suuu|, |Suuv|, |Suvv| and |Svvv|.
 
     Returns
     -------
-    (nu, nv, 3) array
+    (nu, nv, k) array
+        One order after the other.
     """
     bounds = _Bounds(nets, width_u, width_v)
-    return np.stack([bounds.of(2, 0), bounds.of(1, 1), bounds.of(0, 2)], axis=-1)
-
-
-def third_derivative_bounds(nets: Array, width_u: Array, width_v: Array) -> Array:
-    """Bounds of |Suuu|, |Suuv|, |Suvv| and |Svvv| over Bezier patches.
-
-    Parameters
-    ----------
-    nets : (nu, nv, pu + 1, pv + 1, 4) array
-        Homogeneous nets.
-    width_u, width_v : (nu,), (nv,) array
-        Parameter widths of the patches.
-
-    Returns
-    -------
-    (nu, nv, 4) array
-    """
-    bounds = _Bounds(nets, width_u, width_v)
-    return np.stack([bounds.of(3 - k, k) for k in range(4)], axis=-1)
+    return np.stack([bounds.of(order - k, k) for order in orders for k in range(order + 1)], axis=-1)

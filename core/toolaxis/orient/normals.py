@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds
+from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
@@ -157,7 +157,7 @@ class NormalField:
         u0, u1, v0, v1 = self.face.bounds
         data = self.face.surface.data
         lines = [_grid_lines(data[0], u0, u1), _grid_lines(data[1], v0, v1)]
-        bounds = second_derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]))
+        bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
         u, v = np.meshgrid(*(np.arange(len(line) - 1) for line in lines), indexing="ij")
         u, v = u.ravel(), v.ravel()
         rectangles = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.bezier import bezier_nets, second_derivative_bounds, third_derivative_bounds
+from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.gridlines import graded, grid_lines
@@ -177,11 +177,9 @@ class _Builder:
         """Bounds of the three second and the four third derivatives over the base cells."""
         bu, bv = self.lines
         step = max(1, 400_000 // (len(bv) * 4 * (self.face.surface.degree[0] + 1) * (self.face.surface.degree[1] + 1)))
-        rows = []
-        for i in range(0, len(bu) - 1, step):
-            patches = (bezier_nets(self.face.surface.data, bu[i:i + step + 1], bv), np.diff(bu[i:i + step + 1]),
-                       np.diff(bv))
-            rows.append(np.concatenate([second_derivative_bounds(*patches), third_derivative_bounds(*patches)], axis=2))
+        rows = [derivative_bounds(bezier_nets(self.face.surface.data, bu[i:i + step + 1], bv),
+                                  np.diff(bu[i:i + step + 1]), np.diff(bv), 2, 3)
+                for i in range(0, len(bu) - 1, step)]
         return np.concatenate(rows)
 
     def trimmed(self, level: _Level) -> _Level:
