@@ -28,3 +28,14 @@ def test_operations_are_counted_as_they_run() -> None:
             "y = -root(x[0] ** 2 + x[1] * x[1]) / 2.0 - abs(1.0 - x[0])\n"
             "assert y == -4.5 and [TALLY[kind] for kind in KINDS] == [3, 2, 1, 1], (y, TALLY)\n")
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=60)
+
+
+def test_the_work_of_workers_counts_as_processor_time() -> None:
+    code = ("import subprocess, sys, time\n"
+            "from benchmarks.growth import processor\n"
+            "before, own = processor(), time.process_time()\n"
+            "work = 'import time\\nwhile time.process_time() < 0.5: pass'\n"
+            "subprocess.run([sys.executable, '-c', work], check=True)\n"
+            "own = time.process_time() - own\n"
+            "assert processor() - before >= 0.45 + own, (processor() - before, own)\n")
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=60)
