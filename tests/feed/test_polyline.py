@@ -105,6 +105,14 @@ def test_a_tolerance_never_costs_time(degrees: float) -> None:
     assert degrees > 5 or times[-1] < 0.9 * times[0]
 
 
+def test_a_faster_feed_never_costs_time() -> None:
+    """Blends that fill short chords leave no way to change speed: the slowest must not hold back all others."""
+    turns = np.cumsum(10 ** np.random.default_rng(4).uniform(-2, 0, 400)) / 60
+    points = np.stack([60 * np.cos(turns), 60 * np.sin(turns), 0 * turns], axis=1)
+    times = [schedule_polyline(points, points, feed, MIKRON, 1e-3).duration for feed in (5.0, 10.0, 20.0, 80.0, 300.0)]
+    assert all(fast <= slow * 1.01 for slow, fast in zip(times, times[1:], strict=False))
+
+
 def test_feeds_of_each_segment() -> None:
     points = np.array([[0.0, 0, 0], [100, 0, 0], [200, 0, 0]])
     found = schedule_polyline(points, points, [50.0, np.inf], MIKRON, 0.01)

@@ -6,11 +6,14 @@ segments, at one speed on both sides: the velocity of every axis goes from one s
 up and down.  The tip then cuts the corner by |change of velocity| T / 12.  The speed is the greatest that keeps this
 within the tolerance, every axis within acceleration and jerk, and a blend off the middle of its segments; look-ahead
 lowers it where the axes could not slow down in time.  Without tolerance every corner is a stop; with it a corner is one
-too where, by the halves of its segments, a blend takes longer, and all are where that is the faster path.  Neighbours
-in one line with one feed are one segment.
+too where, by the halves of its segments, a blend takes longer.  From stop to stop the fastest of several tries counts:
+corners as fast as they can be, at lower speeds, which leave more room to change speed between blends, or all stops.
+Neighbours in one line with one feed are one segment.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import sqrt
 
 import numpy as np
@@ -24,12 +27,16 @@ from toolaxis.numeric.compiled import compiled
 from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: Change of direction below which a corner is the rounding of its coordinates, and how far it may be cut then, mm.
 STRAIGHT = 1e-6
 
 #: Change of direction below which two segments are one.
 ALIGNED = 1e-9
+
+#: What corners are slowed down by from one try to the next, and how many tries there are at most.
+_LEVEL, _LEVELS = 0.7, 12
 
 _SIGNS = np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0])
 
@@ -67,18 +74,21 @@ class PolylineSchedule:
     shares: Array
     parts: NDArray[np.int64]
 
+    @cached_property
+    def times(self) -> Array:
+        """Time of each segment, (k,) s, half of the blends at either end included."""
+        ends = (self.corners[:-1], self.corners[1:])
+        return np.asarray(travel_time(self.runs, *self.limits, ends) + (self.blends[:-1] + self.blends[1:]) / 2)
+
     @property
     def segment_times(self) -> Array:
-        """Time of each programmed segment, (n,) s: half of the blends at either end included, and the time of segments
-        in one line shared by length."""
-        ends = (self.corners[:-1], self.corners[1:])
-        times = travel_time(self.runs, *self.limits, ends) + (self.blends[:-1] + self.blends[1:]) / 2
-        return np.asarray(times[self.parts] * self.shares)
+        """Time of each programmed segment, (n,) s: that of segments in one line shared by length."""
+        return np.asarray(self.times[self.parts] * self.shares)
 
     @property
     def duration(self) -> float:
         """s."""
-        return float(self.segment_times.sum())
+        return float(self.times.sum())
 
     def motion(self) -> JointMotion:
         """What every axis does."""
@@ -140,13 +150,53 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
                             np.minimum(limits[0][:-1], limits[0][1:]))
     stops = _better_stop(whole, limits, caps, _blend_times(caps, jumps, bounds))
     shares = lengths / np.bincount(parts, lengths)[parts]
-    choices = []
-    for stopping in (stops, np.ones_like(stops), np.zeros_like(stops)):
-        most = np.where(np.concatenate([[True], stopping & (turns > STRAIGHT), [True]]), 0.0, caps)
+
+    def _choice(stopping: Bools, fastest: float) -> PolylineSchedule:
+        held = np.concatenate([[True], stopping & (turns > STRAIGHT), [True]])
+        most = np.where(held, 0.0, np.minimum(caps, fastest))
         speed = look_ahead(_runs(whole, most, jumps, bounds), limits[1], limits[2], most)
-        choices.append(PolylineSchedule(corners[0], directions, limits, _runs(whole, speed, jumps, bounds), speed,
-                                        _blend_times(speed, jumps, bounds), shares, parts))
-    return min(choices, key=lambda choice: choice.duration)
+        return PolylineSchedule(corners[0], directions, limits, _runs(whole, speed, jumps, bounds), speed,
+                                _blend_times(speed, jumps, bounds), shares, parts)
+
+    choices = [_choice(stops, np.inf), _choice(np.ones_like(stops), 0.0)]
+    if not stops.all():
+        choices += [_choice(np.zeros_like(stops), np.inf), *_slower(lambda fastest: _choice(stops, fastest), choices[0])]
+    return _fastest(choices)
+
+
+def _slower(choice: Callable[[float], PolylineSchedule], first: PolylineSchedule) -> Iterator[PolylineSchedule]:
+    """The same corners at lower speeds, as long as some piece between stops gains by it.
+
+    Blends at their fastest leave no way to change speed between them, and the slowest holds back its neighbours.
+    """
+    level, best = float(first.corners.max(initial=0.0)), _pieces([first])[1]
+    for _ in range(_LEVELS):
+        level *= _LEVEL
+        found = choice(level)
+        times = np.bincount(_pieces([first])[0], found.times)
+        if not (times < best).any():
+            return
+        best = np.minimum(best, times)
+        yield found
+
+
+def _pieces(choices: Sequence[PolylineSchedule]) -> tuple[NDArray[np.int64], Array]:
+    """Which piece between common stops each segment belongs to, and what the first choice takes for each piece."""
+    stands = np.all([choice.corners == 0 for choice in choices], axis=0)
+    pieces = np.cumsum(stands[:-1]) - 1
+    return pieces, np.bincount(pieces, choices[0].times)
+
+
+def _fastest(choices: Sequence[PolylineSchedule]) -> PolylineSchedule:
+    """The fastest choice of each piece between stops that all choices make, put together."""
+    pieces, _ = _pieces(choices)
+    best = np.argmin([np.bincount(pieces, choice.times) for choice in choices], axis=0)[pieces]
+    segments = np.arange(len(best))
+    runs = np.array([choice.runs for choice in choices])[best, segments]
+    corners, blends = (np.append(np.array(rows)[best, segments], 0.0)
+                       for rows in ([choice.corners[:-1] for choice in choices],
+                                    [choice.blends[:-1] for choice in choices]))
+    return replace(choices[0], runs=runs, corners=corners, blends=blends)
 
 
 def _segments(points: Array, corners: Array) -> tuple[Array, Array, Array]:

@@ -159,19 +159,24 @@ def peak_velocity(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLik
     """
     way, top, a, j = (np.asarray(value, dtype=float) for value in (length, velocity, acceleration, jerk))
     v0, v1 = (np.asarray(value, dtype=float) for value in ends)
+    low = np.maximum(v0, v1)
     most = np.minimum(top, np.minimum(reachable(v0, way, a, j), reachable(v1, way, a, j)))
-    low, high = np.broadcast_arrays(np.maximum(v0, v1), np.maximum(most, np.maximum(v0, v1)))
+    high = np.maximum(most, low)
     same = np.asarray(v0 == v1)
-    if not same.all():
-        low, high = low.copy(), high.copy()
-        fits = _needed(v0, v1, high, a, j) <= way
-        for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            good = _needed(v0, v1, middle, a, j) <= way
-            low, high = np.where(good, middle, low), np.where(good, high, middle)
-        low = np.where(fits, np.maximum(most, np.maximum(v0, v1)), low)
-    closed = np.minimum(top, reachable(v0, way / 2, a, j))
-    return np.asarray(np.where(same, closed, low))
+    peak = np.array(np.where(same, np.minimum(top, reachable(v0, way / 2, a, j)), high))
+    beyond = ~same & (_needed(v0, v1, high, a, j) > way)
+    if beyond.any():
+        peak[beyond] = _bisected(*(np.broadcast_to(x, peak.shape)[beyond] for x in (low, high, v0, v1, way, a, j)))
+    return peak
+
+
+def _bisected(low: Array, high: Array, v0: Array, v1: Array, way: Array, a: Array, j: Array) -> Array:
+    """Greatest velocity between two that leaves way to change to it and from it."""
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        good = _needed(v0, v1, middle, a, j) <= way
+        low, high = np.where(good, middle, low), np.where(good, high, middle)
+    return low
 
 
 def _needed(v0: Array, v1: Array, peak: Array, a: Array, j: Array) -> Array:
