@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from toolaxis.path.sampling import sample_points as sample_points
     from toolaxis.shape.face import Face as Face
     from toolaxis.shape.part import Part as Part
+    from toolaxis.shape.skins import join as join
     from toolaxis.tolerances import Tolerance as Tolerance
     from toolaxis.tools.assembly import Tool as Tool
 
@@ -45,7 +46,7 @@ _HOME = {
     "estimate": "path.estimate", "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
-    "Cancelled": "errors", "load_machine": "machine.catalogue", "Mounting": "machine.mounting",
+    "Cancelled": "errors", "load_machine": "machine.catalogue", "Mounting": "machine.mounting", "join": "shape.skins",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.knots import distinct_inner, insert_knot, restricted, unrolled
+from toolaxis.numeric.knots import distinct_inner, elevated, insert_knot, refined, restricted, unrolled
 
 
 def spline(degree, clamped=True, seed=0):
@@ -97,3 +97,25 @@ def test_knots_that_differ_by_rounding_stay_one_knot():
         assert len(net) == len(own) - 4
         assert (own[:4] == low + shift).all()
         assert np.abs(net[0] - net[-1]).max() < 1e-9
+
+
+@pytest.mark.parametrize("degree", [2, 3, 5])
+@pytest.mark.parametrize("more", [0, 1, 3])
+def test_a_higher_degree_changes_nothing(degree, more):
+    knots, control = spline(degree)
+    raised, net = elevated(knots, control, degree, degree + more)
+    assert len(raised) == len(net) + degree + more + 1 and net.shape[1:] == control.shape[1:]
+    t = np.linspace(0, 5, 97)
+    assert np.abs(value(raised, net, degree + more, t) - value(knots, control, degree, t)).max() < 1e-11
+    if not more:
+        assert net is control
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5])
+def test_more_knots_change_nothing(degree):
+    knots, control = spline(degree)
+    target = np.sort(np.concatenate([knots, [0.7, 2.0, 2.0][:degree]]))
+    net = refined(knots, control, degree, target)
+    t = np.linspace(0, 5, 97)
+    assert np.abs(value(target, net, degree, t) - value(knots, control, degree, t)).max() < 1e-12
+    assert refined(knots, control, degree, knots) is control

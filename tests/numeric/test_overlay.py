@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided, without
+from toolaxis.numeric.overlay import divided, united, without
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
@@ -106,3 +106,12 @@ def test_a_polygon_without_a_piece_of_it_is_the_rest() -> None:
     uv = np.random.default_rng(7).uniform(-1, 5, (2000, 2))
     assert (inside(slabs(rest), uv) == inside(slabs(beyond), uv)).all()
     assert without((SQUARE,), (SQUARE[::-1],)) == ()
+
+
+def test_polygons_beside_each_other_become_one():
+    right = np.array([[4.0, 1.0], [7.0, 0.0], [7.0, 6.0], [4.0, 6.0]])
+    whole = united((SQUARE, circle(1, 1, 0.5)), (right, circle(6, 3, 0.5)))
+    parts = area((SQUARE, circle(1, 1, 0.5))) + area((right, circle(6, 3, 0.5)))
+    assert len(whole) == 3 and area(whole) == pytest.approx(parts)
+    assert inside(slabs(whole), np.array([[4.0, 3.0], [3.9, 0.5], [4.1, 0.5], [4.1, 5.0]])).tolist() == [True, True,
+                                                                                                     False, True]

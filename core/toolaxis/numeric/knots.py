@@ -1,9 +1,10 @@
-"""Knot insertion: the same spline written with more knots, cut to a part of its range, or unrolled from a period."""
+"""The same spline written anew: more knots, a higher degree, a part of its range, or no period."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.bspline import basis_derivatives_numpy
 
 Array = NDArray[np.float64]
 
@@ -122,3 +123,63 @@ def unrolled(knots: Array, control: Array, degree: int, low: float, high: float)
     flat = flat[apart][np.cumsum(apart) - 1]
     net = np.concatenate([control] * len(turns))[:len(flat) - degree - 1]
     return restricted(flat, net, degree, low, high)
+
+
+def refined(knots: Array, control: Array, degree: int, target: Array) -> Array:
+    """Control points of a spline on more knots.
+
+    Parameters
+    ----------
+    knots : (m,) array
+    control : (n, ...) array
+    degree : int
+    target : (k,) array
+        The knots and others between them; equal numbers are one knot.
+
+    Returns
+    -------
+    (k - degree - 1, ...) array
+
+    **Properties**: 1. the spline stays the same; 2. without other knots the control points stay as they are.
+    """
+    for t in np.unique(target):
+        for _ in range(multiplicity(target, t) - multiplicity(knots, t)):
+            knots, control = insert_knot(knots, control, degree, t)
+    return control
+
+
+def elevated(knots: Array, control: Array, degree: int, target: int) -> tuple[Array, Array]:
+    """A continuous spline with clamped ends written with a higher degree.
+
+    Parameters
+    ----------
+    knots : (m,) array
+        Inner ones repeat no more than the degree says.
+    control : (n, ...) array
+    degree, target : int
+        The degree that it has and the one that it gets.
+
+    Notes
+    -----
+    Every knot repeats as much oftener as the degree rises. The control points are found from the values at the Greville
+    places of the new knots.
+
+    **Properties**: 1. the spline stays the same, to rounding; 2. with its own degree it stays as it is.
+    """
+    if target == degree:
+        return knots, control
+    values, counts = np.unique(knots, return_counts=True)
+    more = np.repeat(values, counts + target - degree)
+    places = np.lib.stride_tricks.sliding_window_view(more[1:-1], target).mean(axis=1)
+    there = _collocation(knots, degree, places) @ control.reshape(len(control), -1)
+    found = np.linalg.solve(_collocation(more, target, places), there)
+    found[[0, -1]] = there[[0, -1]]
+    return np.asarray(more), np.asarray(found).reshape(-1, *control.shape[1:])
+
+
+def _collocation(knots: Array, degree: int, places: Array) -> Array:
+    """Basis functions (columns) at places (rows)."""
+    rows, first = basis_derivatives_numpy(knots, degree, places)
+    table = np.zeros((len(places), len(knots) - degree - 1))
+    np.put_along_axis(table, first[:, None] + np.arange(degree + 1), rows[:, 0], axis=1)
+    return table

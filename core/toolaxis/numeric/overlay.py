@@ -151,8 +151,26 @@ def without(loops: Loops, zone: Loops) -> Loops:
         Closed loops; corners and edges of the piece that lie on the border are the border's own, as `divided` and
         `toolaxis.numeric.clipping.clipped` leave them.
     """
+    return _not_in_both(loops, zone)
+
+
+def united(loops: Loops, beside: Loops) -> Loops:
+    """A polygon and another one beside it as one: edges that both have cancel out.
+
+    Parameters
+    ----------
+    loops, beside : tuple of (m, 2) arrays
+        Closed loops; the polygons share stretches of their borders at most, and corners there agree exactly.
+
+    **Properties**: 1. areas add up.
+    """
+    return _not_in_both(loops, beside)
+
+
+def _not_in_both(loops: Loops, others: Loops) -> Loops:
+    """Closed loops of the edges that only one of two polygons has."""
     edges: dict[Edge, None] = {}
-    for loop in (*_with_corners(loops, zone), *_with_corners(zone, loops)):
+    for loop in (*_with_corners(loops, others), *_with_corners(others, loops)):
         rows = [(float(x), float(y)) for x, y in loop]
         for a, b in zip(rows, [*rows[1:], rows[0]], strict=True):
             if (a, b) in edges:

@@ -20,6 +20,25 @@ POLE_STEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
+class Member:
+    """A face that was joined with others into one.
+
+    Attributes
+    ----------
+    face : Face
+        As it was.
+    matrix : (2, 3) array
+        Its own parameters from those of the joined face: own = matrix @ (u, v, 1).
+    box : (2, 2) array
+        Lower and upper corner of its place in the joined face's parameters.
+    """
+
+    face: "Face"
+    matrix: Array
+    box: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Face:
     """A trimmed piece of a surface with its sense.
 
@@ -40,6 +59,8 @@ class Face:
         Bound of the distance between this surface and the CAD face, mm; 0 where the conversion is exact.
     kinks : pair of tuples of float
         Parameters u and v along which the surface is only C0.
+    members : tuple of Member
+        The faces that were joined into this one, see `toolaxis.shape.skins`; empty for a face of a file.
 
     Raises
     ------
@@ -55,6 +76,7 @@ class Face:
     kind: str = "bspline"
     tolerance: float = 0.0
     kinks: tuple[tuple[float, ...], tuple[float, ...]] = field(default=((), ()))
+    members: tuple[Member, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "trims", tuple(np.ascontiguousarray(loop, dtype=float) for loop in self.trims))
@@ -66,6 +88,11 @@ class Face:
                                    "finite (u, v) points are needed")
             if signed_area(loop) == 0.0:
                 raise InvalidInput(f"trim loop {index} of face {self.label} encloses no area: give a closed loop")
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Numbers of the faces that it was joined from; its own where it is one face."""
+        return tuple(member.face.number for member in self.members) or (self.number,)
 
     @classmethod
     def from_bspline(cls, points: ArrayLike, degree: tuple[int, int] = (3, 3),
@@ -210,4 +237,5 @@ class Face:
         matrix : (4, 4) array_like
         """
         mirrored = float(np.linalg.det(np.asarray(matrix, dtype=float)[:3, :3])) < 0
-        return replace(self, surface=self.surface.transformed(matrix), flip=self.flip ^ mirrored)
+        members = tuple(replace(member, face=member.face.transformed(matrix)) for member in self.members)
+        return replace(self, surface=self.surface.transformed(matrix), flip=self.flip ^ mirrored, members=members)

@@ -35,12 +35,21 @@ def kinks_of(face: Face, jump: float = JUMP) -> tuple[tuple[float, ...], tuple[f
         values, counts = distinct_inner(knots, surface.degree[axis])
         low, high = face.bounds[2 * axis:2 * axis + 2]
         found.append(tuple(float(t) for t in values[counts >= surface.degree[axis]]
-                           if low < t < high and _jump(face, axis, float(t)) > jump))
+                           if low < t < high and turn_at(face, axis, float(t)) > jump))
     return found[0], found[1]
 
 
-def _jump(face: Face, axis: int, t: float) -> float:
-    """Greatest angle between the normals on both sides of a knot line, rad."""
+def turn_at(face: Face, axis: int, t: float) -> float:
+    """Greatest angle between the normals on both sides of a knot line, rad.
+
+    Parameters
+    ----------
+    face : Face
+    axis : int
+        0 for a line of constant u, 1 for one of constant v.
+    t : float
+        The knot.
+    """
     low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
     across = low + (high - low) * (np.arange(SAMPLES) + 0.5) / SAMPLES
     sides = []

@@ -55,6 +55,8 @@ class Part:
     warnings : tuple of str
     selected : tuple of int
         Numbers of the faces that the caller picked; empty where nothing was picked.
+    original : Part or None
+        The part as it came, where faces of it were joined, see `toolaxis.shape.skins.join`.
 
     Raises
     ------
@@ -70,6 +72,7 @@ class Part:
     unit: str = "mm"
     warnings: tuple[str, ...] = ()
     selected: tuple[int, ...] = ()
+    original: "Part | None" = None
 
     def __post_init__(self) -> None:
         if not self.faces:
@@ -131,6 +134,10 @@ class Part:
             When the part has no such face.
         """
         if number not in self._by_number:
+            whole = [face for face in self.faces if number in face.numbers]
+            if whole:
+                raise InvalidInput(f"face {number} is joined to face {whole[0].label}: name that one by its first "
+                                   f"number, {whole[0].number}")
             raise InvalidInput(f"face {number} does not exist: the part has {len(self.faces)} faces, "
                                f"{self.faces[0].number} to {self.faces[-1].number}")
         return self._by_number[number]
@@ -204,7 +211,8 @@ class Part:
         m = np.asarray(matrix, dtype=float)
         faces = tuple(face.transformed(m) for face in self.faces)
         edges = tuple(replace(edge, polyline=edge.polyline @ m[:3, :3].T + m[:3, 3]) for edge in self.edges)
-        return replace(self, faces=faces, edges=edges)
+        original = None if self.original is None else self.original.transformed(m)
+        return replace(self, faces=faces, edges=edges, original=original)
 
 
 def _numbered(face: Face, number: int) -> Face:

@@ -1,0 +1,276 @@
+"""Patches of one smooth surface joined to one face: the same points, one pair of parameters."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import UnsupportedGeometry
+from toolaxis.numeric.overlay import united
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.shape.face import Face, Member
+from toolaxis.shape.kinks import turn_at
+from toolaxis.shape.layout import Cell, Grid, laid_out
+from toolaxis.shape.meeting import GAP, Meeting
+from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.shape.patches import SAME, Pair, Patch, alike, knots_along, placed, range_of, surface_over
+
+Array = NDArray[np.float64]
+
+#: Greatest angle between normals across a join, rad: a cutter of 10 mm radius dips by 0.4 micrometres there.
+SMOOTH = radians(0.5)
+#: Way by which rounding moves points, mm.
+_ROUNDING = 1e-9
+#: Greatest angle by which iso-parametric lines may turn across a join, rad.
+CORNER = radians(30.0)
+
+
+def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float = GAP) -> Face:
+    """One face from patches that continue each other smoothly.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        The first one's directions of u and v, sense and number are those of the result.
+    meetings : sequence of Meeting
+        From `toolaxis.shape.meeting.meetings`.
+    tolerance : float
+        By how much the surface may leave the faces at the joins, mm.
+
+    Returns
+    -------
+    Face
+        Named "3+4", with `members`.  Its surface is that of the faces, point by point: u and v of each are mapped
+        linearly, and control points of common borders are replaced by their mean.  Its tolerance is the greatest of the
+        faces', plus how far that moves the surface at most.  Across a join the surface is C0 in its parameters, and its
+        normals turn by no more than half a degree; joins are no kinks.
+
+    Raises
+    ------
+    UnsupportedGeometry
+        When the faces do not lie in rows and columns, common borders differ by more than the tolerance, or normals or
+        iso-parametric lines turn too much across a join.
+
+    Notes
+    -----
+    Degrees are raised and knots put in until neighbours agree along their border; columns and rows are as wide in the
+    parameters as makes the mean speed the same on both sides of each join.
+
+    **Properties**: 1. a surface cut at iso-parametric lines and joined again is that surface; 2. every point of a
+    member lies within the tolerance at its mapped parameters; 3. areas add up; 4. moving the faces moves the result.
+    """
+    grid = laid_out(faces, meetings)
+    patches = placed(grid)
+    ranges = tuple([range_of(grid, patches, axis, k) for k in range(grid.shape[axis])] for axis in (0, 1))
+    surfaces = alike(grid, {cell: surface_over(patches[cell], _box(ranges, cell)) for cell in patches})
+    surfaces = _weighed(grid, surfaces, tolerance)
+    lines = tuple(_lines(grid, surfaces, ranges[axis], axis) for axis in (0, 1))
+    surface, moved = _assembled(grid, surfaces, lines)
+    places = tuple([*pairwise(line)] for line in lines)
+    members = {cell: _member(patch, _box(ranges, cell), _box(places, cell)) for cell, patch in patches.items()}
+    names = "+".join(face.label for face in faces)
+    kinds = {face.kind for face in faces}
+    made = Face(surface, (), faces[0].flip, faces[0].number, names, kinds.pop() if len(kinds) == 1 else "bspline",
+                max(face.tolerance for face in faces) + (moved if moved > _ROUNDING else 0.0), _kinks(members, lines),
+                tuple(members[cell] for face in faces for cell in members if members[cell].face is face))
+    _check_turns(made)
+    return replace(made, trims=_outline(made, lines))
+
+
+def _box(ranges: tuple[list[Pair], ...], cell: Cell) -> tuple[Pair, Pair]:
+    return ranges[0][cell[0]], ranges[1][cell[1]]
+
+
+def _border(surface: NurbsSurface, axis: int, end: int) -> Array:
+    """Control points of a side: the first ones along an axis, or the last."""
+    return np.asarray(np.take(surface.control, -end, axis=axis))
+
+
+def _weighed(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -> dict[Cell, NurbsSurface]:
+    """The same surfaces with weights that agree on common borders, where these are the same within the tolerance."""
+    for cell in sorted(surfaces, key=lambda c: (c[0] + c[1], c)):
+        beside = [(before, axis) for axis, before in ((0, (cell[0] - 1, cell[1])), (1, (cell[0], cell[1] - 1)))
+                  if before in surfaces]
+        for before, axis in beside[:1]:
+            share = _border(surfaces[before], axis, 1)[:, 3] / _border(surfaces[cell], axis, 0)[:, 3]
+            surfaces[cell] = replace(surfaces[cell], control=surfaces[cell].control * float(np.median(share)))
+        for before, axis in beside:
+            off = _moved(_border(surfaces[cell], axis, 0), _border(surfaces[before], axis, 1))
+            if off > tolerance:
+                a, b = grid.faces[before].label, grid.faces[cell].label
+                raise UnsupportedGeometry(f"faces {a} and {b} cannot be joined: their borders are the same curve only "
+                                          f"within {off:.3g} mm, {tolerance:g} mm are needed: machine them face by "
+                                          "face")
+    return surfaces
+
+
+def _moved(control: Array, other: Array) -> float:
+    """Greatest way between the splines of two sets of control points at the same parameters, an upper bound, mm."""
+    one, two = (rows.reshape(-1, 4) for rows in (control, other))
+    points, there = one[:, :3] / one[:, 3:], two[:, :3] / two[:, 3:]
+    changed = float(np.abs(one[:, 3] - two[:, 3]).max()) / float(two[:, 3].min())
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    return float(np.linalg.norm(points - there, axis=1).max()) + changed * size
+
+
+def _lines(grid: Grid, surfaces: dict[Cell, NurbsSurface], ranges: list[Pair], axis: int) -> Array:
+    """Where columns or rows begin and end in the joined parameters: the mean speed is the same on both sides."""
+    lines, rate = [ranges[0][0], ranges[0][1]], 1.0
+    for k in range(1, grid.shape[axis]):
+        speeds = [float(np.mean([_end_speed(surfaces[cell], axis, end) for cell in surfaces if cell[axis] == k - end]))
+                  for end in (1, 0)]
+        rate *= speeds[1] / speeds[0] if speeds[0] > 0 and speeds[1] > 0 else 1.0
+        lines.append(lines[-1] + rate * (ranges[k][1] - ranges[k][0]))
+    return np.array(lines, dtype=float)
+
+
+def _end_speed(surface: NurbsSurface, axis: int, end: int) -> float:
+    """Mean length of the derivative across a side, mm."""
+    low, high = surface.domain[1 - axis]
+    uv = np.empty((17, 2))
+    uv[:, 1 - axis] = low + (high - low) * (np.arange(17) + 0.5) / 17
+    uv[:, axis] = surface.domain[axis][end]
+    d = surface.evaluate(uv)
+    return float(np.linalg.norm((d.su, d.sv)[axis], axis=1).mean())
+
+
+def _assembled(grid: Grid, surfaces: dict[Cell, NurbsSurface], lines: tuple[Array, ...]) -> tuple[NurbsSurface, float]:
+    """All patches as one surface, and how far it lies beside them at most, mm."""
+    knots, firsts = [], []
+    degree = surfaces[0, 0].degree
+    for axis in (0, 1):
+        column = [knots_along(surfaces[(k, 0) if axis == 0 else (0, k)], axis) for k in range(grid.shape[axis])]
+        p, line = degree[axis], lines[axis]
+        inner = [line[k] + (own[p + 1:-p - 1] - own[0]) * (line[k + 1] - line[k]) / (own[-1] - own[0])
+                 for k, own in enumerate(column)]
+        pieces = [np.full(p + 1, line[0])]
+        for k, own in enumerate(inner):
+            pieces += [own, np.full(p if k < len(inner) - 1 else p + 1, line[k + 1])]
+        knots.append(np.concatenate(pieces))
+        firsts.append(np.concatenate([[0], np.cumsum([len(own) - p - 2 for own in column])]))
+    total = np.zeros((firsts[0][-1] + 1, firsts[1][-1] + 1, 4))
+    share = np.zeros(total.shape[:2])
+    places = {(i, j): (slice(firsts[0][i], firsts[0][i + 1] + 1), slice(firsts[1][j], firsts[1][j + 1] + 1))
+              for i, j in surfaces}
+    for cell, place in places.items():
+        total[place] += surfaces[cell].control
+        share[place] += 1
+    total /= share[..., None]
+    moved = max(_moved(surfaces[cell].control, total[place]) for cell, place in places.items())
+    return NurbsSurface(knots[0], knots[1], total, degree), moved
+
+
+def _member(patch: Patch, box: tuple[Pair, Pair], place: tuple[Pair, Pair]) -> Member:
+    """A face with the way from the joined parameters to its own."""
+    matrix = np.zeros((2, 3))
+    for axis in (0, 1):
+        (low, high), (first, last) = box[axis], place[axis]
+        start, end = patch.own(axis, low), patch.own(axis, high)
+        slope = (end - start) / (last - first)
+        matrix[patch.axes[axis], axis], matrix[patch.axes[axis], 2] = slope, start - slope * first
+    return Member(patch.face, matrix, np.array(place, dtype=float).T)
+
+
+def _into(member: Member, uv: Array) -> Array:
+    """Joined parameters from a member's own, (n, 2)."""
+    return np.asarray(np.linalg.solve(member.matrix[:, :2], (uv - member.matrix[:, 2]).T).T)
+
+
+def _kinks(members: dict[Cell, Member], lines: tuple[Array, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Kinks of the members in the joined parameters."""
+    found: tuple[list[float], list[float]] = ([], [])
+    for member in members.values():
+        for own, values in enumerate(member.face.kinks):
+            axis = int(np.abs(member.matrix[own, :2]).argmax())
+            for t in values:
+                at = float((t - member.matrix[own, 2]) / member.matrix[own, axis])
+                if all(abs(at - other) > SAME * np.ptp(lines[axis]) for other in [*found[axis], *lines[axis]]):
+                    found[axis].append(at)
+    return tuple(sorted(found[0])), tuple(sorted(found[1]))
+
+
+def _check_turns(face: Face) -> None:
+    """That normals, and iso-parametric lines, turn little across every join."""
+    for axis, t in joins(face):
+        turn = turn_at(face, axis, t)
+        if turn > SMOOTH:
+            raise UnsupportedGeometry(f"faces {face.label} cannot be joined: normals turn by {np.degrees(turn):.2g} "
+                                      f"degrees across a join, {np.degrees(SMOOTH):g} are allowed: machine them "
+                                      "face by face")
+        corner = corner_at(face, axis, t)
+        if corner > CORNER:
+            raise UnsupportedGeometry(f"faces {face.label} cannot be joined: iso-parametric lines, and passes with "
+                                      f"them, would turn by {np.degrees(corner):.0f} degrees across a join, "
+                                      f"{np.degrees(CORNER):.0f} are allowed: machine them face by face")
+
+
+def joins(face: Face) -> list[tuple[int, float]]:
+    """Lines along which members of a joined face meet: 0 for constant u or 1 for constant v, and the parameter.
+
+    Parameters
+    ----------
+    face : Face
+    """
+    return [(axis, t) for axis in (0, 1) for t in sorted({float(member.box[0, axis]) for member in face.members})[1:]]
+
+
+def corner_at(face: Face, axis: int, t: float) -> float:
+    """Greatest angle by which iso-parametric lines turn where they cross a knot line, rad.
+
+    Parameters
+    ----------
+    face : Face
+    axis : int
+        0 for a line of constant u, 1 for one of constant v.
+    t : float
+        The knot.
+    """
+    low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
+    across = low + (high - low) * (np.arange(33) + 0.5) / 33
+    ways = []
+    for at in (np.nextafter(t, -np.inf), t):
+        d = face.evaluate(np.stack([np.full(33, at), across][::1 - 2 * axis], axis=1))
+        ways.append((d.su, d.sv)[axis])
+    return float(np.max(angle_between(*ways)))
+
+
+def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Loops of the members as loops of the joined face; none where they fill it."""
+    if all(not member.face.trims and _whole(member) for member in face.members):
+        return ()
+    size = [SAME * float(np.ptp(line)) for line in lines]
+    loops: tuple[Array, ...] = ()
+    corners = np.empty((0, 2))
+    for member in face.members:
+        own = []
+        for loop in member.face.outline:
+            uv = _into(member, loop)
+            for axis, line in enumerate(lines):
+                near = np.abs(uv[:, axis, None] - line).argmin(axis=1)
+                close = np.abs(uv[:, axis] - line[near]) <= 1e3 * size[axis]
+                uv[close, axis] = line[near[close]]
+            own.append(_met(uv, corners, lines, size))
+        corners = np.concatenate([corners, *own])
+        loops = united(loops, tuple(own)) if loops else tuple(own)
+    order = sorted(loops, key=lambda loop: -float(np.prod(np.ptp(loop, axis=0))))
+    return tuple(order)
+
+
+def _whole(member: Member) -> bool:
+    """Whether a member's place holds all of its surface."""
+    domain = np.array(member.face.surface.domain)
+    corners = np.sort(member.box @ member.matrix[:, :2].T + member.matrix[:, 2], axis=0).T
+    return bool((np.abs(corners - domain) <= SAME * np.ptp(domain, axis=1)[:, None]).all())
+
+
+def _met(loop: Array, corners: Array, lines: tuple[Array, ...], size: list[float]) -> Array:
+    """A loop whose corners on joins are the very ones of the neighbours where they are as good as these."""
+    for i, point in enumerate(loop):
+        if any((point[axis] == lines[axis]).any() for axis in (0, 1)) and len(corners):
+            gap = np.abs((corners - point) / size).max(axis=1)
+            if gap.min() <= 1e3:
+                loop[i] = corners[gap.argmin()]
+    return loop
