@@ -1,5 +1,7 @@
 """Straight segments: axis limits never exceeded, tolerance kept, and outside oracles for the time."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -109,8 +111,17 @@ def test_a_faster_feed_never_costs_time() -> None:
     """Blends that fill short chords leave no way to change speed: the slowest must not hold back all others."""
     turns = np.cumsum(10 ** np.random.default_rng(4).uniform(-2, 0, 400)) / 60
     points = np.stack([60 * np.cos(turns), 60 * np.sin(turns), 0 * turns], axis=1)
-    times = [schedule_polyline(points, points, feed, MIKRON, 1e-3).duration for feed in (5.0, 10.0, 20.0, 80.0, 300.0)]
-    assert all(fast <= slow * 1.01 for slow, fast in zip(times, times[1:], strict=False))
+    times = [schedule_polyline(points, points, feed, MIKRON, 1e-3).duration for feed in (5, 10, 20, 80, 300)]
+    assert all(fast <= slow * 1.01 for slow, fast in pairwise(times))
+
+
+def test_the_axes_rest_where_they_must() -> None:
+    points = np.array([[0.0, 0, 0], [40, 0, 0], [100, 0, 0], [140, 3, 0]])
+    rest = np.array([False, True, False, False])
+    whole, split = (schedule_polyline(points, points, 80.0, MIKRON, 0.01, stops) for stops in (None, rest))
+    assert split.corners[1] == 0 and split.duration > whole.duration
+    parts = [schedule_polyline(some, some, 80.0, MIKRON, 0.01).duration for some in (points[:2], points[1:])]
+    assert split.duration == pytest.approx(sum(parts), rel=1e-9)
 
 
 def test_feeds_of_each_segment() -> None:

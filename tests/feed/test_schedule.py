@@ -8,10 +8,11 @@ import pytest
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.profile import travel_time
-from toolaxis.feed.schedule import Feeds, MachiningTime, index_time, machining_time, path_schedule
+from toolaxis.feed.schedule import Feeds, index_time, machining_time, path_schedule
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.fcm import machine_from_fcm
 from toolaxis.machine.kinematics import inverse
+from toolaxis.plan.timing import MachiningTime
 
 MIKRON = load_machine("mikron-ucp-710")
 UP = np.array([0.0, 0.0, 1.0])

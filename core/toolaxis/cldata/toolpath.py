@@ -10,6 +10,9 @@ from toolaxis.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
+#: Length, mm, by which a link may miss the tool axis, or the crossing height, and still be rapid.
+STRAIGHT = 1e-5
+
 
 class Motion(IntEnum):
     """What the motion that arrives at a point is for."""
@@ -80,6 +83,19 @@ class ToolPath:
     def passes(self) -> int:
         """Number of passes."""
         return len(self.breaks) - 1
+
+    @property
+    def rapid(self) -> NDArray[np.bool_]:
+        """Which motions are rapid, (n,): links along the mean axis, and those across above everything that is cut."""
+        axis = self.axis.mean(axis=0)
+        axis = axis / np.linalg.norm(axis)
+        steps = np.diff(self.cl, axis=0, prepend=self.cl[:1])
+        heights = self.cl @ axis
+        along = np.linalg.norm(steps - (steps @ axis)[:, None] * axis, axis=1) <= STRAIGHT
+        low = float(heights[self.kind != Motion.LINK].max(initial=-np.inf))
+        above = heights >= max(float(heights.max(initial=-np.inf)) - STRAIGHT, low + STRAIGHT)
+        both = above & np.concatenate([[True], above])[:-1]
+        return np.asarray((self.kind == Motion.LINK) & (along | both))
 
     def length(self, *kinds: Motion) -> float:
         """Length of the tip's motion, mm, of the given kinds; of all when none is given.

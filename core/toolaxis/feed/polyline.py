@@ -105,7 +105,7 @@ class PolylineSchedule:
 
 
 def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, bounds: AxisBounds,
-                      tolerance: float = 0.0) -> PolylineSchedule:
+                      tolerance: float = 0.0, stops: ArrayLike | None = None) -> PolylineSchedule:
     """Speeds and times along straight segments from rest to rest.
 
     Parameters
@@ -119,6 +119,8 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
     bounds : AxisBounds
     tolerance : float
         How far the tip may cut a corner, mm; 0 for an exact stop.
+    stops : (n,) array_like of bool, optional
+        Points at which the axes must come to rest.
 
     Raises
     ------
@@ -139,7 +141,8 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
     limits = bounds.along(directions, feeds)
     wanted = np.broadcast_to(np.asarray(feeds, dtype=float), lengths.shape)
     aligned = (turns <= ALIGNED) & (np.abs(np.diff(directions, axis=0)).max(axis=1) <= ALIGNED)
-    kept = np.concatenate([[True], ~(aligned & (wanted[:-1] == wanted[1:])), [True]])
+    rest = np.zeros(len(points), dtype=bool) if stops is None else np.asarray(stops, dtype=bool)
+    kept = rest | np.concatenate([[True], ~(aligned & (wanted[:-1] == wanted[1:])), [True]])
     parts = np.cumsum(kept[:-1]) - 1
     if not kept.all():
         limits = bounds.along(_segments(points[kept], corners[kept])[1], wanted[kept[:-1]])
@@ -148,7 +151,8 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
     caps = np.zeros(len(whole) + 1)
     caps[1:-1] = np.minimum(_corner_speeds(jumps, turns, whole, bounds, tolerance),
                             np.minimum(limits[0][:-1], limits[0][1:]))
-    stops = _better_stop(whole, limits, caps, _blend_times(caps, jumps, bounds))
+    caps[rest[kept]] = 0.0
+    better = _better_stop(whole, limits, caps, _blend_times(caps, jumps, bounds))
     shares = lengths / np.bincount(parts, lengths)[parts]
 
     def _choice(stopping: Bools, fastest: float) -> PolylineSchedule:
@@ -158,9 +162,10 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
         return PolylineSchedule(corners[0], directions, limits, _runs(whole, speed, jumps, bounds), speed,
                                 _blend_times(speed, jumps, bounds), shares, parts)
 
-    choices = [_choice(stops, np.inf), _choice(np.ones_like(stops), 0.0)]
-    if not stops.all():
-        choices += [_choice(np.zeros_like(stops), np.inf), *_slower(lambda fastest: _choice(stops, fastest), choices[0])]
+    choices = [_choice(better, np.inf), _choice(np.ones_like(better), 0.0)]
+    if not better.all():
+        slower = _slower(lambda fastest: _choice(better, fastest), choices[0])
+        choices += [_choice(np.zeros_like(better), np.inf), *slower]
     return _fastest(choices)
 
 
@@ -183,7 +188,7 @@ def _slower(choice: Callable[[float], PolylineSchedule], first: PolylineSchedule
 def _pieces(choices: Sequence[PolylineSchedule]) -> tuple[NDArray[np.int64], Array]:
     """Which piece between common stops each segment belongs to, and what the first choice takes for each piece."""
     stands = np.all([choice.corners == 0 for choice in choices], axis=0)
-    pieces = np.cumsum(stands[:-1]) - 1
+    pieces = np.cumsum(stands[:-1]).astype(np.int64) - 1
     return pieces, np.bincount(pieces, choices[0].times)
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite, isnan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,12 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.constraints import linear_bounds
-from toolaxis.feed.curve import schedule_curve
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
 from toolaxis.feed.profile import travel_time
+from toolaxis.feed.ramps import ramps
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
 from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.plan.timing import MachiningTime
 
 Array = NDArray[np.float64]
 
@@ -47,8 +49,11 @@ class Feeds:
     tolerance : float
         How far the controller may cut a corner, mm; 0 for exact stops.
     smooth : bool
-        Whether the controller follows cuts as smooth curves through their points, as one with splines or a compressor
-        does; they then start and end at rest, and so does every piece between corners of more than `CORNER`.
+        Whether the controller follows cuts as smooth curves within the tolerance of their points, as one with splines
+        or a compressor does; they then start and end at rest, and so does every piece between corners of more than
+        `CORNER`.
+    crossing : float or None
+        Feed of links that are not rapid, mm/s; that of rapid ones unless given.
 
     Raises
     ------
@@ -61,44 +66,29 @@ class Feeds:
     rapid: float = inf
     tolerance: float = 0.01
     smooth: bool = False
+    crossing: float | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("cut", self.cut), ("approach", self.approach), ("rapid", self.rapid)):
-            if value is not None and (isnan(value) or value <= 0 or (name != "rapid" and not isfinite(value))):
+        for name, value in (("cut", self.cut), ("approach", self.approach), ("rapid", self.rapid),
+                            ("crossing", self.crossing)):
+            if value is not None and (isnan(value) or value <= 0 or (name in ("cut", "approach") and value == inf)):
                 raise InvalidInput(f"feed {name} is {value} mm/s: it must be a number above zero")
         if not (isfinite(self.tolerance) and self.tolerance >= 0):
             raise InvalidInput(f"corner tolerance is {self.tolerance} mm: it must be a number, not below zero")
 
-    def of(self, kinds: ArrayLike) -> Array:
+    def of(self, kinds: ArrayLike, rapid: ArrayLike = True) -> Array:
         """Feed of each motion, (n,) mm/s.
 
         Parameters
         ----------
         kinds : (n,) array_like of Motion
+        rapid : (n,) array_like of bool
+            Which links are rapid.
         """
         approach = self.cut if self.approach is None else self.approach
-        table = np.array([self.cut, approach, approach, self.rapid])
-        return np.asarray(table[np.asarray(kinds, dtype=int)])
-
-
-@dataclass(frozen=True)
-class MachiningTime:
-    """Where the time goes, s."""
-
-    cut: float = 0.0
-    entry: float = 0.0
-    exit: float = 0.0
-    link: float = 0.0
-    index: float = 0.0
-
-    @property
-    def total(self) -> float:
-        """All of it, s."""
-        return self.cut + self.entry + self.exit + self.link + self.index
-
-    def __add__(self, other: "MachiningTime") -> "MachiningTime":
-        return MachiningTime(self.cut + other.cut, self.entry + other.entry, self.exit + other.exit,
-                             self.link + other.link, self.index + other.index)
+        table = np.array([self.cut, approach, approach, self.rapid if self.crossing is None else self.crossing])
+        numbers = np.asarray(kinds, dtype=int)
+        return np.where((numbers == Motion.LINK) & np.asarray(rapid, dtype=bool), self.rapid, table[numbers])
 
 
 def path_schedule(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
@@ -124,22 +114,30 @@ def path_schedule(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayL
     UnsupportedGeometry
         When the axis varies.
     """
-    joints, tips, kinds = _moves(machine, path, rotary, table_from_part)
-    return schedule_polyline(joints, tips, feeds.of(kinds), linear_bounds(machine), feeds.tolerance), kinds
+    moves = _moves(machine, path, rotary, table_from_part)
+    feeds_of = feeds.of(moves.kinds, moves.rapid)
+    return schedule_polyline(moves.joints, moves.tips, feeds_of, linear_bounds(machine), feeds.tolerance), moves.kinds
 
 
-def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None,
-           table_from_part: ArrayLike | None) -> tuple[Array, Array, NDArray[np.int8]]:
-    """Linear coordinates and tips where the path bends, and the kind of each motion between them."""
+class _Moves(NamedTuple):
+    """Linear coordinates and tips where a path bends, and kind and rapidity of each motion between them."""
+
+    joints: Array
+    tips: Array
+    kinds: NDArray[np.int8]
+    rapid: NDArray[np.bool_]
+
+
+def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None, table_from_part: ArrayLike | None) -> _Moves:
     steps = np.linalg.norm(np.diff(path.cl, axis=0), axis=1)
     moving = np.concatenate([[True], steps > NO_STEP])
-    tips, kinds = path.cl[moving], path.kind[moving][1:]
+    tips, kinds, rapid = path.cl[moving], path.kind[moving][1:], path.rapid[moving][1:]
     if len(tips) < 2:
         raise InvalidInput(f"the path has {len(path.cl)} points and no motion between them: nothing can be timed")
     if angle_between(path.axis, path.axis[0]).max() > FIXED:
         raise UnsupportedGeometry("the tool axis varies along the path: only paths with a fixed axis are timed")
     angles = _angles(machine, path.axis[0], table_from_part) if rotary is None else np.asarray(rotary, dtype=float)
-    return linear_coordinates(machine, tips, angles, table_from_part=table_from_part), tips, kinds
+    return _Moves(linear_coordinates(machine, tips, angles, table_from_part=table_from_part), tips, kinds, rapid)
 
 
 def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
@@ -151,28 +149,32 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
     machine, path, feeds, rotary, table_from_part
         As for `path_schedule`.
     """
-    joints, tips, kinds = _moves(machine, path, rotary, table_from_part)
-    bounds, wanted = linear_bounds(machine), feeds.of(kinds)
-    by_kind = dict.fromkeys(Motion, 0.0)
-    for begin, end in _pieces(tips, kinds) if feeds.smooth else [(0, len(kinds))]:
-        here, there = joints[begin:end + 1], tips[begin:end + 1]
-        if feeds.smooth and kinds[begin] == Motion.CUT and len(there) >= _CURVE:
-            by_kind[Motion.CUT] += schedule_curve(here, there, feeds.cut, bounds).duration
-            continue
-        times = schedule_polyline(here, there, wanted[begin:end], bounds, feeds.tolerance).segment_times
-        for kind in Motion:
-            by_kind[kind] += float(times[kinds[begin:end] == kind].sum())
-    return MachiningTime(by_kind[Motion.CUT], by_kind[Motion.ENTRY], by_kind[Motion.EXIT], by_kind[Motion.LINK])
+    moves, bounds = _moves(machine, path, rotary, table_from_part), linear_bounds(machine)
+    kept, stops = np.ones(len(moves.tips), dtype=bool), np.zeros(len(moves.tips), dtype=bool)
+    curved, seconds = np.zeros(len(moves.kinds), dtype=bool), dict.fromkeys(Motion, 0.0)
+    for begin, end in _smooth_cuts(moves) if feeds.smooth else ():
+        here = slice(begin, end + 1)
+        seconds[Motion.CUT] += ramps(moves.joints[here], moves.tips[here], feeds.cut, bounds, feeds.tolerance).duration
+        curved[begin:end], stops[[begin, end]] = True, True
+        kept[begin + 1:end] = False
+        kept[(begin + end) // 2] = True  # both ends may be one point
+    motions = kept[1:]
+    kinds, wanted = moves.kinds[motions], feeds.of(moves.kinds, moves.rapid)[motions]
+    times = schedule_polyline(moves.joints[kept], moves.tips[kept], wanted, bounds, feeds.tolerance,
+                              stops[kept]).segment_times
+    for kind in Motion:
+        seconds[kind] += float(times[(kinds == kind) & ~curved[motions]].sum())
+    return MachiningTime(seconds[Motion.CUT], seconds[Motion.ENTRY], seconds[Motion.EXIT], seconds[Motion.LINK])
 
 
-def _pieces(tips: Array, kinds: NDArray[np.int8]) -> list[tuple[int, int]]:
-    """Ranges of motions: cuts between corners, and what lies between cuts."""
-    ways = unit(np.diff(tips, axis=0))
+def _smooth_cuts(moves: _Moves) -> list[tuple[int, int]]:
+    """Ranges of points of cuts between corners that are worth a curve."""
+    ways = unit(np.diff(moves.tips, axis=0))
     corner = angle_between(ways[1:], ways[:-1]) > CORNER
-    cut = kinds == Motion.CUT
+    cut = moves.kinds == Motion.CUT
     ends = np.flatnonzero((cut[1:] != cut[:-1]) | (cut[1:] & cut[:-1] & corner)) + 1
-    edges = [0, *ends.tolist(), len(kinds)]
-    return list(pairwise(edges))
+    edges = [0, *ends.tolist(), len(cut)]
+    return [(begin, end) for begin, end in pairwise(edges) if cut[begin] and end - begin + 1 >= _CURVE]
 
 
 def index_time(machine: Machine, start: ArrayLike, end: ArrayLike, by_hand: float | None = None) -> float:

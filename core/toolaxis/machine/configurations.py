@@ -98,6 +98,15 @@ class Machine:
         return (*(axis.name for axis in self.linear), *(axis.name for axis in self.rotary))
 
     @property
+    def unstated(self) -> str:
+        """The first limit of an axis that planning of feeds needs and the machine does not state; empty for none."""
+        for axis in (*self.linear, *self.rotary):
+            for name in ("acceleration", "jerk"):
+                if axis.drive is not None and getattr(axis.drive, name) is None:
+                    return f"{name} of axis {axis.name}"
+        return ""
+
+    @property
     def kind(self) -> str:
         """three axes, table, head, table-table, head-table or head-head."""
         return _KINDS[len(self.table), len(self.head)]

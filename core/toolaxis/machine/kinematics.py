@@ -102,6 +102,25 @@ def _turns(machine: Machine, rows: Array) -> tuple[Array, Bools, Bools, Array]:
     return np.empty((count, 1, 0)), reached, np.zeros(count, dtype=bool), np.ones(count)
 
 
+def nearest_turn(machine: Machine, solutions: ArrayLike, stand: ArrayLike) -> Array:
+    """The solution with the least largest turn from where the rotary axes stand, by whole turns where they turn
+    further, (m,) rad.
+
+    Parameters
+    ----------
+    machine : Machine
+    solutions : (s, m) array_like
+        rad; one at least.
+    stand : (m,) array_like
+        rad
+    """
+    near, here = np.array(solutions, dtype=float), np.asarray(stand, dtype=float)
+    for i, axis in enumerate(machine.rotary):
+        near[:, i], _ = axis.within(near[:, i], here[i])
+    turns = np.abs(near - here).max(axis=1, initial=0.0)
+    return np.asarray(near[int(np.argmin(np.round(turns, 9)))])
+
+
 def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, tool_length: float = 0.0,
                        table_from_part: ArrayLike | None = None) -> Array:
     """Linear coordinates that bring the tool tip to points of the part at given rotary angles, (n, 3) mm.

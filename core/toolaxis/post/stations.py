@@ -7,10 +7,9 @@ from math import degrees
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.configurations import Machine
-from toolaxis.machine.kinematics import placement, rotary_angles
+from toolaxis.machine.kinematics import nearest_turn, placement, rotary_angles
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.plan.operation import Operation
@@ -21,8 +20,6 @@ Bools = NDArray[np.bool_]
 
 #: Angle within which an operation's axis must stand still, rad.
 FIXED = 1e-6
-#: Length, mm, by which a link may miss the tool axis, or the crossing height, and still be rapid.
-STRAIGHT = 1e-5
 #: Shares of the gouge tolerance and of the least clearance that holding the axis in the machine's steps may take up.
 _GOUGE_SHARE, _CLEARANCE_SHARE = 0.5, 0.1
 
@@ -102,7 +99,7 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
         given = (chosen or {}).get(op.number)
         rows = _solutions(op, mounting) if given is None else _given(op, given, mounting)
         rows = _close(_written(rows, mounting.machine, angle_digits), op, plan, mounting)
-        stand = rows[0] if given is not None else _nearest(rows, stand, mounting.machine)
+        stand = rows[0] if given is not None else nearest_turn(mounting.machine, rows, stand)
         number = next((k for k, one in enumerate(known) if _same(one, stand)), len(known))
         known += [stand] if number == len(known) else []
         found.append(_station(op, mounting, stand, number))
@@ -210,15 +207,6 @@ def _close(rows: Array, op: Operation, plan: Plan, mounting: Mounting) -> Array:
     return np.asarray(rows[good])
 
 
-def _nearest(rows: Array, stand: Array, machine: Machine) -> Array:
-    """The solution with the least largest turn from where the axes stand, by whole turns where they turn further."""
-    near = np.array(rows)
-    for i, axis in enumerate(machine.rotary):
-        near[:, i], _ = axis.within(rows[:, i], stand[i])
-    turns = np.abs(near - stand).max(axis=1, initial=0.0)
-    return np.asarray(near[int(np.argmin(np.round(turns, 9)))])
-
-
 def _same(a: Array, b: Array) -> bool:
     """Whether rotary angles are the same position, whole turns aside."""
     return bool((np.abs(np.mod(a - b + np.pi, 2 * np.pi) - np.pi) < FIXED).all())
@@ -237,19 +225,5 @@ def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> S
     spindle = turned_table(machine, angles).T @ z
     tilt = float(angle_between(spindle, np.array([0.0, 0.0, 1.0])))
     lean = float(np.max(angle_between(op.path.axis, mounting.axis_at(angles))))
-    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl, _rapid(op), number,
-                   lean, tilt if tilt > FIXED else 0.0)
-
-
-def _rapid(op: Operation) -> Bools:
-    """Which motions are rapid: links along the axis, and those across at the crossing height, above everything."""
-    path = op.path
-    assert path is not None
-    axis = unit(path.axis.mean(axis=0))
-    steps = np.diff(path.cl, axis=0, prepend=path.cl[:1])
-    heights = path.cl @ axis
-    along = np.linalg.norm(steps - (steps @ axis)[:, None] * axis, axis=1) <= STRAIGHT
-    low = float(heights[path.kind != Motion.LINK].max(initial=-np.inf))
-    above = heights >= max(float(heights.max()) - STRAIGHT, low + STRAIGHT)
-    both = above & np.concatenate([[True], above[:-1]])
-    return np.asarray((path.kind == Motion.LINK) & (along | both))
+    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl, op.path.rapid,
+                   number, lean, tilt if tilt > FIXED else 0.0)

@@ -1,0 +1,53 @@
+"""Where the time of an operation goes on a machine whose limits are known."""
+
+from dataclasses import dataclass, replace
+
+#: Decimals in which angles are compared, rad.
+_DIGITS = 9
+
+
+@dataclass(frozen=True)
+class MachiningTime:
+    """Time by kind of motion, s.
+
+    Attributes
+    ----------
+    cut, entry, exit, link : float
+    index : float
+        To turn the rotary axes from where they stood before, retracts included where the part's place is known.
+    rotary : tuple of float
+        Angles at which the rotary axes stand, rad; empty where they do not matter.
+    """
+
+    cut: float = 0.0
+    entry: float = 0.0
+    exit: float = 0.0
+    link: float = 0.0
+    index: float = 0.0
+    rotary: tuple[float, ...] = ()
+
+    @property
+    def path(self) -> float:
+        """All but the index move, s."""
+        return self.cut + self.entry + self.exit + self.link
+
+    @property
+    def total(self) -> float:
+        """All of it, s."""
+        return self.path + self.index
+
+    def __add__(self, other: "MachiningTime") -> "MachiningTime":
+        return MachiningTime(self.cut + other.cut, self.entry + other.entry, self.exit + other.exit,
+                             self.link + other.link, self.index + other.index)
+
+    def at(self, rotary: tuple[float, ...], index: float) -> "MachiningTime":
+        """The same path at rotary angles that were reached by an index move.
+
+        Parameters
+        ----------
+        rotary : tuple of float
+            rad
+        index : float
+            s
+        """
+        return replace(self, rotary=tuple(round(angle, _DIGITS) + 0.0 for angle in rotary), index=index)
