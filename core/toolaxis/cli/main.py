@@ -55,7 +55,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner radius x degrees), a TOML or "
                           ".fctb file, or a name from resources/tools")
     sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
-    sub.add_argument("--faces", metavar="LIST", help="face numbers such as 3,5-8, or all; sculptured faces by default")
+    sub.add_argument("--faces", metavar="LIST",
+                     help="face numbers such as 3,5-8, or all; sculptured faces by default; 3+4,7 machines or divides "
+                          "faces that continue each other smoothly as one, skins all that can be joined")
     sub.add_argument("--out", default="out", metavar="DIR", help="folder for plan.json and the rest (default: out)")
     sub.add_argument("--holder", metavar="FILE|SPEC", help="TOML file, or radius,z rows: 10,0;10,40;25,40;25,80")
     sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")

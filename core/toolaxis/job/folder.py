@@ -158,7 +158,8 @@ def write_json(document: Any, path: Path) -> None:
 
 
 def _written_part(part: Part, folder: Path, stem: str) -> dict[str, str]:
-    """Copy the file that a part came from, or write its faces where there is none (any more)."""
+    """Copy the file that a part came from, or write its faces, none joined, where there is none (any more)."""
+    part = part.original or part
     source = Path(part.source) if part.source and part.sha256 else None
     if source is not None and source.is_file() and sha256_of(source) == part.sha256:
         path = folder / f"{stem}{source.suffix.lower()}"

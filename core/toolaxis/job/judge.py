@@ -13,6 +13,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
+from toolaxis.shape.skins import own_pieces
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.verdict import OperationVerdict, Task, Verdict, judge
@@ -71,20 +72,22 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
 
 
 def _task(plan: Plan, op: Operation) -> Task:
+    """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
     around = grouped(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
                      obstacles=[face for body in plan.obstacles for face in body.faces])
 
     def _of(*roles: str) -> tuple[Face, ...]:
-        return tuple(face for group in around if group.role in roles for face in group.faces
-                     if (face.number, face.label) != (op.face.number, op.face.label))
+        return tuple(own for group in around if group.role in roles for face in group.faces
+                     if (face.number, face.label) != (op.face.number, op.face.label) for own in own_pieces(face))
 
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
-    return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, (op.face,), plan.inputs.scallop,
-                plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines, plan.inputs.tolerance,
-                min(1.0, op.orientation.unreached), machine=None if machine is None else machine.machine,
-                place=on_table, tool_length=plan.tool.gauge_length)
+    return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, own_pieces(op.face),
+                plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines,
+                plan.inputs.tolerance, min(1.0, op.orientation.unreached),
+                machine=None if machine is None else machine.machine, place=on_table,
+                tool_length=plan.tool.gauge_length)
 
 
 def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
-from toolaxis.job.spec import chosen_faces
+from toolaxis.job.spec import chosen_faces, with_joined
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits, written
@@ -32,7 +32,7 @@ _NOT_COMPARED = "methods are not compared on a part whose blades are planned tog
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
-         faces: Sequence[int] | str | None = None, regions: int | str | None = None,
+         faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
@@ -52,8 +52,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     machine : Machine, Mounting, AxisLimits or str, optional
         A machine, its name in resources/machines or its file: every axis is one that it can hold in its steps, and no
         motion leaves its travel.  Limits of the axis and their short form ("cone:0,0,1,45") are taken here too.
-    faces : sequence of int, "all" or text such as "3,5-8", optional
-        The sculptured faces unless given.
+    faces : sequence of int, "all", "skins" or text such as "3,5-8", optional
+        The sculptured faces unless given.  Faces that continue each other smoothly are machined, or divided, as one
+        where their numbers stand together: [(3, 4), 7], or "3+4,7"; "skins" joins all that can be joined, see
+        `toolaxis.join`.
     regions : int or "auto", optional
         Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
         unless given.
@@ -103,6 +105,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     ------
     InvalidInput
         When an argument is out of range.
+    UnsupportedGeometry
+        When faces cannot be joined.
     """
     if strategy != "indexed":
         raise InvalidInput(f"strategy {strategy!r} is not part of this version: leave it out")
@@ -118,13 +122,13 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
                     float(spindle), tolerance or Tolerance(), float(rapid))
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
-    loaded = load(part)
+    loaded, numbers = with_joined(load(part), faces)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
     bodies = tuple(load(body) for body in _listed(obstacles))
-    targets = [piece for face in chosen_faces(loaded, faces) for piece in split_at_kinks(face)]
+    targets = [piece for face in chosen_faces(loaded, numbers) for piece in split_at_kinks(face)]
     job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
               checked_workers(workers), machine=mounting)
-    whole = faces is None and not loaded.selected and method in METHODS
+    whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     with heard(progress):
         return _carried_out(job, targets, (whole, compare), progress)
 

@@ -1,9 +1,10 @@
 """What a job is asked for in words: face lists, tools, holders and limits, resolved and checked."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from numbers import Integral
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +14,10 @@ from toolaxis.job.toolfile import load_holder, load_tool
 from toolaxis.plan.plan import Inputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
+from toolaxis.shape.skins import join, skins
 from toolaxis.tools.assembly import Tool
 
-Numbers = tuple[int, ...]
+Numbers = tuple[int | tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Spec:
         Short form, file, or name from the library.
     inputs : Inputs
     faces : str
-        "3,5-8", "all", or empty for the sculptured faces.
+        "3,5-8", "3+4,7" with faces to be joined, "all", "skins", or empty for the sculptured faces.
     holder : str
         File or rows "r,z;r,z"; empty for the tool file's own, or none.
     stickout : float or None
@@ -96,23 +98,32 @@ def parse_faces(text: str) -> Numbers | str:
     Parameters
     ----------
     text : str
-        "3,5-8" or "all".
+        "3,5-8", "all", or "skins"; "3+4,7" for faces that are to be joined.
+
+    Returns
+    -------
+    tuple or str
+        Numbers, and tuples of numbers for faces that are to be joined; "all" or "skins" as they are.
 
     Raises
     ------
     InvalidInput
         When the text is not of that form.
     """
-    if text.strip().lower() == "all":
-        return "all"
-    numbers: list[int] = []
+    if text.strip().lower() in ("all", "skins"):
+        return text.strip().lower()
+    numbers: list[int | tuple[int, ...]] = []
     for piece in text.split(","):
-        low, dash, high = piece.strip().partition("-")
-        if not low.isdigit() or (dash and not high.isdigit()) or (dash and int(high) < int(low)):
-            raise InvalidInput(f"faces {text!r} is not understood at {piece!r}: write 3,5-8 or all")
-        if int(high or low) > 10**6:
-            raise InvalidInput(f"face {high or low} is out of range: see toolaxis inspect for the part's faces")
-        numbers += range(int(low), int(high or low) + 1)
+        members = [number.strip() for number in piece.split("+")]
+        low, dash, high = members[0].partition("-")
+        wrong = not low.isdigit() or (dash and not high.isdigit()) or (dash and int(high) < int(low))
+        if wrong or (len(members) > 1 and not all(number.isdigit() for number in members)):
+            raise InvalidInput(f"faces {text!r} is not understood at {piece!r}: write 3,5-8, 3+4 to join faces, all or "
+                               "skins")
+        largest = max(int(number) for number in (low, high or low, *members[1:]))
+        if largest > 10**6:
+            raise InvalidInput(f"face {largest} is out of range: see toolaxis inspect for the part's faces")
+        numbers += [tuple(map(int, members))] if len(members) > 1 else range(int(low), int(high or low) + 1)
     return tuple(dict.fromkeys(numbers))
 
 
@@ -151,20 +162,52 @@ def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
     InvalidInput
         When a number is out of range or no whole number, or there is no sculptured face.
     """
-    if isinstance(faces, str):
-        faces = parse_faces(faces)
-    if isinstance(faces, str):
+    asked: Any = parse_faces(faces) if isinstance(faces, str) else faces
+    if isinstance(asked, str):
         return part.faces
-    if faces is None:
+    if asked is None:
         found = tuple(part.face(number) for number in part.selected) or part.sculptured
         if not found:
             raise InvalidInput(f"none of the part's {len(part.faces)} faces is sculptured (all are planes, cylinders "
                                "or cones): choose faces by number, or all")
         return found
-    numbers = list(faces) if isinstance(faces, Iterable) else [faces]
+    numbers = list(asked) if isinstance(asked, Iterable) else [asked]
     if not numbers:
         raise InvalidInput("the list of faces is empty: choose at least one face, or all")
     wrong = [number for number in numbers if not isinstance(number, Integral)]
     if wrong:
         raise InvalidInput(f"face {wrong[0]!r} is no number of a face: give whole numbers from 1, or all")
     return tuple(part.face(int(number)) for number in dict.fromkeys(numbers))
+
+
+def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None) -> tuple[Part, Any]:
+    """The part with the faces joined that are asked for as one, and the list of faces that is left for `chosen_faces`.
+
+    Parameters
+    ----------
+    part : Part
+    faces : int, iterable of int and of iterables of int, text or None
+        "skins" joins all that can be joined of the sculptured faces, and warns of what cannot.
+
+    Raises
+    ------
+    InvalidInput, UnsupportedGeometry
+        When a list is not understood, or faces cannot be joined.
+    """
+    if isinstance(faces, str):
+        faces = parse_faces(faces)
+    if faces == "skins":
+        found = skins(part)
+        for numbers in found.joined:
+            part = join(part, numbers)
+        return replace(part, selected=()).with_warnings(*found.reasons), None
+    if not isinstance(faces, Iterable) or isinstance(faces, str):
+        return part, faces
+    rows: list[Any] = []
+    for row in faces:
+        if isinstance(row, Iterable) and not isinstance(row, str):
+            members = tuple(row)
+            part = join(part, members)
+            row = members[0]
+        rows.append(row)
+    return part, rows

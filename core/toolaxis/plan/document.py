@@ -20,6 +20,7 @@ from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
+from toolaxis.shape.skins import join
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
@@ -130,7 +131,8 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Docum
     whole = _smooth_piece(plan.part, op.face.number, op.face.label)
     same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
-    return {"number": op.number, "name": op.name, "face": op.face.number, "label": op.face.label,
+    return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
+            "label": op.face.label,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
@@ -152,8 +154,9 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
     return {
         "schema": NAME, "version": VERSION,
         "units": {"length": "mm", "angle": "rad", "feedrate": "mm/min", "spindle": "rev/min"},
-        "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit, "faces": len(plan.part.faces),
-                 "warnings": list(plan.part.warnings)},
+        "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit,
+                 "faces": len((plan.part.original or plan.part).faces), "warnings": list(plan.part.warnings),
+                 "joined": [list(face.numbers) for face in plan.part.faces if face.members]},
         "obstacles": list(files["obstacles"]),
         "tool": tool_document(plan.tool),
         "inputs": asdict(plan.inputs),
@@ -192,6 +195,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     ----------
     document : mapping
     part : Part
+        As its file has it; faces that were joined are joined again.
     obstacles : sequence of Part
     paths : sequence of ToolPath or None
         One per operation.
@@ -202,6 +206,8 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
         When the document breaks the schema or names a face that the part does not have.
     """
     check(document)
+    for numbers in document["part"].get("joined", ()):
+        part = join(part, numbers, np.inf)
     given = dict(document["inputs"])
     inputs = Inputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
     operations = tuple(_operation_from(record, part, path)

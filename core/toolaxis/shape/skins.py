@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joined import corner_at, joined, joins
 from toolaxis.shape.layout import laid_out_from
@@ -18,6 +19,8 @@ from toolaxis.shape.part import Part
 
 Array = NDArray[np.float64]
 
+#: Share of a member's area in its parameters that may be missing of the whole.
+_WHOLE = 1e-6
 #: Angle between the two directions of an iso-curve at a join above which that is told, rad.
 _CORNER = np.radians(5.0)
 
@@ -99,25 +102,30 @@ def own_pieces(face: Face) -> tuple[Face, ...]:
     Returns
     -------
     tuple of Face
-        The face itself where it was not joined; its members where it is all of the joined face; else their pieces,
-        labelled with the piece's letters.
+        The face itself where it was not joined; else its members, those of which it has only a part as pieces, labelled
+        with its own letters.
 
     **Properties**: 1. areas add up.
     """
     if not face.members:
         return (face,)
-    name = "+".join(member.face.label for member in face.members)
-    if face.label == name:
-        return tuple(member.face for member in face.members)
-    letters = face.label.removeprefix(name)
+    letters = face.label.removeprefix("+".join(member.face.label for member in face.members))
     pieces: list[Face] = []
     for member in face.members:
         loops = face.outline
         for axis, (low, high) in enumerate(member.box.T):
             loops = clipped(clipped(loops, axis, float(low), True), axis, float(high), False)
-        pieces += [member.face.trimmed(tuple(_own(member, loop) for loop in piece), member.face.label + letters)
-                   for piece in grouped(loops)]
+        own = [tuple(_own(member, loop) for loop in piece) for piece in grouped(loops)]
+        if abs(sum(map(_area, own)) - _area(member.face.outline)) <= _WHOLE * _area(member.face.outline):
+            pieces.append(member.face)
+        else:
+            pieces += [member.face.trimmed(piece, member.face.label + letters) for piece in own]
     return tuple(pieces)
+
+
+def _area(loops: tuple[Array, ...]) -> float:
+    """Area of a polygon with holes in the parameters."""
+    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
 
 
 def _own(member: Member, uv: Array) -> Array:
