@@ -45,7 +45,7 @@ GOOD = {"--tool": "torus:12x1", "--scallop": "0.02"}
     ("sheet.step", {"--faces": "0"}, "face 0 does not exist"),
     ("sheet.step", {"--faces": "3-1"}, "faces '3-1' is not understood"),
     ("sheet.step", {"--faces": "1,"}, "faces '1,' is not understood"),
-    ("sheet.step", {"--faces": "x"}, "write 3,5-8, 3+4 to join faces, all or skins"),
+    ("sheet.step", {"--faces": "x"}, r"write 3,5-8, 3\+4 to join faces, all or skins"),
     ("sheet.step", {"--faces": "1+2"}, "face 2 does not exist"),
     ("sheet.step", {"--faces": "1+1"}, "face 1 is to be joined with itself: name each face once"),
     ("sheet.step", {"--faces": "1-99999999"}, "out of range"),
