@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.axes import try_axis
+from toolaxis.feed.schedule import index_time
+from toolaxis.job.axes import try_axis, with_operations
 from toolaxis.job.folder import read_json, read_plan, write_plan
+from toolaxis.job.timing import timed
 from toolaxis.machine.mounting import Mounting
+from toolaxis.report.tables import plan_table
 
 HOLDER = [(10.0, 0.0), (10.0, 40.0)]
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=HOLDER)
@@ -86,3 +89,51 @@ def test_a_machine_with_coarse_steps_still_machines() -> None:
     made = ta.plan(face, TOOL, 0.2, machine=coarse)
     angles = np.degrees(made.machine.solutions(made.operations[0].orientation.axis))
     assert len(angles) and np.allclose(angles / 5, np.round(angles / 5), atol=1e-9)
+
+
+def test_a_machine_with_known_limits_tells_its_own_time(plan, tmp_path: Path) -> None:
+    time = plan.operations[0].time
+    assert plan.timed and time is not None and time.index == 0 and plan.seconds == time.total
+    plain = replace(plan, operations=tuple(replace(op, time=None) for op in plan.operations), machine=None)
+    assert plan.seconds > plain.operations[0].seconds(1000.0, 30000.0)  # full rates are a lower bound
+    cut = plan.length / (1000 / 60)
+    assert 1.0 < time.cut / cut < 1.3 and time.link > 0 and time.entry > 0
+    write_plan(plan, tmp_path)
+    document = read_json(tmp_path / "plan.json")
+    assert document["seconds"] == plan.seconds and document["operations"][0]["seconds"] == time.path
+    again = read_plan(tmp_path)
+    assert again.operations[0].time == time and again.seconds == plan.seconds
+    assert "within velocity, acceleration and jerk" in (plan_table(plan).caption or "")
+
+
+def test_index_moves_are_part_of_the_time(plan) -> None:
+    """Up, turn, over and down, each from rest to rest, between two operations that stand at different angles."""
+    op = plan.operations[0]
+    other = try_axis(plan, op, (0.05, -0.3, 0.95))
+    two = timed(replace(plan, operations=(op, replace(other, number=2))))
+    first, second = (one.time for one in two.operations)
+    assert first == op.time and second.index > 0 and two.seconds == pytest.approx(first.total + second.total)
+    turn = index_time(plan.machine.machine, first.rotary, second.rotary)
+    assert turn > 0 and second.index > turn + 0.5  # retracts included
+    bare = timed(replace(two, machine=Mounting(plan.machine.machine)))
+    assert bare.operations[1].time.index == pytest.approx(turn)
+    assert "without retracts" in (plan_table(bare).caption or "")
+    same = timed(replace(plan, operations=(op, replace(op, number=2))))
+    assert 0.5 < same.operations[1].time.index < second.index + 1.0
+
+
+def test_a_machine_that_does_not_state_its_limits_is_told(plan) -> None:
+    machine = plan.machine.machine
+    x = replace(machine.linear[0], drive=replace(machine.linear[0].drive, jerk=None))
+    unknown = timed(replace(plan, machine=replace(plan.machine, machine=replace(machine,
+                                                                               linear=(x, *machine.linear[1:])))))
+    assert not unknown.timed and unknown.operations[0].time is None
+    assert unknown.seconds == pytest.approx(replace(unknown, machine=None).seconds)
+    assert "does not state jerk of axis X" in (plan_table(unknown).caption or "")
+
+
+def test_a_changed_operation_is_timed_again(plan) -> None:
+    op = plan.operations[0]
+    tried = try_axis(plan, op, (0.05, -0.3, 0.95))
+    changed = with_operations(plan, {op.number: tried})
+    assert changed.timed and changed.operations[0].time != op.time

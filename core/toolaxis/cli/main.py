@@ -89,7 +89,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
-                     help="rate of rapid traverse, for times only (default: 10000)")
+                     help="rate of rapid traverse where no machine states its own, for times only (default: 10000)")
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")

@@ -188,8 +188,8 @@ def _slower(choice: Callable[[float], PolylineSchedule], first: PolylineSchedule
 def _pieces(choices: Sequence[PolylineSchedule]) -> tuple[NDArray[np.int64], Array]:
     """Which piece between common stops each segment belongs to, and what the first choice takes for each piece."""
     stands = np.all([choice.corners == 0 for choice in choices], axis=0)
-    pieces = np.cumsum(stands[:-1]).astype(np.int64) - 1
-    return pieces, np.bincount(pieces, choices[0].times)
+    pieces = np.asarray(np.cumsum(stands[:-1]), dtype=np.int64) - 1
+    return pieces, np.asarray(np.bincount(pieces, choices[0].times), dtype=float)
 
 
 def _fastest(choices: Sequence[PolylineSchedule]) -> PolylineSchedule:

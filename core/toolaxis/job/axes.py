@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.job.timing import timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
@@ -201,4 +202,4 @@ def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
     if blades is not None:
         kept = {copy: source for copy, source in blades.copies.items() if not {copy, source} & set(chosen)}
         blades = replace(blades, copies=kept)
-    return replace(plan, operations=operations, outcome=outcome, blades=blades)
+    return timed(replace(plan, operations=operations, outcome=outcome, blades=blades))

@@ -14,6 +14,7 @@ from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
 from toolaxis.job.spec import chosen_faces, with_joined
+from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits, written
@@ -130,7 +131,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
               checked_workers(workers), machine=mounting)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     with heard(progress):
-        return _carried_out(job, targets, (whole, compare), progress)
+        return timed(_carried_out(job, targets, (whole, compare), progress))
 
 
 def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
@@ -151,7 +152,8 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     if not compare or made.outcome == "cancelled":
         return made
     plain = replace(job, regions=None, orientations=None)
-    return compared(made, faces, lambda name, some: plain.by(name).carried_out(some, progress.within(name)))
+    return compared(timed(made), faces,
+                    lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name))))
 
 
 def _listed(obstacles: Any) -> list[Any]:

@@ -100,11 +100,10 @@ class Machine:
     @property
     def unstated(self) -> str:
         """The first limit of an axis that planning of feeds needs and the machine does not state; empty for none."""
-        for axis in (*self.linear, *self.rotary):
-            for name in ("acceleration", "jerk"):
-                if axis.drive is not None and getattr(axis.drive, name) is None:
-                    return f"{name} of axis {axis.name}"
-        return ""
+        drives = [(axis.name, axis.drive) for axis in self.linear] + [(axis.name, axis.drive) for axis in self.rotary]
+        missing = [f"{limit} of axis {name}" for name, drive in drives if drive is not None
+                   for limit in ("acceleration", "jerk") if getattr(drive, limit) is None]
+        return missing[0] if missing else ""
 
     @property
     def kind(self) -> str:

@@ -16,6 +16,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.schema import NAME, VERSION, check
+from toolaxis.plan.timing import MachiningTime
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -138,6 +139,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Docum
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
             "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel,
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
+            "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
             "rotary": _rows(rotary_of(plan.machine, op, plan.tool.gauge_length)),
             "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
 
@@ -184,7 +186,9 @@ def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | No
     axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
     zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"])})
                   for zone in document.get("zones", ()))
-    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones)
+    time = document.get("time")
+    known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
+    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones, known)
 
 
 def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part],

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.timing import MachiningTime
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 
@@ -27,6 +28,8 @@ class Operation:
         None where there is no axis.
     zones : tuple of Zone
         What it leaves higher than the scallop limit, the largest first.
+    time : MachiningTime or None
+        What the plan's machine takes, where it states the limits of its axes.
     """
 
     number: int
@@ -35,6 +38,7 @@ class Operation:
     path: ToolPath | None = None
     frame: WorkCoordinates | None = None
     zones: tuple[Zone, ...] = ()
+    time: MachiningTime | None = None
 
     @property
     def done(self) -> bool:
@@ -52,9 +56,10 @@ class Operation:
         return 0.0 if self.path is None else self.path.length(Motion.ENTRY, Motion.EXIT, Motion.LINK)
 
     def seconds(self, feedrate: float, rapid: float) -> float:
-        """Time that the path takes, s: cutting, entries and exits at the feed rate, links at the rapid rate.
+        """Time that the path takes, s: that of the machine where it is known.
 
-        Every motion at its full rate: a lower bound of what a machine takes.
+        Elsewhere every motion at its full rate, cutting, entries and exits at the feed rate, links at the rapid rate: a
+        lower bound of what a machine takes.
 
         Parameters
         ----------
@@ -63,5 +68,7 @@ class Operation:
         """
         if self.path is None:
             return 0.0
+        if self.time is not None:
+            return self.time.path
         slow = self.path.length(Motion.CUT, Motion.ENTRY, Motion.EXIT)
         return 60 * (slow / feedrate + self.path.length(Motion.LINK) / rapid)

@@ -220,8 +220,16 @@ class Plan:
         return len(np.unique(np.round(self.axes, 9) + 0.0, axis=0))
 
     @property
+    def timed(self) -> bool:
+        """Whether the machine's own time is known for all operations that have a path."""
+        return self.machine is not None and all(op.time is not None for op in self.operations if op.done)
+
+    @property
     def seconds(self) -> float:
-        """Time of all operations, s: see `Operation.seconds`; each change of axis between them `INDEX_SECONDS` more."""
+        """Time of all operations, s: see `Operation.seconds`; between them what the machine takes to index, or
+        `INDEX_SECONDS` for each change of axis where that is not known."""
+        if self.timed:
+            return float(sum(op.time.total for op in self.operations if op.time is not None))
         changes = int((np.abs(np.diff(self.axes, axis=0)) > 1e-9).any(axis=1).sum())
         return INDEX_SECONDS * changes + sum(op.seconds(self.inputs.feedrate, self.inputs.rapid)
                                              for op in self.operations)

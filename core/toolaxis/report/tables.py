@@ -98,7 +98,7 @@ def plan_table(plan: Plan) -> Table:
                ("outcome", "left")]
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
-    return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan.inputs)}")
+    return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan)}")
 
 
 def _angles(plan: Plan, op: Operation) -> str:
@@ -118,10 +118,18 @@ def _links(op: Operation, inputs: Inputs) -> list[str]:
     return [number(op.orientation.length + op.travel, 1), clock(op.seconds(inputs.feedrate, inputs.rapid))]
 
 
-def _assumed(inputs: Inputs) -> str:
+def _assumed(plan: Plan) -> str:
     """What times are reckoned with."""
+    inputs = plan.inputs
+    if plan.timed and plan.machine is not None:
+        placed = "" if plan.machine.table_from_part is not None and plan.tool.gauge_length is not None else (
+            " without retracts, since offset and tool length are needed for them")
+        return (f"time: {plan.machine.machine.name} within velocity, acceleration and jerk of its axes, "
+                f"{inputs.feedrate:g} mm/min in the cut and on its ramps; index moves{placed}")
+    machine = None if plan.machine is None else plan.machine.machine
+    why = f" ({machine.name} does not state {machine.unstated})" if machine is not None and machine.unstated else ""
     return (f"time: {inputs.feedrate:g} mm/min in the cut and on its ramps, {inputs.rapid:g} mm/min between, without "
-            f"accelerations; {INDEX_SECONDS:g} s for each change of axis")
+            f"accelerations{why}; {INDEX_SECONDS:g} s for each change of axis")
 
 
 def baselines_table(plan: Plan) -> Table:
@@ -140,7 +148,7 @@ def baselines_table(plan: Plan) -> Table:
         ("time\nmin:s", "right"))
     notes = [f"{METHOD_NAMES.get(one.method, one.method)}: {one.reason}" for one in plan.baselines if one.reason]
     return table("the same faces by other methods, each with the same proofs", columns, rows,
-                 "\n".join([_assumed(plan.inputs), *notes]))
+                 "\n".join([_assumed(plan), *notes]))
 
 
 def _baseline_row(one: Baseline, first: Baseline) -> list[str]:
