@@ -106,7 +106,9 @@ def _told(made: Plan, given: Namespace) -> int:
     for op in made.operations:
         if made.blades is not None and op.number in made.blades.copies:
             continue
-        if not op.done and outcome_of([op], made.blades) == "complete":
+        if op.left:
+            say(f"toolaxis: {op.orientation.reasons[0]}")
+        elif not op.done and outcome_of([op], made.blades) == "complete":
             say(f"toolaxis: face {op.face.label}: left to clean-up: {op.orientation.reasons[0]}")
         elif not op.done:
             for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):

@@ -25,6 +25,7 @@ from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.plan.zone import Zone
 from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -128,8 +129,8 @@ def _exact(plan: Plan) -> set[int]:
 def _zoned_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
     """The plan with the clean-up zones of those operations whose passes are not turned copies."""
     try:
-        return replace(plan, operations=tuple(told(op, zones_of(plan, op, progress)) if op.number in numbers else op
-                                              for op in plan.operations))
+        return replace(plan, operations=tuple(told(op, zones_of(plan, op, progress), plan.tool) if op.number in numbers
+                                              else op for op in plan.operations))
     except Cancelled:
         return replace(plan, outcome="cancelled")
 
@@ -173,7 +174,8 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
     piece, away = turned_piece(op.face, pattern.part.face(number), other, matrix, f"{other.face.number}{suffix}")
     apart = pattern.blades.apart(pattern.part, piece.number)
     if not op.done:
-        return Operation(op.number, piece, replace(op.orientation, map=None, lobes=())), True
+        whole = tuple(Zone(piece.outline, piece.area) for _ in op.zones)
+        return Operation(op.number, piece, replace(op.orientation, map=None, lobes=()), zones=whole), True
     assert op.path is not None and op.orientation.axis is not None
     task = planner.task(apart, piece, progress)
     axis = matrix[:3, :3] @ op.orientation.axis

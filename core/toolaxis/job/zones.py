@@ -6,13 +6,20 @@ import numpy as np
 
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
+from toolaxis.orient.impossible import corner_too_large
 from toolaxis.path.left_over import FACTOR, also_machined, excess, left_over
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.measure import mean_width
+from toolaxis.tools.assembly import Tool
 
-_LEFT = "is left to clean-up"
+#: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
+#: than this share of it: what it machines is not worth an operation.
+WHOLLY = 0.9
+_LEFT, _UNDERCUT = "is left to clean-up", "undercut"
 
 
 def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Plan:
@@ -29,17 +36,35 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
     Returns
     -------
     Plan
-        Every operation's share for clean-up is that of its zones; "cancelled" where the user asked to stop.
+        Every operation's share for clean-up is that of its zones; "cancelled" where the user asked to stop.  Narrow
+        faces that no axis can machine, or hardly, have no operation but one zone.
     """
     if plan.outcome == "cancelled":
         return plan
-    done = [op for op in plan.operations if op.done]
     stage = progress.within("clean-up zones")
-    found = abreast(lambda k, inner: zones_of(plan, done[k], inner), len(done), workers, stage)
-    if found.cancelled:
-        return replace(plan, outcome="cancelled")
-    by_number = {op.number: told(op, zones) for op, zones in zip(done, found.results, strict=True)}
-    return replace(plan, operations=tuple(by_number.get(op.number, op) for op in plan.operations))
+    plan = _without_corners(plan, stage)
+    asked = [op for op in plan.operations if op.done]
+    while asked:
+        found = abreast(lambda k, inner: zones_of(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
+        if found.cancelled:
+            return replace(plan, outcome="cancelled")
+        made = {op.number: told(op, zones, plan.tool) for op, zones in zip(asked, found.results, strict=True)}
+        plan = replace(plan, operations=tuple(made.get(op.number, op) for op in plan.operations))
+        lost = {op.face.number for op in made.values() if op.left}  # what it would have machined stays, for others too
+        asked = [op for op in plan.operations if op.done and op.face.number in lost]
+    return replace(plan, outcome=outcome_of(plan.operations, plan.blades))
+
+
+def _without_corners(plan: Plan, progress: Progress) -> Plan:
+    """A plan in which narrow faces that are proven to be tighter than the cutter's corner are left to clean-up."""
+    made = []
+    for op in plan.operations:
+        if not op.done and mean_width(op.face) < 2 * plan.tool.radius:
+            why = corner_too_large(search_task(plan, op, progress).feasibility)
+            made.append(_left_whole(op, why) if why else op)
+        else:
+            made.append(op)
+    return replace(plan, operations=tuple(made))
 
 
 def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
@@ -69,25 +94,41 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     return tuple(also_machined(op.face, zone, others) for zone in zones)
 
 
-def told(op: Operation, zones: tuple[Zone, ...]) -> Operation:
+def told(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
     """An operation with its zones, their share, the width of its strips over the rest, and what is to be said of them.
 
     Parameters
     ----------
     op : Operation
     zones : tuple of Zone
+    tool : Tool
+
+    Returns
+    -------
+    Operation
+        Without a path where the sub-surface is narrower than the cutter and more than `WHOLLY` of it would be left.
     """
     found, area = op.orientation, op.face.area
     share = min(1.0, sum(zone.area for zone in zones if zone.at_wall) / area)
-    notes = [why for why in found.reasons if not why.endswith(_LEFT)]
+    if share > WHOLLY and mean_width(op.face) < 2 * tool.radius:
+        return _left_whole(op, f"the best axis would leave {100 * share:.1f} % of it")
+    notes = [why for why in found.reasons if not why.endswith(_LEFT) and not why.startswith(_UNDERCUT)]
     if share > 0:
         notes.insert(0, f"{100 * share:.1f} % of the area lies at walls and {_LEFT}")
     under = [zone for zone in zones if not zone.at_wall]
     if under:
         u, v = np.concatenate([zone.loops[0] for zone in under[:1]]).mean(axis=0)
-        notes.append(f"undercut: {sum(zone.area for zone in under):.2f} mm2 at the border stay higher than the scallop "
-                     f"limit, the largest zone around u {u:.4g}, v {v:.4g}: machine that edge again with a neighbour's "
-                     "axis, or give the sub-surface a smoother border")
+        notes.append(f"{_UNDERCUT}: {sum(zone.area for zone in under):.2f} mm2 at the border stay higher than the "
+                     f"scallop limit, the largest zone around u {u:.4g}, v {v:.4g}: machine that edge again with a "
+                     "neighbour's axis, or give the sub-surface a smoother border")
     width = area * (1 - share) / found.length if found.length > 0 else 0.0
     return replace(op, zones=zones, orientation=replace(found, unreached=share, average_strip_width=width,
                                                         reasons=tuple(notes)))
+
+
+def _left_whole(op: Operation, why: str) -> Operation:
+    """A sub-surface that is left to a clean-up tool as a whole."""
+    reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {_LEFT} as a whole: {why}"
+    none = Orientation(None, op.orientation.feed, reasons=(reason, *op.orientation.reasons), unreached=1.0,
+                       evaluations=op.orientation.evaluations, map=op.orientation.map, lobes=op.orientation.lobes)
+    return Operation(op.number, op.face, none, zones=(Zone(op.face.outline, op.face.area),))

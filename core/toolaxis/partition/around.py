@@ -17,6 +17,7 @@ from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.lattice import Lattice
 from toolaxis.partition.prices import Prices
 from toolaxis.shape.face import Face
+from toolaxis.shape.measure import mean_width
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
@@ -235,9 +236,7 @@ def _together(one: Array, other: Array) -> Array:
 
 def _thin(part: Face, radius: float) -> bool:
     """Whether a part is a sliver: narrower on the mean than the cutter's radius."""
-    border = sum(float(np.linalg.norm(np.diff(part.evaluate(np.vstack([loop, loop[:1]])).point, axis=0), axis=1).sum())
-                 for loop in part.outline)
-    return 2 * part.area / border < _SLIVER * radius
+    return mean_width(part) < _SLIVER * radius
 
 
 def slivers(found: Regions, tool: Tool) -> bool:

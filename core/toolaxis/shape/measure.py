@@ -1,4 +1,4 @@
-"""Area and box of a trimmed face."""
+"""Area, mean width and box of a trimmed face."""
 
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -98,6 +98,21 @@ def _breaks(v0: float, v1: float, knots: Array, loops: tuple[Array, ...]) -> Arr
         parts.append(0.5 * (a + b) - 0.5 * (b - a) * np.cos(np.linspace(0.0, np.pi, count + 1)))
     corners = np.concatenate([loop[:, 1] for loop in loops])
     return _cuts(knots, np.unique(np.clip(np.concatenate([*parts, corners if len(corners) <= 64 else []]), v0, v1)))
+
+
+def mean_width(face: "Face") -> float:
+    """Width of a long face on the mean, mm: twice the area over the length of its border, to 1 %.
+
+    Parameters
+    ----------
+    face : Face
+    """
+    u0, u1, v0, v1 = face.bounds
+    step, length = ((u1 - u0) / SAMPLES, (v1 - v0) / SAMPLES), 0.0
+    for loop in face.outline:
+        points = face.evaluate(walk(loop, stations(loop, step))).point
+        length += float(np.linalg.norm(points - np.roll(points, -1, axis=0), axis=1).sum())
+    return 2 * face.area / length
 
 
 def box(face: "Face") -> Array:

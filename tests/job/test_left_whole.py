@@ -1,0 +1,95 @@
+"""Narrow faces that hardly an operation is worth: left to a clean-up tool as a whole, stated with their area."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cli.main import main
+from toolaxis.job.folder import read_plan, staged, write_plan
+from toolaxis.job.zones import WHOLLY, told
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.plan.zone import Zone
+from toolaxis.report.overview import overview_picture
+from toolaxis.shape.measure import mean_width
+
+SLIM = ta.Tool.torus(diameter=8, corner_radius=1, stickout=30)
+
+
+def leaving(op: Operation, share: float, at_wall: bool = True) -> tuple[Zone, ...]:
+    u0, u1, v0, v1 = op.face.bounds
+    u1 = u0 + share * (u1 - u0)
+    loops = (np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]]),)
+    return (Zone(loops, share * op.face.area, at_wall),)
+
+
+def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) -> None:
+    (op,) = small_plan.operations
+    assert 8 < mean_width(op.face) < 12 == 2 * small_plan.tool.radius
+    kept = told(op, leaving(op, WHOLLY - 0.02), small_plan.tool)
+    assert kept.done and not kept.left and kept.orientation.unreached == pytest.approx(WHOLLY - 0.02)
+    gone = told(op, leaving(op, WHOLLY + 0.02), small_plan.tool)
+    assert gone.left and not gone.done and gone.orientation.axis is None
+    assert gone.orientation.passes == 0 and gone.orientation.unreached == 1.0
+    assert sum(zone.area for zone in gone.zones) == pytest.approx(op.face.area, rel=1e-12)
+    assert "92.0 % of it" in gone.orientation.reasons[0] and "clean-up as a whole" in gone.orientation.reasons[0]
+    assert outcome_of([kept, gone]) == "complete"
+    assert outcome_of([kept, replace(gone, zones=())]) == "incomplete"
+
+
+def test_a_face_that_is_wider_than_the_cutter_keeps_its_operation(small_plan: Plan) -> None:
+    (op,) = small_plan.operations
+    assert told(op, leaving(op, 0.97), SLIM).done
+    assert told(op, leaving(op, 0.97, at_wall=False), small_plan.tool).done, "an undercut is no clean-up face"
+
+
+@pytest.mark.parametrize(("size", "wanted"), [((40.0, 3.0), 2 * 120 / 86), ((5.0, 5.0), 2.5)])
+def test_the_mean_width_is_twice_the_area_over_the_border(size: tuple[float, float], wanted: float) -> None:
+    x, y = size
+    plane = ta.Face.from_bspline([[[0, 0, 0], [0, y, 0]], [[x, 0, 0], [x, y, 0]]], degree=(1, 1))
+    assert mean_width(plane) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_closed_ring_is_as_wide_as_from_border_to_border() -> None:
+    t = np.linspace(0, 2 * np.pi, 61)
+    ring = ta.Face.from_bspline([[[9 * np.cos(a), 9 * np.sin(a), z] for z in (0, 2)] for a in t], degree=(3, 1))
+    assert mean_width(ring) == pytest.approx(2.0, rel=0.05)
+
+
+@pytest.fixture(scope="module")
+def footed() -> Plan:
+    """A floor with a post whose fillet is tighter than the cutter's corner, floor and fillet asked for."""
+    cq = pytest.importorskip("cadquery")
+    solid = (cq.Workplane().box(36, 30, 10).faces(">Z").workplane().circle(4).extrude(12)
+             .edges(cq.selectors.BoxSelector((-5, -5, 4.5), (5, 5, 5.5))).fillet(0.4))
+    part = ta.load(solid)
+    floor = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(4, 4)).point[:, 2], 5))
+    fillet = next(f for f in part.faces if f.kind == "torus")
+    return ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1,
+                   faces=[floor.number, fillet.number], machine="cone:0,0,1,5")
+
+
+def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_path: Path,
+                                                             capsys: pytest.CaptureFixture[str]) -> None:
+    floor, fillet = footed.operations
+    assert footed.outcome == "complete" and floor.done and fillet.left
+    assert "0.61 mm wide" in fillet.orientation.reasons[0] and "ball of the corner radius" in str(
+        fillet.orientation.reasons[0])
+    assert fillet.zones[0].area == pytest.approx(fillet.face.area, rel=1e-12) == pytest.approx(16.5, abs=0.5)
+    with staged(tmp_path / "plan") as stage:
+        write_plan(footed, stage.folder)
+        stage.publish()
+    again = read_plan(tmp_path / "plan")
+    assert again.outcome == "complete" and again.operations[1].left
+    assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) == 0
+    assert "clean-up" in capsys.readouterr().out
+    assert overview_picture(footed).axes
+
+
+def test_a_face_that_is_merely_not_machined_stays_incomplete(footed: Plan) -> None:
+    floor = footed.operations[0].face.number
+    plan = ta.plan(footed.part, footed.tool, 0.1, faces=[floor], machine="cone:0,0,-1,1")
+    assert plan.outcome == "incomplete" and not plan.operations[0].left
