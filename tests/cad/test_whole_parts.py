@@ -13,12 +13,13 @@ from toolaxis.cad import load
 from toolaxis.cad.transfer import read_shape
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
+from toolaxis.shape.skins import join, skins
 from toolaxis.tools.assembly import Tool
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bosses": "bosses",
-        "11_blisk": "blisk", "12_impeller": "impeller"}
+        "11_blisk": "blisk", "12_impeller": "impeller", "13_skin": "skin"}
 PATCHES = ("waves", "outline", "boss", "bosses")
 ROTORS = ("blisk", "impeller")
 
@@ -107,6 +108,21 @@ def test_the_waves_are_as_large_and_steep_as_the_original(parts):
     assert 45 < np.degrees(np.arccos(n[:, 2].min())) < 50
     for share in ((k.k2 > 0).mean(), (k.k1 < 0).mean(), ((k.k1 > 0) & (k.k2 < 0)).mean()):
         assert share > 0.2
+
+
+def test_the_patches_of_the_skin_join_to_the_surface_that_they_were_cut_from(parts):
+    part, known = parts["skin"], facts("skin")
+    (numbers,) = skins(part).joined
+    assert len(numbers) == len(part.sculptured) == 6
+    face = join(part, numbers).face(numbers[0])
+    assert face.tolerance < 1e-6 and len(face.trims) == 2 and face.kinks == ((), ())
+    assert face.area == pytest.approx(sum(part.face(n).area for n in numbers), rel=1e-6)
+    whole = Face.from_bspline(known["points"], tuple(known["degree"]))
+    points = face.evaluate(np.concatenate([face.grid(20, 20), *face.trims])).point
+    assert nearest(whole, points).distance.max() < 1e-6
+    x, y, radius = known["hole"]
+    hole = face.evaluate(face.trims[1]).point
+    assert np.hypot(hole[:, 0] - x, hole[:, 1] - y) == pytest.approx(radius, abs=1e-3)
 
 
 def test_no_border_of_the_outline_runs_along_an_iso_line(parts):

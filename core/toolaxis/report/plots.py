@@ -30,6 +30,7 @@ from toolaxis.report.raster import (
     visible_runs,
 )
 from toolaxis.shape.face import Face
+from toolaxis.shape.joined import joins
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.maps import SurfaceMap
 
@@ -103,9 +104,27 @@ def _close_up(ax: Axes, op: Operation, view: tuple[Array, Array]) -> None:
     ax.imshow(canvas.colour, origin="lower", extent=canvas.camera.extent, interpolation="nearest")
     slack = 0.01 * op.face.diagonal + 4 * canvas.camera.pixel
     _draw_cuts(ax, canvas, op.path, slack)
-    _legend(ax, {"face": _FACE}, {"contact line": BLUE, "beyond the border": SKY}, [hatch_patch()] if op.zones else [])
+    further: list[Artist] = [hatch_patch()] if op.zones else []
+    if op.face.members:
+        _draw_joins(ax, canvas, op.face, slack)
+        further.append(Line2D([], [], color=VERMILION, linestyle="--", label="join of faces"))
+    _legend(ax, {"face": _FACE}, {"contact line": BLUE, "beyond the border": SKY}, further)
     scale_bar(ax, canvas.camera)
     bare(ax)
+
+
+def _draw_joins(ax: Axes, canvas: Canvas, face: Face, slack: float) -> None:
+    """Lines along which the faces meet that were joined to this one."""
+    runs: list[Array] = []
+    for axis, t in joins(face):
+        uv = np.full((400, 2), t)
+        uv[:, 1 - axis] = np.linspace(*face.bounds[2 - 2 * axis:4 - 2 * axis], 400)
+        on = np.flatnonzero(~face.contains(uv))
+        for some in np.split(uv, on):
+            line = some[face.contains(some)]
+            if len(line) > 1:
+                runs += visible_runs(canvas, face.evaluate(line).point, slack)
+    ax.add_collection(LineCollection(runs, colors=VERMILION, linewidths=1.0, linestyles="--"))
 
 
 def _draw_cuts(ax: Axes, canvas: Canvas, path: ToolPath, slack: float) -> None:
