@@ -27,8 +27,28 @@ _POINTS, _PLACES, _MOST = 12, 4, 4096
 _CURVE, _CROSS = 1 / 3, 1 / 3
 #: Share of an acceleration that the curve itself may take.
 _BEND = 1 / 2
+#: Set-ups that are timed in one go.
+_BATCH = 512
 #: As good as nothing, for divisions.
 _NOTHING = 1e-12
+
+
+class Bend(NamedTuple):
+    """A smooth curve and how it bends.
+
+    Attributes
+    ----------
+    curve : BSpline
+        Coordinates over the path parameter, mm or rad.
+    length : float
+        Of the path, mm.
+    derivatives : three (n, d) arrays
+        First, second and third derivative at even places.
+    """
+
+    curve: BSpline
+    length: float
+    derivatives: tuple[Array, Array, Array]
 
 
 class Ramps(NamedTuple):
@@ -87,7 +107,52 @@ def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, t
     Properties: (1) no axis exceeds a limit; (2) never faster than the optimum that `curve` seeks, and on passes of
     finishing within some percent of it.
     """
-    joints, rows = as_rows(points, len(bounds.velocity), "joint coordinates"), as_rows(tips, 3, "tips")
+    bend = bend_of(points, tips, feed, len(bounds.velocity), tolerance)
+    tries = [_windowed(np.eye(len(bounds.velocity))[None], bend, number, feed, bounds)
+             for number in _numbers(len(bend.derivatives[0]))]
+    best = tries[int(np.argmin([float(_times(one).sum()) for one in tries]))]
+    number = best.limits[0].shape[1]
+    return Ramps(bend.curve, np.linspace(0.0, bend.length, number + 1), best.speeds[0],
+                 (best.limits[0][0], best.limits[1][0], best.limits[2][0]))
+
+
+def durations(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
+    """Time along one curve with the axes set up in many ways, (k,) s: that of `ramps` for each.
+
+    Parameters
+    ----------
+    bend : Bend
+    joint_from_path : (k, m, d) array_like
+        What the axes move for a motion along the curve's coordinates.
+    feed : float
+        As for `ramps`.
+    bounds : AxisBounds
+    """
+    matrices = np.asarray(joint_from_path, dtype=float)
+    best = np.full(len(matrices), np.inf)
+    for begin in range(0, len(matrices), _BATCH):
+        some = slice(begin, begin + _BATCH)
+        for number in _numbers(len(bend.derivatives[0])):
+            best[some] = np.minimum(best[some], _times(_windowed(matrices[some], bend, number, feed, bounds)))
+    return best
+
+
+def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tolerance: float = 1e-3) -> Bend:
+    """The smooth curve that a controller follows past points.
+
+    Parameters
+    ----------
+    points, tips, feed, tolerance
+        As for `ramps`.
+    width : int
+        Number of coordinates.
+
+    Raises
+    ------
+    InvalidInput
+        As `ramps`.
+    """
+    joints, rows = as_rows(points, width, "joint coordinates"), as_rows(tips, 3, "tips")
     if len(joints) != len(rows) or len(rows) <= _DEGREE:
         raise InvalidInput(f"{len(joints)} joint positions for {len(rows)} tips: six or more of each are needed")
     if not feed > 0:
@@ -99,9 +164,8 @@ def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, t
     curve, knots = _smooth(along, joints, tolerance)
     count = int(np.clip(4 * knots, 16 * _PLACES, _MOST))
     s = (np.arange(count) + 0.5) * (along[-1] / count)
-    sizes = [np.abs(curve(s, order)) + _NOTHING for order in (1, 2, 3)]
-    return _fastest([_windowed(curve, float(along[-1]), 2**k, sizes, feed, bounds)
-                     for k in range(0, 20, 2) if 2**k * _PLACES <= count])
+    first, second, third = (np.asarray(curve(s, order)) for order in (1, 2, 3))
+    return Bend(curve, float(along[-1]), (first, second, third))
 
 
 def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int]:
@@ -117,29 +181,41 @@ def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int
     return make_interp_spline(along, joints, _DEGREE), len(along)
 
 
-def _windowed(curve: BSpline, length: float, number: int, sizes: list[Array], feed: float,
-              bounds: AxisBounds) -> Ramps:
+class _Windows(NamedTuple):
+    """Ramps of k set-ups: length of a window, speeds (k, w + 1) and limits (k, w)."""
+
+    run: float
+    speeds: Array
+    limits: tuple[Array, Array, Array]
+
+
+def _numbers(count: int) -> list[int]:
+    """Numbers of windows that are tried."""
+    return [4**k for k in range(10) if 4**k * _PLACES <= count]
+
+
+def _windowed(matrices: Array, bend: Bend, number: int, feed: float, bounds: AxisBounds) -> _Windows:
     """Ramps between a number of windows of one length."""
-    count = len(sizes[0])
-    which = np.arange(count) * number // count
-    starts = np.searchsorted(which, np.arange(number))
-    first, second, third = (np.maximum.reduceat(size, starts, axis=0) for size in sizes)
-    top = np.minimum(feed, (bounds.velocity / first).min(axis=1))
-    top = np.minimum(top, np.sqrt((_BEND * bounds.acceleration / second).min(axis=1)))
-    top = np.minimum(top, np.cbrt((_CURVE * bounds.jerk / third).min(axis=1)))
-    speed = top[:, None]
+    count = len(bend.derivatives[0])
+    starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
+    first, second, third = (np.maximum.reduceat(np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING, starts, axis=1)
+                            for rows in bend.derivatives)
+    top = np.minimum(feed, (bounds.velocity / first).min(axis=2))
+    top = np.minimum(top, np.sqrt((_BEND * bounds.acceleration / second).min(axis=2)))
+    top = np.minimum(top, np.cbrt((_CURVE * bounds.jerk / third).min(axis=2)))
+    speed = top[..., None]
     a = np.minimum((bounds.acceleration - second * speed**2) / first, _CROSS * bounds.jerk / (3 * second * speed))
-    a = a.min(axis=1)
-    j = ((bounds.jerk - third * speed**3 - 3 * second * speed * a[:, None]) / first).min(axis=1)
-    caps = np.concatenate([[0.0], np.minimum(top[:-1], top[1:]), [0.0]])
-    borders = np.linspace(0.0, length, number + 1)
-    return Ramps(curve, borders, look_ahead(np.diff(borders), a, j, caps), (top, a, j))
+    a = a.min(axis=2)
+    j = ((bounds.jerk - third * speed**3 - 3 * second * speed * a[..., None]) / first).min(axis=2)
+    caps = np.zeros((len(top), number + 1))
+    caps[:, 1:-1] = np.minimum(top[:, :-1], top[:, 1:])
+    run = bend.length / number
+    chain = look_ahead(np.full(a.size, run), a.reshape(-1), j.reshape(-1), np.append(caps[:, :-1].reshape(-1), 0.0))
+    caps[:, :-1] = chain[:-1].reshape(len(top), number)  # each set-up begins and ends at rest: one chain serves all
+    return _Windows(run, caps, (top, a, j))
 
 
-def _fastest(tries: list[Ramps]) -> Ramps:
-    """The one that takes least; all are timed in one go."""
-    ends = np.concatenate([one.speeds[:-1] for one in tries]), np.concatenate([one.speeds[1:] for one in tries])
-    limits = [np.concatenate([one.limits[k] for one in tries]) for k in range(3)]
-    times = travel_time(np.concatenate([np.diff(one.borders) for one in tries]), limits[0], limits[1], limits[2], ends)
-    sizes = [len(one.speeds) - 1 for one in tries]
-    return tries[int(np.argmin(np.add.reduceat(times, np.cumsum([0, *sizes[:-1]]))))]
+def _times(windows: _Windows) -> Array:
+    """Time of each set-up, (k,) s."""
+    ends = (windows.speeds[:, :-1], windows.speeds[:, 1:])
+    return np.asarray(travel_time(windows.run, *windows.limits, ends).sum(axis=1))

@@ -1,0 +1,321 @@
+"""Set-ups by the machine's kinematics: rotary angles at which the linear axes together do most along the passes.
+
+A feed direction is aligned with a corner of what the axes can do, of 16 ways the one that ranges and the domain of
+admissible lead and tilt allow and that turns least; where none of them is allowed, the best allowed angles are searched.
+One set-up may serve a pass, a sub-surface or the whole part: then the mean of the passes' directions is aligned.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi, radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.frame import frame_from_normal
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.machine.kinematics import nearest_turn, placement, tool_axes
+from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.polytopes import Level, along, best_angles
+from toolaxis.numeric.vectors import as_rows, unit
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Angles that rings of the search are apart, rad: over the whole ranges, and then around the best so far.
+_STEPS = tuple(map(radians, (3.0, 0.75, 0.15, 0.03)))
+#: Points of a pass whose normals the domain is held against at most.
+_LOOKED = 64
+#: First angles that are tried where the first rotary axis is free.
+_FREE = np.radians(np.arange(-180, 180, 5.0))
+
+
+class Stretch(NamedTuple):
+    """One pass.
+
+    Attributes
+    ----------
+    tips, normals : (n, 3) array
+        Tool tips, mm, and unit normals of the surface, in the order of the feed.
+    """
+
+    tips: Array
+    normals: Array
+
+    @property
+    def length(self) -> float:
+        """mm"""
+        return float(np.linalg.norm(np.diff(self.tips, axis=0), axis=1).sum())
+
+    @property
+    def feeds(self) -> Array:
+        """Unit feed direction at each point, (n, 3)."""
+        ways = unit(np.diff(self.tips, axis=0))
+        return np.concatenate([ways, ways[-1:]])
+
+
+def stretches(path: ToolPath) -> tuple[Stretch, ...]:
+    """The cuts of a tool path, pass by pass.
+
+    Parameters
+    ----------
+    path : ToolPath
+
+    Raises
+    ------
+    InvalidInput
+        When nothing is cut.
+    """
+    found = []
+    for begin, end in pairwise(path.breaks):
+        cuts = np.flatnonzero(path.kind[begin + 1:end] == Motion.CUT) + begin + 1
+        rows = np.union1d(cuts - 1, cuts)
+        moving = np.concatenate([[True], np.linalg.norm(np.diff(path.cl[rows], axis=0), axis=1) > 0])[:len(rows)]
+        if moving.sum() > 1:
+            found.append(Stretch(path.cl[rows[moving]], path.normal[rows[moving]]))
+    if not found:
+        raise InvalidInput("the path cuts nothing: there is no feed direction to set a machine up for")
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Admissible tool axes as a pyramid about the surface normal.
+
+    Attributes
+    ----------
+    lead, tilt : (float, float)
+        Least and greatest angle towards the feed and towards left of it, rad, inside -pi/2 to pi/2; as far as the
+        surface is seen unless given, as for a ball end in mid air.
+
+    Raises
+    ------
+    InvalidInput
+        When a range is reversed or leaves the half sphere.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Fig. 13.
+    """
+
+    lead: tuple[float, float] = (radians(-89.0), radians(89.0))
+    tilt: tuple[float, float] = (radians(-89.0), radians(89.0))
+
+    def __post_init__(self) -> None:
+        for name in ("lead", "tilt"):
+            low, high = getattr(self, name)
+            if not -pi / 2 < low <= high < pi / 2:
+                raise InvalidInput(f"{name} range is {low} to {high} rad: it must lie inside -pi/2 to pi/2, and not be "
+                                   "reversed")
+
+    def holds(self, axes: ArrayLike, passes: Sequence[Stretch]) -> Bools:
+        """Whether tool axes stay admissible along all passes, (k,).
+
+        Parameters
+        ----------
+        axes : (k, 3) array_like
+            Unit vectors in the part's frame.
+        passes : sequence of Stretch
+        """
+        rows = as_rows(axes, 3, "axis")
+        good = np.ones(len(rows), dtype=bool)
+        for one in passes:
+            some = np.unique(np.linspace(0, len(one.tips) - 1, _LOOKED).astype(int))
+            frame = frame_from_normal(one.normals[some], one.feeds[some])
+            f, left, n = (rows @ vectors.T for vectors in frame)
+            lead, tilt = np.arctan2(f, n), np.arctan2(left, n)
+            good &= ((n > 0) & (lead >= self.lead[0]) & (lead <= self.lead[1])
+                     & (tilt >= self.tilt[0]) & (tilt <= self.tilt[1])).all(axis=1)
+        return good
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """Rotary angles for some passes.
+
+    Attributes
+    ----------
+    feed : (3,) array
+        Mean feed direction of the passes, part's frame.
+    rotary : (m,) array
+        rad, in the order of `Machine.rotary`; empty where no angles are allowed.
+    reach : float
+        What the axes do along the mean feed direction there, mm and s; 0 without angles.
+    outcome : str
+        "aligned" with a corner (near a pole: as near as can be), "allowed": the best inside ranges and domain, or
+        "infeasible".
+    """
+
+    feed: Array
+    rotary: Array
+    reach: float
+    outcome: str
+
+
+def mean_feed(tips: ArrayLike) -> Array:
+    """The mean feed direction of a pass over its length, (3,).
+
+    Parameters
+    ----------
+    tips : (n, 3) array_like
+
+    Raises
+    ------
+    InvalidInput
+        When it ends where it began.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eq. (24), made a unit vector.
+    """
+    rows = as_rows(tips, 3, "tips")
+    whole = rows[-1] - rows[0]
+    if not np.linalg.norm(whole) > 0:
+        raise InvalidInput("the pass ends where it began: it has no mean feed direction")
+    return np.asarray(unit(whole))
+
+
+def common_feed(passes: Sequence[Stretch]) -> Array:
+    """The mean feed direction of several passes, weighted by length, (3,); there and back count as one direction.
+
+    Parameters
+    ----------
+    passes : sequence of Stretch
+        The first one tells the sense.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eqs. (23) and (25), made a unit vector.
+    """
+    feeds = np.array([mean_feed(one.tips) for one in passes])
+    senses = np.where(feeds @ feeds[0] < 0, -1.0, 1.0)
+    return np.asarray(unit((senses * np.array([one.length for one in passes])) @ feeds))
+
+
+def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None = None, level: Level = Level.JERK,
+          stand: ArrayLike | None = None) -> Setup:
+    """The set-up in which the axes do most along the mean feed direction of passes.
+
+    Parameters
+    ----------
+    mounting : Mounting
+        The machine with the part on its table.
+    passes : sequence of Stretch
+        One pass, those of a sub-surface, or all.
+    domain : Domain, optional
+        What lead and tilt may be; free as for a ball end unless given.
+    level : Level
+        Which derivative is to be greatest.
+    stand : (m,) array_like, optional
+        Where the rotary axes stand, rad: of equal set-ups the nearest to it is taken, else the least sum of angles.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine does not state its limits, or the passes have no direction.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eqs. (13), (14) and (18), and its Sec. 4.4.
+    Properties: (1) no allowed angles give more than an aligned set-up; (2) moving part and table together changes
+    nothing.
+    """
+    feed, allowed = common_feed(passes), Domain() if domain is None else domain
+    rows = _alignments(mounting, level, feed)
+    rows = rows[_allowed(mounting, rows, passes, allowed)]
+    outcome = "aligned"
+    if not len(rows):
+        rows, outcome = _searched(mounting, level, feed, passes, allowed), "allowed"
+    if not len(rows):
+        return Setup(feed, np.empty(0), 0.0, "infeasible")
+    chosen = rows[np.argmin(np.round(np.abs(rows).sum(axis=1), 9))]
+    if stand is not None:
+        chosen = nearest_turn(mounting.machine, rows, stand)
+    return Setup(feed, chosen, float(_reach(mounting, level, feed, chosen[None])[0]), outcome)
+
+
+def setups_by_pass(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None = None,
+                   level: Level = Level.JERK) -> tuple[Setup, ...]:
+    """The best set-up of each pass, the nearest to that of the pass before.
+
+    Parameters
+    ----------
+    mounting, passes, domain, level
+        As for `setup`.
+    """
+    found: list[Setup] = []
+    stand = None
+    for one in passes:
+        found.append(setup(mounting, (one,), domain, level, stand))
+        stand = found[-1].rotary if len(found[-1].rotary) else stand
+    return tuple(found)
+
+
+def _alignments(mounting: Mounting, level: Level, feed: Array) -> Array:
+    """Angles that align a feed with corners, (k, m) rad, inside ranges where whole turns lead there."""
+    machine = mounting.machine
+    try:
+        rows = best_angles(machine, level, placement(mounting.table_from_part)[:3, :3] @ feed)
+    except UnsupportedGeometry:  # there is no closed form
+        return np.empty((0, len(machine.rotary)))
+    if (rows[:, 0] == 0).all():  # the first axis is free
+        rows = np.column_stack([np.tile(_FREE, len(rows)), np.repeat(rows[:, 1], len(_FREE))])
+    return _turned_inside(mounting, rows)
+
+
+def _turned_inside(mounting: Mounting, rows: Array) -> Array:
+    return np.column_stack([axis.within(rows[:, i])[0] for i, axis in enumerate(mounting.machine.rotary)])
+
+
+def _allowed(mounting: Mounting, rows: Array, passes: Sequence[Stretch], domain: Domain) -> Bools:
+    """Which rotary angles are inside ranges and domain, (k,)."""
+    if not len(rows):
+        return np.zeros(0, dtype=bool)
+    good = np.ones(len(rows), dtype=bool)
+    for i, axis in enumerate(mounting.machine.rotary):
+        good &= axis.within(rows[:, i])[1]
+    axes = tool_axes(mounting.machine, rows) @ placement(mounting.table_from_part)[:3, :3]
+    good[good] = domain.holds(axes[good], passes)
+    return good
+
+
+def _reach(mounting: Mounting, level: Level, feed: Array, rows: Array) -> Array:
+    here = placement(mounting.table_from_part)[:3, :3] @ feed
+    return along(mounting.machine, level, np.tile(here, (len(rows), 1)), rows)
+
+
+def rotary_grid(mounting: Mounting, step: float, middle: Array | None = None) -> Array:
+    """Rotary angles inside the ranges, a step apart, (k, m) rad.
+
+    Parameters
+    ----------
+    mounting : Mounting
+    step : float
+        rad
+    middle : (m,) array, optional
+        Only those within six steps of it; all unless given, those of axes without end within half a turn.
+    """
+    sides = []
+    for i, axis in enumerate(mounting.machine.rotary):
+        low, high = max(axis.low, -pi), min(axis.high, pi)
+        if middle is not None:
+            low, high = max(axis.low, middle[i] - 6 * step), min(axis.high, middle[i] + 6 * step)
+        sides.append(np.linspace(low, high, max(1, round((high - low) / step) + 1)))
+    return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))
+
+
+def _searched(mounting: Mounting, level: Level, feed: Array, passes: Sequence[Stretch], domain: Domain) -> Array:
+    """The best allowed angles from grids that grow finer, (1, m); none where no grid holds any."""
+    best: Array | None = None
+    for step in _STEPS:
+        rows = rotary_grid(mounting, step, best)
+        rows = rows if best is None else np.concatenate([best[None], rows])
+        rows = rows[_allowed(mounting, rows, passes, domain)]
+        if not len(rows):
+            return np.empty((0, len(mounting.machine.rotary)))
+        best = rows[int(np.argmax(_reach(mounting, level, feed, rows)))]
+    assert best is not None
+    return best[None]
