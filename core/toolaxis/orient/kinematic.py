@@ -1,7 +1,7 @@
 """Set-ups by the machine's kinematics: rotary angles at which the linear axes together do most along the passes.
 
 A feed direction is aligned with a corner of what the axes can do, of 16 ways the one that ranges and the domain of
-admissible lead and tilt allow and that turns least; where none of them is allowed, the best allowed angles are searched.
+admissible lead and tilt allow and that turns least; where none of them is allowed, the best angles are searched.
 One set-up may serve a pass, a sub-surface or the whole part: then the mean of the passes' directions is aligned.
 """
 
@@ -225,7 +225,7 @@ def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None =
     """
     feed, allowed = common_feed(passes), Domain() if domain is None else domain
     rows = _alignments(mounting, level, feed)
-    rows = rows[_allowed(mounting, rows, passes, allowed)]
+    rows = rows[allowed_angles(mounting, rows, passes, allowed)]
     outcome = "aligned"
     if not len(rows):
         rows, outcome = _searched(mounting, level, feed, passes, allowed), "allowed"
@@ -234,7 +234,7 @@ def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None =
     chosen = rows[np.argmin(np.round(np.abs(rows).sum(axis=1), 9))]
     if stand is not None:
         chosen = nearest_turn(mounting.machine, rows, stand)
-    return Setup(feed, chosen, float(_reach(mounting, level, feed, chosen[None])[0]), outcome)
+    return Setup(feed, chosen, float(reached(mounting, level, feed, chosen[None])[0]), outcome)
 
 
 def setups_by_pass(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None = None,
@@ -270,8 +270,17 @@ def _turned_inside(mounting: Mounting, rows: Array) -> Array:
     return np.column_stack([axis.within(rows[:, i])[0] for i, axis in enumerate(mounting.machine.rotary)])
 
 
-def _allowed(mounting: Mounting, rows: Array, passes: Sequence[Stretch], domain: Domain) -> Bools:
-    """Which rotary angles are inside ranges and domain, (k,)."""
+def allowed_angles(mounting: Mounting, rows: Array, passes: Sequence[Stretch], domain: Domain) -> Bools:
+    """Which rotary angles are inside ranges and domain, (k,).
+
+    Parameters
+    ----------
+    mounting : Mounting
+    rows : (k, m) array
+        rad
+    passes : sequence of Stretch
+    domain : Domain
+    """
     if not len(rows):
         return np.zeros(0, dtype=bool)
     good = np.ones(len(rows), dtype=bool)
@@ -282,7 +291,18 @@ def _allowed(mounting: Mounting, rows: Array, passes: Sequence[Stretch], domain:
     return good
 
 
-def _reach(mounting: Mounting, level: Level, feed: Array, rows: Array) -> Array:
+def reached(mounting: Mounting, level: Level, feed: Array, rows: Array) -> Array:
+    """What the axes do along a feed direction at rotary angles, (k,) mm and s.
+
+    Parameters
+    ----------
+    mounting : Mounting
+    level : Level
+    feed : (3,) array
+        Part's frame.
+    rows : (k, m) array
+        rad
+    """
     here = placement(mounting.table_from_part)[:3, :3] @ feed
     return along(mounting.machine, level, np.tile(here, (len(rows), 1)), rows)
 
@@ -313,9 +333,9 @@ def _searched(mounting: Mounting, level: Level, feed: Array, passes: Sequence[St
     for step in _STEPS:
         rows = rotary_grid(mounting, step, best)
         rows = rows if best is None else np.concatenate([best[None], rows])
-        rows = rows[_allowed(mounting, rows, passes, domain)]
+        rows = rows[allowed_angles(mounting, rows, passes, domain)]
         if not len(rows):
             return np.empty((0, len(mounting.machine.rotary)))
-        best = rows[int(np.argmax(_reach(mounting, level, feed, rows)))]
+        best = rows[int(np.argmax(reached(mounting, level, feed, rows)))]
     assert best is not None
     return best[None]
