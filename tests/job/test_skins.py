@@ -94,6 +94,14 @@ def test_a_gouge_into_a_member_is_found_on_that_member(joined_plan: Plan) -> Non
     assert verdict.operations[0].worst_gouge[0].face == "4" and verdict.operations[0].gouge_max > 0.01
 
 
+def test_the_picture_shows_the_joins(joined_plan: Plan, small_plan: Plan) -> None:
+    from toolaxis.report.plots import operation_picture
+
+    for plan, shown in ((joined_plan, True), (small_plan, False)):
+        legend = operation_picture(plan, plan.operations[0]).axes[0].get_legend()
+        assert legend is not None and ("join of faces" in {text.get_text() for text in legend.get_texts()}) == shown
+
+
 @pytest.mark.long
 def test_a_joined_face_is_divided_as_one() -> None:
     part = ta.load(patches(sheet()))

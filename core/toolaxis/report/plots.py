@@ -117,8 +117,9 @@ def _draw_joins(ax: Axes, canvas: Canvas, face: Face, slack: float) -> None:
     """Lines along which the faces meet that were joined to this one."""
     runs: list[Array] = []
     for axis, t in joins(face):
+        low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
         uv = np.full((400, 2), t)
-        uv[:, 1 - axis] = np.linspace(*face.bounds[2 - 2 * axis:4 - 2 * axis], 400)
+        uv[:, 1 - axis] = np.linspace(low, high, 400)
         on = np.flatnonzero(~face.contains(uv))
         for some in np.split(uv, on):
             line = some[face.contains(some)]
