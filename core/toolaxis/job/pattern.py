@@ -1,7 +1,7 @@
 """A part with blades: counterparts of one blade's faces on the others, and what of it is to be planned."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,16 +9,23 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.partition.blades import Bladed, NoPattern, blades_of
+from toolaxis.partition.buried import uncovered
 from toolaxis.partition.gaps import Nearness, ahead, nearness, reach_along_normal, widest
 from toolaxis.partition.strips import strips
-from toolaxis.partition.turned import Counterpart, best_motion, counterpart, turn_about
+from toolaxis.partition.turned import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
+from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import PLAIN_KINDS, Part
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
+#: Blades whose faces differ by less are told as alike, mm.
+ALIKE = 1e-3
+#: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
+_FACETS = 8
 #: Greatest turn of normals across a strip of an edge, and of a fillet, rad.
 _NOSE, _FILLET = np.radians(95.0), np.radians(50.0)
 
@@ -36,37 +43,49 @@ class Pattern:
         For each blade but the first: by face of the first.
     motions : tuple of (4, 4) array
         That bring the first blade onto each of the others.
+    pieces : dict of int to tuple of Face
+        What other bodies of the part leave of the faces that they cover in part or whole, by number.
     """
 
     part: Part
     blades: Blades
     matching: tuple[dict[int, Counterpart], ...]
     motions: tuple[Array, ...]
+    pieces: dict[int, tuple[Face, ...]] = field(default_factory=dict)
 
     @property
     def first(self) -> tuple[Face, ...]:
         """The sculptured faces of the first blade, and its piece of the hub where that is sculptured."""
         named = self.blades.blades[0].faces
         return tuple(face for name in named for face in map(self.part.face, named[name])
-                     if face.kind not in PLAIN_KINDS)
+                     if face.kind not in PLAIN_KINDS and self.pieces.get(face.number, (face,)))
 
     @property
     def rest(self) -> tuple[Face, ...]:
-        """The sculptured faces that belong to no blade."""
-        return tuple(face for face in self.part.sculptured if self.blades.blade_of(face.number) is None)
+        """The sculptured faces that belong to no blade, each piece of them that no other body covers by itself."""
+        found: list[Face] = []
+        for face in self.part.sculptured:
+            if self.blades.blade_of(face.number) is None:
+                left = self.pieces.get(face.number, (face,))
+                found += [piece.trimmed(piece.trims, face.label + letters(k)) for k, piece in enumerate(left)] \
+                    if len(left) > 1 else left
+        return tuple(found)
 
 
-def recognised(part: Part) -> tuple[Pattern | None, tuple[str, ...]]:
+def recognised(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | None, tuple[str, ...]]:
     """The blades of a part; where it has none that can be planned as one, a warning that says why, if it needs one.
 
     Parameters
     ----------
     part : Part
+    progress : Progress
     """
     if len(part.sculptured) < 4:
         return None, ()
     try:
-        return pattern_of(part, blades_of(part)), ()
+        rotor = blades_of(part)
+        bare, pieces = uncovered(part, progress)
+        return _told(replace(pattern_of(bare, rotor), pieces=pieces)), ()
     except NoPattern:
         return None, ()
     except UnsupportedGeometry as reason:
@@ -105,6 +124,23 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
     bare = tuple(PlannedBlade(faces) for faces in own)
     gap = _gap(part, bare)
     return Pattern(part, Blades(rotor.point, rotor.axis, rotor.hub, bare, gap, {}), tuple(matching), tuple(motions))
+
+
+def _told(pattern: Pattern) -> Pattern:
+    """The pattern with warnings: blades that differ, and pieces of a blade's faces that are too many to be planned."""
+    far, number = max((off(pattern.part.face(n), other, matrix), other.face.number)
+                      for matrix, found in zip(pattern.motions, pattern.matching, strict=True)
+                      for n, other in found.items() if other.chart is not None)
+    notes = []
+    if far > ALIKE:
+        notes.append(f"the blades are alike to within {far:.3f} mm only (face {number} is farthest off): where their "
+                     "faces differ, passes are laid on each blade's own faces and proven there")
+    small = {n: left[1:] for n, left in pattern.pieces.items() if len(left) > 1 and pattern.blades.blade_of(n)}
+    if small:
+        area = sum(piece.area for left in small.values() for piece in left)
+        notes.append(f"other bodies divide {len(small)} faces of blades ({min(small)} the first): their smaller "
+                     f"pieces, {area:.2f} mm2, are not machined")
+    return replace(pattern, part=pattern.part.with_warnings(*notes))
 
 
 def _named(blade: object) -> dict[str, tuple[int, ...]]:
@@ -164,12 +200,14 @@ class Share(NamedTuple):
     """The faces of the first blade as they go into planning.
 
     divided : to be divided as asked for;  whole : not to be divided any more: strips of edges and fillets, and what
-    else there is;  refused : by face number, why it cannot be machined.
+    else there is;  refused : by face number, why it cannot be machined;  left : by face number, why it is left to a
+    clean-up tool.
     """
 
     divided: tuple[Face, ...]
     whole: tuple[Face, ...]
     refused: dict[int, str]
+    left: dict[int, str]
 
 
 def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
@@ -183,11 +221,12 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
         What the cutter has to keep from a neighbouring blade, mm.
     """
     refused = too_narrow(pattern, tool, clearance)
+    left = {face.number: why for face in pattern.first for why in [_facets(face, tool)] if why}
     divided: list[Face] = []
     whole: list[Face] = []
     for face in pattern.first:
         name = pattern.blades.side_of(face.number)
-        if face.number in refused:
+        if face.number in refused or face.number in left:
             continue
         if name in ("suction", "pressure"):
             divided.append(face)
@@ -195,4 +234,13 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
             whole += strips(face, _NOSE)
         else:
             whole += strips(face, _FILLET) if name == "fillet" else (face,)
-    return Share(tuple(divided), tuple(whole), refused)
+    return Share(tuple(divided), tuple(whole), refused, left)
+
+
+def _facets(face: Face, tool: Tool) -> str:
+    """Why a face is left to clean-up: kinks cut it into facets, too many and too small for axes; empty where not."""
+    count = len(split_at_kinks(face))
+    if count <= _FACETS or face.area > count * tool.radius**2:
+        return ""
+    return (f"face {face.number} is left to clean-up as a whole: kinks cut its {face.area:.1f} mm2 into {count} facets "
+            "that are too small for axes of their own; make it smooth in CAD to have it machined")

@@ -84,7 +84,7 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
             operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
-            _draw_widths(plan, op, folder)
+            _draw_widths(plan, op, job, folder)
         if op is largest:
             _draw_study(plan, op, job, folder)
 
@@ -133,15 +133,21 @@ def _baselines(plan: Plan, job: Task, sectors_too: bool) -> Mapping[str, ArrayLi
     return marks
 
 
-def _draw_widths(plan: Plan, op: Operation, folder: Path) -> None:
+def _draw_widths(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
     axis, feed = op.orientation.axis, op.orientation.feed
     assert axis is not None
-    placed = layout(op.face, plan.tool, axis, plan.inputs.scallop, feed, allowance=plan.inputs.allowance)
+
+    def _reach(uv: Array) -> NDArray[np.bool_]:
+        return job.feasibility.reach(uv, axis)
+
+    placed = layout(op.face, plan.tool, axis, plan.inputs.scallop, feed, allowance=plan.inputs.allowance, reach=_reach)
     lines = []
     for low, high, step in placed.pieces:
         uv = placed.chart.uv(np.linspace(low, high, _POINTS), np.full(_POINTS, step))
-        width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
-        lines.append((op.face.evaluate(uv).point, width))
+        uv = uv[_reach(uv)]
+        if len(uv) > 1:
+            width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
+            lines.append((op.face.evaluate(uv).point, width))
     widths_picture(lines, (op.face, plan.tool), op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
 
 

@@ -12,8 +12,10 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import Remembering, frame_of, judged
+from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import Pattern, shared_out
 from toolaxis.job.rooms import with_rooms
+from toolaxis.job.timing import feeds_of
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
@@ -101,19 +103,29 @@ class Job:
         return replace(self, inputs=replace(self.inputs, method=method),
                        tool=self.tool.with_ball_end() if method == "ball" else self.tool)
 
-    def bladed(self, pattern: Pattern, progress: Progress) -> Plan:
-        """The plan of a part with blades: one is planned, what is done there is turned to the others."""
+    def bladed(self, pattern: Pattern, compare: bool, progress: Progress) -> Plan:
+        """The plan of a part with blades: one is planned, what is done there is turned to the others.
+
+        Where other methods are asked for too, they plan the same blade between its neighbours.
+        """
         share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
         apart = pattern.blades.apart(self.part, pattern.first[0].number)
         regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
         one = replace(self, part=apart, regions=regions,
                       whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
         faces = [piece for face in share.divided for piece in split_at_kinks(face)]
-        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share.refused)
+        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share)
         found = spread_out(pattern, first, _Planner(self), progress)
         if found.outcome != "cancelled" and pattern.rest:
             faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]
             found = followed(found, zoned(self.carried_out(faces, progress), self.workers, progress))
+        if compare and found.outcome != "cancelled":
+            plain = replace(one, regions=None, orientations=None, whole=())
+            done = tuple(op for op in first.operations if op.done)
+            own = [face for face in (*share.divided, *share.whole) if face.number in {op.face.number for op in done}]
+            rows = compared(replace(first, operations=done), own,
+                            lambda name, some: plain.by(name).carried_out(some, progress.within(name)))
+            found = replace(found, baselines=rows.baselines)
         return found if found.outcome == "cancelled" else with_rooms(found, progress)
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
@@ -229,7 +241,7 @@ class Job:
 
     def _task(self, face: Face, progress: Progress) -> Task:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
-                           objective=self.inputs.objective, part=self.part, allowance=self.inputs.allowance,
+                           objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part, allowance=self.inputs.allowance,
                            tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
 
 

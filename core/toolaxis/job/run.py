@@ -21,6 +21,7 @@ from toolaxis.machine.limits import AxisLimits, written
 from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.orient.indexed import METHODS, combined
+from toolaxis.orient.pace import known_machine
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
@@ -28,8 +29,6 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
-
-_NOT_COMPARED = "methods are not compared on a part whose blades are planned together: choose faces to compare them"
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
@@ -66,7 +65,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     strategy : str
         "indexed": every sub-surface has one fixed axis; others are not part of this version.
     objective : str
-        "length" or "passes".
+        "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
+        limits of its axes. Faces are divided by cutting length.
     allowance : float
         Stock left on the faces, mm.
     direction : str
@@ -121,6 +121,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     words = short if isinstance(short, str) else written(allowed)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
                     float(spindle), tolerance or Tolerance(), float(rapid))
+    if objective == "time":
+        known_machine(mounting)
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
     loaded, numbers = with_joined(load(part), faces)
@@ -141,10 +143,9 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     try:
         if whole:
             progress.report("looking for blades", 0, 1)
-            pattern, refusal = recognised(job.part)
+            pattern, refusal = recognised(job.part, progress)
             if pattern is not None:
-                kept = (_NOT_COMPARED,) if compare else ()
-                return replace(job, part=job.part.with_warnings(*kept)).bladed(pattern, progress)
+                return replace(job, part=pattern.part).bladed(pattern, compare, progress)
             job = replace(job, part=job.part.with_warnings(*refusal))
         made = zoned(job.by(job.inputs.method).carried_out(faces, progress), job.workers, progress)
     except Cancelled:

@@ -14,7 +14,7 @@ from toolaxis.contact.gouge import least_distance
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import frame_of, judged
-from toolaxis.job.pattern import Pattern
+from toolaxis.job.pattern import Pattern, Share
 from toolaxis.job.zones import told, zones_of
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.proof import COMPONENTS, prove
@@ -52,19 +52,20 @@ class Planner(Protocol):
         """The operation of a face of a part, its axis searched."""
 
 
-def with_refused(first: Plan, part: Part, refused: dict[int, str]) -> Plan:
-    """The plan of the first blade with the faces that cannot be machined, at its end.
+def with_refused(first: Plan, part: Part, share: Share) -> Plan:
+    """The plan of the first blade with the faces that cannot be machined, or are left to clean-up, at its end.
 
     Parameters
     ----------
     first : Plan
     part : Part
-    refused : dict of int to str
-        Why, by number of the face.
+    share : Share
     """
-    made = tuple(Operation(len(first.operations) + k, part.face(number),
-                           Orientation(None, outcome="infeasible", reasons=(why,)))
-                 for k, (number, why) in enumerate(refused.items(), 1))
+    faces = [(part.face(number), "infeasible", why) for number, why in share.refused.items()]
+    faces += [(part.face(number), "not_found", why) for number, why in share.left.items()]
+    made = tuple(Operation(len(first.operations) + k, face, Orientation(None, outcome=outcome, reasons=(why,)),
+                           zones=(Zone(face.outline, face.area),) if face.number in share.left else ())
+                 for k, (face, outcome, why) in enumerate(faces, 1))
     return replace(first, operations=first.operations + made)
 
 

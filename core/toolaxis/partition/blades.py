@@ -23,6 +23,9 @@ ALIKE, IN_PLACE = 0.03, 0.01
 OUTWARDS = 0.15
 #: Faces and blades smaller than this share of the largest are not looked at.
 SMALL = 0.01
+#: An axis of faces of revolution is preferred to one of inertia, and more equal parts to fewer, where they fit so
+#: little worse: a blade may be a little out of place.
+_SLACK = 0.03
 #: Most blades that are looked for, and the least share of faces in place that is a pattern at all.
 MOST, PATTERN = 100, 0.6
 
@@ -160,6 +163,7 @@ def _inside(face: Face) -> Array:
 def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Array, Array, int, list[int]]:
     """Axis and number of equal parts with the most faces in place, and the faces out of place."""
     best = PATTERN
+    known = (False, 0)
     found: tuple[Array, Array, int, list[int]] | None = None
     for exact, point, axis in _axes(part, samples, sculptured):
         looked = [n for n in sculptured if not _of_revolution(samples, n, point, axis)]
@@ -168,8 +172,10 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
         for count in range(2, MOST + 1 if looked else 2):
             pairs, away = _counterparts(part, samples, looked, (point, axis), 2 * np.pi / count)
             fit = sum(samples.area[n] * (1 - away[n] / 2) for n in pairs) / sum(samples.area[n] for n in looked)
-            if fit > best + 1e-3 or (found is not None and fit > best - 1e-3 and count > found[2]):
-                best = fit
+            worse = (exact, count) < known
+            if fit > best + (_SLACK if worse else 1e-3) or (found is not None and not worse and count > known[1]
+                                                            and fit > best - _SLACK):
+                best, known = fit, (exact, count)
                 line = (point, axis) if exact else _refined(samples, pairs, point, axis)
                 found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
     if found is None:

@@ -176,6 +176,23 @@ def best_motion(matrix: Array, pairs: Sequence[tuple[Face, Counterpart]]) -> Arr
     return found
 
 
+def off(face: Face, other: Counterpart, matrix: Array) -> float:
+    """How far the surface of a counterpart lies from the moved face at most, along its normal, mm.
+
+    Parameters
+    ----------
+    face : Face
+    other : Counterpart
+        With a chart.
+    matrix : (4, 4) array
+    """
+    assert other.chart is not None
+    uv = _samples(face, _DENSE)
+    there = other.chart(uv)
+    gap = other.face.evaluate(there).point - moved(matrix, face.evaluate(uv).point)
+    return float(np.abs((gap * other.face.normal(there)).sum(axis=1)).max())
+
+
 def turned_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, label: str) -> tuple[Face, float]:
     """The piece of a counterpart that a motion brings a piece of a face onto, and how far the two are apart, mm.
 
@@ -214,20 +231,30 @@ def _fine(loop: Array) -> Array:
 
 def _loops(piece: Face, whole: Face, target: Face, chart: Chart) -> tuple[Array, ...]:
     """Loops of the counterpart of a piece."""
-    carried = tuple(chart(loop) for loop in piece.outline)
+    source: tuple[Array, ...] = whole.outline
     loops: tuple[Array, ...] = target.outline
-    bounds, ends = np.reshape(piece.bounds, (2, 2)), np.reshape(whole.bounds, (2, 2))
-    for i in range(2):
+    for i, value, above in _cuts(piece, whole):
+        source = clipped(source, i, value, above)
         j = 1 - i if chart.swapped else i
-        for side in range(2):
-            if abs(bounds[i, side] - ends[i, side]) <= _AT_END * np.ptp(ends[i]):
-                continue
-            limit = float(chart(bounds[None, :, side])[0, j])
-            loops = clipped(loops, j, limit, (side == 0) == (chart.linear[i, j] > 0))
+        loops = clipped(loops, j, float(chart(np.full((1, 2), value))[0, j]), above == (chart.linear[i, j] > 0))
     pieces = grouped(loops)
-    if len(pieces) == 1 and abs(_area(pieces[0]) / _area(carried) - 1) < 1e-4:
+    if len(pieces) == len(grouped(source)) == 1 and abs(_area(source) / _area(piece.outline) - 1) < 1e-4:
         return pieces[0]
-    return carried
+    return tuple(chart(loop) for loop in piece.outline)
+
+
+def _cuts(piece: Face, whole: Face) -> list[tuple[int, float, bool]]:
+    """Iso-parametric lines that a piece was cut along: parameter, its value, and whether the piece lies above it."""
+    bounds, ends = np.reshape(piece.bounds, (2, 2)), np.reshape(whole.bounds, (2, 2))
+    corners = np.concatenate(piece.outline)
+    found = []
+    for i in range(2):
+        near = _AT_END * np.ptp(ends[i])
+        for side in range(2):
+            on = np.abs(corners[:, i] - bounds[i, side]) <= near
+            if abs(bounds[i, side] - ends[i, side]) > near and on.sum() > 1:
+                found.append((i, float(bounds[i, side]), side == 0))
+    return found
 
 
 def _area(loops: Sequence[Array]) -> float:

@@ -48,8 +48,8 @@ _COLOURS = tuple(_pale(name) for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, B
 def overview_picture(plan: Plan) -> Figure:
     """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
 
-    Neighbours have different colours; a sub-surface without an axis is grey and says so.  Turned copies have the colour
-    of their original, and neither arrow nor passes.
+    Neighbours have different colours; a sub-surface without an axis is grey and says so, or is hatched where it is left
+    to clean-up.  Turned copies have the colour of their original, and neither arrow nor passes.
 
     Parameters
     ----------
@@ -76,7 +76,8 @@ def overview_picture(plan: Plan) -> Figure:
         canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
     for op in plan.operations:
-        hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
+        left = not op.done and outcome_of([op], plan.blades) == "complete"
+        hatch(canvas, (op.face,) if left else zone_faces(op), 0.01 * op.face.diagonal)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
@@ -87,7 +88,7 @@ def overview_picture(plan: Plan) -> Figure:
     done = sum(op.done for op in plan.operations)
     ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
                  f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
-    if any(op.zones for op in operations):
+    if any(op.zones or not op.done for op in operations):
         ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
     scale_bar(ax, seen)
     bare(ax)
@@ -151,4 +152,7 @@ def _arrow(ax: Axes, op: Operation, foot: Array, head: Array) -> None:
         ax.plot(*root, "o", color="black", markersize=3.5)
         ax.annotate("", tip, root, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
     text = f"{op.number}" if op.done else f"{op.number}: no axis"
-    ax.annotate(text, tip, textcoords="offset points", xytext=(5, 3), fontsize=11, weight="bold", path_effects=halo)
+    length = float(np.linalg.norm(head - foot))
+    way = (head - foot) / length if op.done and length > 0 else np.array([0.5, 0.5])
+    ax.annotate(text, tip, textcoords="offset points", xytext=tuple(9 * way), fontsize=11, weight="bold",
+                path_effects=halo, ha="center", va="center")

@@ -1,0 +1,156 @@
+"""Operations on other blades: turned where faces are the same, laid anew where they differ, searched where refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.errors import Cancelled
+from toolaxis.job.pattern import recognised
+from toolaxis.job.turned import spread_out
+from toolaxis.machine.limits import parse_limits
+from toolaxis.orient.indexed import task
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+from toolaxis.shape.part import Part
+
+COUNT = 4
+TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
+SCALLOP = 0.3
+
+
+def turn(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+
+
+def sides(how=""):
+    """The two sides of a thin blade along +x; they are thicker, or run along x with another speed, where asked for."""
+    along = 10 * np.array([0, 1 / 6, 1 / 2, 1.0]) if how == "warped" else np.linspace(0, 10, 4)
+    z, x = np.meshgrid(np.linspace(-6, 6, 5), 20 + along, indexing="ij")
+    bend = (1 - (z / 6) ** 2) * (1.01 if how == "thick" else 1.0)
+    return [Face.from_bspline(np.dstack([x, bulge * bend + 0.02 * (x - 20) * z, z]), flip=flip)
+            for bulge, flip in ((2.0, False), (0.5, True))]
+
+
+def wheel(change="", *further):
+    """Four blades around a cylinder, the second another one; further faces stand around."""
+    faces = [Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")]
+    for k in range(COUNT):
+        move = turn(2 * np.pi * k / COUNT)
+        if k == 1 and change == "moved":
+            move = move @ np.array([[1, 0, 0, 0.02], [0, 1, 0, 0], [0, 0, 1, 0.05], [0, 0, 0, 1.0]])
+        faces += [face.transformed(move) for face in sides(change if k == 1 else "")]
+    return Part.from_faces([*faces, *further])
+
+
+class Planner:
+    """Proves as planning does; what it would search anew it only notes."""
+
+    workers = 1
+
+    def __init__(self):
+        self.asked = []
+
+    def task(self, part, face, progress):
+        return task(face, TOOL, SCALLOP, None, (), part=part, progress=progress)
+
+    def search(self, part, face, number, progress):
+        self.asked.append(face.number)
+        return Operation(number, face, Orientation(None, reasons=("searched",)))
+
+
+@pytest.fixture(scope="module")
+def first():
+    """The first side of the first blade, machined."""
+    made = ta.plan(wheel(), TOOL, SCALLOP, faces=[2], limits="cone:0.93,0.33,0.17,6")
+    assert made.outcome == "complete"
+    return made
+
+
+def spread(first, part):
+    pattern, warnings = recognised(part)
+    assert pattern is not None and warnings == ()
+    planner = Planner()
+    return spread_out(pattern, replace(first, part=part), planner, NO_PROGRESS), planner, pattern
+
+
+def on_second(found):
+    """Operation 1 on the blade that was changed: found by its face, whatever way the blades are counted."""
+    return next(op for op in found.operations if op.face.number == 4)
+
+
+def test_blades_alike_take_the_very_path(first):
+    found, planner, pattern = spread(first, wheel())
+    assert found.blades.copies == {2: 1, 3: 1, 4: 1} and planner.asked == []
+    assert all(op.orientation.evaluations == 1 for op in found.operations[1:])
+    assert not any("alike" in text for text in pattern.part.warnings)
+
+
+def test_a_blade_that_stands_a_little_elsewhere_is_followed(first):
+    found, planner, _ = spread(first, wheel("moved"))
+    made, source = on_second(found), found.operations[0]
+    assert planner.asked == [] and made.orientation.evaluations == 1
+    move = turn(np.pi / 2) @ np.array([[1, 0, 0, 0.02], [0, 1, 0, 0], [0, 0, 1, 0.05], [0, 0, 0, 1.0]])
+    assert made.path.cl == pytest.approx(source.path.cl @ move[:3, :3].T + move[:3, 3], abs=1e-6)
+
+
+@pytest.mark.parametrize("change", ["thick", "warped"])
+def test_a_blade_with_other_faces_gets_passes_of_its_own_under_the_turned_axis(change, first):
+    found, planner, pattern = spread(first, wheel(change))
+    made, source = on_second(found), found.operations[0]
+    assert planner.asked == [] and made.done and found.blades.copies[made.number] == 1
+    assert "passes laid anew: the faces differ" in made.orientation.reasons[0]
+    assert made.orientation.axis == pytest.approx(turn(np.pi / 2)[:3, :3] @ source.orientation.axis, abs=2e-3)
+    cut = made.path.kind == 0
+    away = nearest(pattern.part.face(4), made.path.cc[cut][::7]).distance  # some contacts lie beyond the border
+    assert np.mean(away < 1e-6) > 0.6
+    told = [text for text in pattern.part.warnings if "alike to within" in text]
+    assert len(told) == (change == "thick")
+
+
+def test_where_the_proof_refuses_the_copy_the_axis_is_searched_anew_and_it_is_said_why(first):
+    at = first.operations[0]
+    stand = at.path.cl.mean(axis=0) + 8 * at.orientation.axis  # in the way of the cutter's flutes
+    across = np.linalg.svd(at.orientation.axis[None])[2][1:] * 2
+    corner = stand - across.sum(axis=0) / 2
+    corners = corner + np.array([[0 * corner, across[1]], [across[0], across.sum(axis=0)]])
+    wall = Face.from_bspline(corners, degree=(1, 1))
+    found, planner, _ = spread(first, wheel("", replace(wall.transformed(turn(np.pi / 2)), kind="plane")))
+    made = on_second(found)
+    assert planner.asked == [4] and not made.done and made.number not in found.blades.copies
+    assert made.orientation.reasons[-1] == "searched"
+    assert "the turned axis of op01-face2 was refused here" in made.orientation.reasons[0]
+    assert "meets face 10" in made.orientation.reasons[0] or "of face 10" in made.orientation.reasons[0]
+    assert sorted(found.blades.copies.values()) == [1, 1]
+
+
+def test_where_passes_laid_anew_are_refused_the_axis_is_searched_too(first):
+    def _shut(part, face, progress):
+        limits = parse_limits("cone:" + ",".join(map(str, -first.operations[0].orientation.axis)) + ",5")
+        return task(face, TOOL, SCALLOP, limits, (), part=part, progress=progress)
+
+    pattern, _ = recognised(wheel("thick"))
+    planner = Planner()
+    planner.task = _shut
+    found = spread_out(pattern, replace(first, part=pattern.part), planner, NO_PROGRESS)
+    assert sorted(planner.asked) == [4, 6, 8]
+    assert not found.blades.copies
+
+
+def test_a_stop_keeps_the_blades_that_were_finished(first):
+    pattern, _ = recognised(wheel())
+    planner, seen = Planner(), []
+
+    def _report(stage, done, total):
+        seen.append(stage)
+        if stage.startswith("blade 4"):
+            raise Cancelled("cancelled by the user")
+
+    found = spread_out(pattern, replace(first, part=pattern.part), planner, Progress(_report))
+    assert found.outcome == "cancelled" and len(found.operations) == 3
