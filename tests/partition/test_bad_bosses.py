@@ -54,3 +54,24 @@ def test_a_part_without_a_sculptured_face_is_refused_with_the_remedy() -> None:
         ta.plan(part, BALL, 0.2)
     with pytest.raises(ta.InvalidInput, match="no sculptured face"):
         ta.partition(part, BALL, 0.2)
+
+
+@pytest.mark.parametrize(("asked", "words"), [({"regions": 3}, "cannot be divided into 3 sub-surfaces"),
+                                              ({"orientations": 2}, "no division was found that 2 axes can machine")])
+def test_a_full_sphere_that_is_to_be_divided_is_refused_with_the_remedy(asked: dict[str, int], words: str) -> None:
+    with pytest.raises(ta.InvalidInput, match=words + ".*smaller tool"):
+        ta.plan(ta.load(cq.Workplane().sphere(10)), BALL, 0.2, machine="cone:0,0,1,10", **asked)
+
+
+def test_an_open_shell_is_planned_with_a_warning() -> None:
+    hill = cq.Workplane("XZ").moveTo(0, 0).lineTo(0, 8).spline([(8, 10), (16, 9), (24, 8)], includeCurrent=True) \
+        .lineTo(24, 0).close().extrude(12)
+    faces = [face for face in hill.faces().vals() if not (face.geomType() == "PLANE" and face.Center().z < 1)]
+    part = ta.load(cq.Workplane(obj=cq.Shell.makeShell(faces)))
+    assert [(body.kind, body.closed) for body in part.bodies] == [("shell", False)]
+    assert any("open shell" in warning for warning in part.warnings)
+    plan = ta.plan(part, BALL, 0.2, regions=2, machine="cone:0,0,1,5")
+    assert len(part.sculptured) == 1 and len(plan.operations) == 2 and plan.outcome == "complete"
+    assert sum(op.face.area for op in plan.operations) == pytest.approx(part.sculptured[0].area, rel=1e-6)
+    assert any("open shell" in warning for warning in plan.part.warnings)
+    assert ta.verify(plan).passed
