@@ -27,7 +27,8 @@ class Operation:
     frame : WorkCoordinates or None
         None where there is no axis.
     zones : tuple of Zone
-        What it leaves higher than the scallop limit, the largest first.
+        What it leaves higher than the scallop limit, the largest first; the whole sub-surface where that is left to a
+        clean-up tool.
     time : MachiningTime or None
         What the plan's machine takes, where it states the limits of its axes.
     """
@@ -44,6 +45,11 @@ class Operation:
     def done(self) -> bool:
         """Whether there is an axis and a path."""
         return self.path is not None
+
+    @property
+    def left(self) -> bool:
+        """Whether the whole sub-surface is left to a clean-up tool."""
+        return self.path is None and bool(self.zones)
 
     @property
     def name(self) -> str:

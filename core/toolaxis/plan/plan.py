@@ -131,8 +131,10 @@ def outcome_of(operations: Sequence[Operation], blades: Blades | None = None) ->
     operations : sequence of Operation
     blades : Blades, optional
         Their fillets need no axis: roots are what a clean-up tool is for, and the plan says how much of them stays.
+        Nor do faces that are left to a clean-up tool as a whole.
     """
-    needed = [op for op in operations if blades is None or blades.side_of(op.face.number) != "fillet"]
+    needed = [op for op in operations
+              if not op.left and (blades is None or blades.side_of(op.face.number) != "fillet")]
     return "complete" if all(op.done for op in needed) else "incomplete"
 
 
@@ -152,8 +154,8 @@ class Plan:
     datum : (3,) array
         Origin of every work coordinate system, mm.
     outcome : str
-        "complete" (every sub-surface has an axis, fillets at the roots of blades apart), "incomplete" (one or more have
-        none) or "cancelled".
+        "complete" (every sub-surface has an axis, fillets at the roots of blades and faces that are left to a clean-up
+        tool as a whole apart), "incomplete" (one or more have none) or "cancelled".
     options : tuple of Option
         Cutting length against the number of different axes, where that was asked for.
     baselines : tuple of Baseline

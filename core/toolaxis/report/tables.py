@@ -67,7 +67,7 @@ def _clearances(found: Mapping[str, float]) -> str:
 def _operation_row(op: Operation) -> list[str]:
     found = op.orientation
     if not op.done:
-        return [op.face.label, found.outcome, *["-"] * 6]
+        return [op.face.label, "left to clean-up" if op.left else found.outcome, *["-"] * 6]
     return [op.face.label, _axis(op), found.feed, str(found.passes), number(found.average_strip_width, 3),
             number(found.length, 1), number(found.gouge, 4), _clearances(found.clearance)]
 
@@ -81,7 +81,8 @@ def plan_table(plan: Plan) -> Table:
         Gouge is an upper bound, clearance a lower one.
     """
     blades = plan.blades
-    rows = [[*_operation_row(op), *_links(op, plan.inputs), _clean_up(op), op.orientation.outcome]
+    rows = [[*_operation_row(op), *_links(op, plan.inputs), _clean_up(op),
+             "clean-up" if op.left else op.orientation.outcome]
             for op in plan.operations if blades is None or op.number not in blades.copies]
     if blades is not None:
         shown = [op for op in plan.operations if op.number not in blades.copies]
@@ -109,7 +110,7 @@ def _angles(plan: Plan, op: Operation) -> str:
 
 def _clean_up(op: Operation) -> str:
     """Share of the area that is left to a clean-up tool."""
-    return number(100 * op.orientation.unreached, 1) if op.done else "-"
+    return number(100 * op.orientation.unreached, 1) if op.done or op.left else "-"
 
 
 def _links(op: Operation, inputs: Inputs) -> list[str]:
