@@ -133,6 +133,17 @@ def test_joined_borders_that_differ_move_by_no_more_than_is_told() -> None:
         join(part, (1, 2), tolerance=1e-4)
 
 
+@pytest.mark.parametrize("k", range(4))
+def test_parameters_that_go_together_only_nearly_leave_no_range(k: int) -> None:
+    patches = cut(wave(), [0.0, 0.4, 1.0], [0.0, 0.5, 1.0])
+    control = patches[k].surface.control.copy()
+    control[:, 1, :3] += 3e-4 * (control[:, 2, :3] - control[:, 1, :3]) / 10
+    control[:, -2, :3] += 4e-4 * (control[:, -1, :3] - control[:, -2, :3]) / 10
+    patches[k] = replace(patches[k], surface=replace(patches[k].surface, control=control))
+    whole = join(together(*patches), (1, 2, 3, 4)).faces[0]
+    assert on_members(whole) <= whole.tolerance <= 5e-4 and whole.tolerance > 1e-5
+
+
 def test_speeds_become_the_same_on_both_sides() -> None:
     """The second patch goes on along the tangents of the first, ten times as fast in its own parameter."""
     a = cut(wave(), [0.0, 0.5, 1.0], [0.0, 1.0])[0]
@@ -278,6 +289,12 @@ def test_what_cannot_be_joined_is_told(faces: list[Face], what: str) -> None:
     assert sorted([*found.single, *(n for group in found.joined for n in group)]) == [f.number for f in part.faces]
     if len(faces) == 2:
         assert found.joined == ()
+
+
+def test_an_edge_that_is_a_point_joins_nothing() -> None:
+    part = Part.from_faces(bent(0.0))
+    with pytest.raises(UnsupportedGeometry, match=r"their common edge is no longer than 0\.0005 mm"):
+        join(replace(part, edges=(Edge((1, 2), "tangent", np.zeros((5, 3))),)), (1, 2))
 
 
 @pytest.mark.parametrize(("numbers", "what"), [((1,), "at least two"), ((1, 1), "joined with itself"),

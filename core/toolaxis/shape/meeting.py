@@ -113,8 +113,10 @@ def meeting_along(first: Face, second: Face, edge: Edge) -> Meeting:
     UnsupportedGeometry
         When it is no iso-parametric side of both, or parameters along it do not go together.
     """
-    points = _inner_points(edge.polyline)
     pair = f"faces {first.label} and {second.label} cannot be joined"
+    if float(np.linalg.norm(np.diff(edge.polyline, axis=0), axis=1).sum()) <= GAP:
+        raise UnsupportedGeometry(f"{pair}: their common edge is no longer than {GAP:g} mm: machine them face by face")
+    points = _inner_points(edge.polyline)
     sides, along = [], []
     for face in (first, second):
         uv = nearest(face, points).uv

@@ -42,9 +42,9 @@ class Patch:
         return float(self.scale[axis] * own + self.shift[axis])
 
     def own(self, axis: int, ours: float) -> float:
-        """The face's own parameter, that of an end of its domain where it is as good as that."""
-        value = float((ours - self.shift[axis]) / self.scale[axis])
+        """The face's own parameter in its domain, that of an end where it is as good as that."""
         ends = self.face.surface.domain[self.axes[axis]]
+        value = min(max(float((ours - self.shift[axis]) / self.scale[axis]), ends[0]), ends[1])
         near = min(ends, key=lambda end: abs(end - value))
         return near if abs(near - value) <= SAME * (ends[1] - ends[0]) else value
 
@@ -140,12 +140,13 @@ def surface_over(patch: Patch, box: tuple[Pair, Pair]) -> NurbsSurface:
     knots, control = [source.knots_u, source.knots_v], source.control
     for axis in (0, 1):
         own = patch.axes[axis]
-        low, high = sorted(patch.own(axis, t) for t in box[axis])
-        knots[own], moved = restricted(knots[own], np.moveaxis(control, own, 0), source.degree[own], low, high)
-        mapped = patch.scale[axis] * knots[own] + patch.shift[axis]
-        if patch.scale[axis] < 0:
-            mapped, moved = mapped[::-1], moved[::-1]
+        start, end = (patch.own(axis, t) for t in box[axis])
         degree = source.degree[own]
+        knots[own], moved = restricted(knots[own], np.moveaxis(control, own, 0), degree, min(start, end),
+                                       max(start, end))
+        mapped = box[axis][0] + (knots[own] - start) * ((box[axis][1] - box[axis][0]) / (end - start))
+        if start > end:
+            mapped, moved = mapped[::-1], moved[::-1]
         mapped[:degree + 1], mapped[-degree - 1:] = box[axis]
         knots[own], control = mapped, np.moveaxis(moved, 0, own)
     made = NurbsSurface(knots[0], knots[1], control, source.degree)
