@@ -159,6 +159,16 @@ def test_speeds_become_the_same_on_both_sides() -> None:
     assert np.allclose(left, right, rtol=1e-9)
 
 
+def test_many_patches_have_a_short_name() -> None:
+    patches = cut(wave(), list(np.linspace(0, 1, 4)), list(np.linspace(0, 1, 4)))
+    part = together(*patches)
+    assert skins(part).joined == (tuple(range(1, 10)),)
+    whole = join(part, range(1, 10)).faces[0]
+    assert whole.label == "1+2+3+6more" and whole.numbers == tuple(range(1, 10))
+    piece = whole.trimmed((np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 1 / 3], [0.0, 1 / 3]]),), whole.label + "a")
+    assert [one.label for one in own_pieces(piece)] == ["1", "4a"] and own_pieces(whole) == part.faces
+
+
 def trimmed_pair() -> Part:
     a, b = cut(wave(), [0.0, 0.5, 1.0], [0.0, 1.0])
     b = written(b, (True, False, True))

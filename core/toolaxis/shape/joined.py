@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 #: Greatest angle between normals across a join, rad: a cutter of 10 mm radius dips by 0.4 micrometres there.
 SMOOTH = radians(0.5)
+#: Most members that are all named in a label.
+_NAMED = 8
 #: Way by which rounding moves points, mm.
 _ROUNDING = 1e-9
 #: Greatest angle by which iso-parametric lines may turn across a join, rad.
@@ -43,10 +45,10 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
     Returns
     -------
     Face
-        Named "3+4", with `members`.  Its surface is that of the faces, point by point: u and v of each are mapped
-        linearly, and control points of common borders are replaced by their mean.  Its tolerance is the greatest of the
-        faces', plus how far that moves the surface at most.  Across a join the surface is C0 in its parameters, and its
-        normals turn by no more than half a degree; joins are no kinks.
+        Named by `name_of`, with `members`.  Its surface is that of the faces, point by point: u and v of each are
+        mapped linearly, and control points of common borders are replaced by their mean.  Its tolerance is the greatest
+        of the faces', plus how far that moves the surface at most.  Across a join the surface is C0 in its parameters,
+        and its normals turn by no more than half a degree; joins are no kinks.
 
     Raises
     ------
@@ -71,13 +73,25 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
     surface, moved = _assembled(grid, surfaces, lines)
     places = tuple([*pairwise(line)] for line in lines)
     members = {cell: _member(patch, _box(ranges, cell), _box(places, cell)) for cell, patch in patches.items()}
-    names = "+".join(face.label for face in faces)
     kinds = {face.kind for face in faces}
-    made = Face(surface, (), faces[0].flip, faces[0].number, names, kinds.pop() if len(kinds) == 1 else "bspline",
+    kind = kinds.pop() if len(kinds) == 1 else "bspline"
+    made = Face(surface, (), faces[0].flip, faces[0].number, name_of(faces), kind,
                 max(face.tolerance for face in faces) + (moved if moved > _ROUNDING else 0.0), _kinks(members, lines),
                 tuple(members[cell] for face in faces for cell in members if members[cell].face is face))
     _check_turns(made)
     return replace(made, trims=_outline(made, lines))
+
+
+def name_of(faces: Sequence[Face]) -> str:
+    """What a joined face is called: "3+4"; files have its name too, so that of many faces is cut: "3+4+5+12more".
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        Its members.
+    """
+    labels = [face.label for face in faces]
+    return "+".join(labels if len(labels) <= _NAMED else [*labels[:3], f"{len(labels) - 3}more"])
 
 
 def _box(ranges: tuple[list[Pair], ...], cell: Cell) -> tuple[Pair, Pair]:

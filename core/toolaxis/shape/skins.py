@@ -1,6 +1,7 @@
 """Smooth skins: patches of a part that are machined, or divided, as one face."""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import product
 from numbers import Integral
@@ -12,7 +13,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import clipped, grouped
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.joined import corner_at, joined, joins
+from toolaxis.shape.joined import corner_at, joined, joins, name_of
 from toolaxis.shape.layout import laid_out_from
 from toolaxis.shape.meeting import GAP, Meeting, meeting_along, meetings
 from toolaxis.shape.part import Part
@@ -109,7 +110,7 @@ def own_pieces(face: Face) -> tuple[Face, ...]:
     """
     if not face.members:
         return (face,)
-    letters = face.label.removeprefix("+".join(member.face.label for member in face.members))
+    letters = face.label.removeprefix(name_of([member.face for member in face.members]))
     pieces: list[Face] = []
     for member in face.members:
         loops = face.outline
@@ -172,13 +173,14 @@ def skins(part: Part) -> Skins:
         try:
             meeting = meeting_along(part.face(a), part.face(b), edge)
             if not any(meeting.faces == other.faces and meeting.sides == other.sides for other in found):
+                joined([part.face(a), part.face(b)], [meeting])
                 found.append(meeting)
         except UnsupportedGeometry as reason:
             reasons[a, b] = str(reason)
     groups: list[tuple[int, ...]] = []
     free = list(numbers)
     while free:
-        groups.append(_largest(part, free, found, reasons))
+        groups.append(_largest(part, free, found))
         free = [n for n in free if n not in groups[-1]]
     owner = {n: k for k, group in enumerate(groups) for n in group}
     apart = [pair for pair in dict.fromkeys([*reasons, *(m.faces for m in found)]) if owner[pair[0]] != owner[pair[1]]]
@@ -186,8 +188,7 @@ def skins(part: Part) -> Skins:
                  tuple(group[0] for group in groups if len(group) == 1), tuple(_told(apart, reasons)))
 
 
-def _largest(part: Part, free: Sequence[int], found: list[Meeting],
-             reasons: dict[tuple[int, int], str]) -> tuple[int, ...]:
+def _largest(part: Part, free: Sequence[int], found: list[Meeting]) -> tuple[int, ...]:
     """The largest rectangle of free patches around the first of them."""
     own = [m for m in found if set(m.faces) <= set(free)]
     cells = laid_out_from(part.face(free[0]), own)
@@ -201,13 +202,9 @@ def _largest(part: Part, free: Sequence[int], found: list[Meeting],
         if None in members or len(members) == 1:
             continue
         numbers = sorted(n for n in members if n is not None)
-        try:
+        with suppress(UnsupportedGeometry):
             joined([part.face(n) for n in numbers], [m for m in own if set(m.faces) <= set(numbers)])
-        except UnsupportedGeometry as reason:
-            if len(numbers) == 2:
-                reasons.setdefault((numbers[0], numbers[1]), str(reason))
-            continue
-        return tuple(numbers)
+            return tuple(numbers)
     return (free[0],)
 
 
@@ -217,5 +214,5 @@ def _told(apart: list[tuple[int, int]], reasons: dict[tuple[int, int], str]) -> 
         return []
     known = next((reasons[key] for pair in apart for key in (pair, pair[::-1]) if key in reasons),
                  f"faces {apart[0][0]} and {apart[0][1]} are neighbours in no full rows and columns")
-    more = f"; so are {len(apart) - 1} further pairs of faces that meet smoothly" if len(apart) > 1 else ""
+    more = f"; {len(apart) - 1} further pairs of faces that meet smoothly stay apart too" if len(apart) > 1 else ""
     return [f"{known}{more}"]
