@@ -15,6 +15,7 @@ from toolaxis.plan.document import plan_document
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
 from toolaxis.report.blades import blades_lines
+from toolaxis.report.tables import baselines_table
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -71,7 +72,7 @@ def ring(count: int = 6) -> Part:
 @pytest.fixture(scope="module")
 def plan() -> Plan:
     tool = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
-    return ta.plan(wheel(change=("", "swapped", "reversed")), tool, 0.15, regions=1)
+    return ta.plan(wheel(change=("", "swapped", "reversed")), tool, 0.15, regions=1, compare=True)
 
 
 def test_every_blade_is_machined_as_the_first(plan: Plan) -> None:
@@ -108,6 +109,18 @@ def test_figures_of_copies_are_proven_and_no_better_than_the_originals(plan: Pla
         assert op.orientation.gouge >= source.gouge - 1e-9
         for name, value in op.orientation.clearance.items():
             assert source.clearance[name] - 0.011 <= value <= source.clearance[name]
+
+
+def test_other_methods_are_compared_on_the_planned_blade(plan: Plan) -> None:
+    rows = {row.method: row for row in plan.baselines}
+    assert list(rows) == ["plan", "sectors", "roman", "normal", "one", "ball"]
+    assert all(row.sub_surfaces == 2 for row in plan.baselines)
+    mine = [op.orientation for op in plan.operations[:2]]
+    assert rows["plan"].length == pytest.approx(sum(found.length for found in mine)) and rows["plan"].complete
+    assert rows["plan"].passes == sum(found.passes for found in mine)
+    assert all(row.complete or row.reason for row in plan.baselines)
+    assert not any("compare" in text for text in plan.part.warnings)
+    assert "first blade" in str(baselines_table(plan).title)
 
 
 def test_neighbour_and_hub_are_told_apart(plan: Plan) -> None:

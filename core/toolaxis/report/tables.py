@@ -148,7 +148,8 @@ def baselines_table(plan: Plan) -> Table:
         ("passes", "right"), ("cutting\nlength mm", "right"), ("to this\nplan's", "right"), ("with links\nmm", "right"),
         ("time\nmin:s", "right"))
     notes = [f"{METHOD_NAMES.get(one.method, one.method)}: {one.reason}" for one in plan.baselines if one.reason]
-    return table("the same faces by other methods, each with the same proofs", columns, rows,
+    what = "the same faces" if plan.blades is None else "the machined sub-surfaces of the first blade"
+    return table(f"{what} by other methods, each with the same proofs", columns, rows,
                  "\n".join([_assumed(plan), *notes]))
 
 
