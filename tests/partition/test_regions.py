@@ -7,7 +7,7 @@ import toolaxis as ta
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.orient.indexed import evaluate_axis, task
-from toolaxis.partition.divider import Divider
+from toolaxis.partition.divider import LINK, Divider
 from toolaxis.partition.regions import regions
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1)
@@ -47,7 +47,21 @@ def test_reckoned_length_is_about_what_the_passes_take(divider: Divider) -> None
     real = [evaluate_axis(piece, TOOL, axis, 0.05, feed=feed, skin=(whole,))
             for piece, axis, feed in zip(found, found.axes, found.feeds, strict=True)]
     assert [one.outcome for one in real] == ["feasible"] * 3, [one.reasons for one in real]
-    assert [one.length for one in real] == pytest.approx(found.lengths, rel=0.06)
+    assert [one.length + LINK * one.passes for one in real] == pytest.approx(found.lengths, rel=0.06)
+
+
+def test_links_count_so_that_long_passes_are_kept(divider: Divider, monkeypatch: pytest.MonkeyPatch) -> None:
+    from importlib import import_module
+
+    monkeypatch.setattr(import_module("toolaxis.partition.divider"), "LINK", 40.0)
+    dear = Divider(divider.job, divider.lattice.cells, divider.most)
+    passes = []
+    for one in (divider, dear):
+        found = one.regions(4)
+        real = [evaluate_axis(piece, TOOL, axis, 0.05, feed=feed, skin=(divider.job.worth.face,))
+                for piece, axis, feed in zip(found, found.axes, found.feeds, strict=True)]
+        passes.append(sum(one.passes for one in real))
+    assert passes[1] < 0.95 * passes[0], passes
 
 
 def test_holes_and_slanting_borders_are_kept() -> None:

@@ -119,8 +119,8 @@ def test_clean_up_zones_are_hatched_in_both_pictures() -> None:
 def test_the_curve_of_orientations_marks_the_chosen_one(tmp_path: Path) -> None:
     made = options_picture([Option(1, 1, 900.0, False), Option(2, 3, 700.0, True), Option(4, 5, 680.0, False)])
     ax = made.axes[0]
-    assert [text.get_text() for text in ax.texts] == ["1 sub-surface", "3 sub-surfaces", "5 sub-surfaces"]
-    ring = next(line for line in ax.lines if line.get_label() == "chosen")
+    assert [text.get_text() for text in ax.texts] == ["1", "3", "5"]
+    ring = next(line for line in ax.lines if line.get_label() == "chosen, at the knee")
     assert (ring.get_xdata()[0], ring.get_ydata()[0]) == (2, 700.0)
     assert len(colours_of(made, tmp_path / "orientations.png")) > 5
 

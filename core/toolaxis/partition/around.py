@@ -67,7 +67,7 @@ class Around:
 
     @property
     def curve(self) -> Array:
-        """Least cutting length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
+        """Least reckoned length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
         return np.asarray(self.shares[-1])
 
     def boxes(self, count: int) -> list[list[Corners]]:

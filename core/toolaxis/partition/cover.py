@@ -115,7 +115,7 @@ def _greedy(table: Array, most: int | None) -> Index | None:
 class Shared(NamedTuple):
     """Sub-surfaces of several faces that share a few axes.
 
-    regions : one Regions a face;  length : reckoned cutting length of all, mm;  orientations : different axes.
+    regions : one Regions a face;  length : reckoned length of all, mm;  orientations : different axes.
     """
 
     regions: tuple[Regions, ...]
@@ -129,7 +129,7 @@ class Shared(NamedTuple):
 
 
 class Trade(NamedTuple):
-    """Cutting length against the number of different axes.
+    """Reckoned length against the number of different axes.
 
     options : one Shared for each number of axes for which more of them cut less;  knee : index of the one from which on
     further axes gain little.
@@ -164,6 +164,9 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
     -----
     From the best divisions into 1, 2, … sub-surfaces in turn: the best choice of axes for these sub-surfaces (exact),
     the best division for these axes (exact), and so on until nothing changes; the cheapest of all.
+
+    Cuts are iso-parametric.  Rings around bosses, which `regions` tries too, are left out: on the example with one boss
+    they would take 3 % less with one axis and 1 to 2 % less with two to four, for more pieces (`benchmarks/bosses.py`).
     """
     prices = _priced(dividers)
     best: _Try | None = None

@@ -28,6 +28,10 @@ _SPACING, _CLOSER = np.radians(8.0), (np.radians(4.0), np.radians(2.0))
 _FEW = 12
 #: Share of a cell below which there is nothing in it.
 _NOTHING = 1e-12
+#: What the link of a pass to the next one is worth, mm of cutting: some 10 mm at thrice the feed rate.  Without it the
+#: waved example was cut into as many small pieces as allowed: 2 % less cutting, but half as many passes and a seventh
+#: of links more.
+LINK = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +47,9 @@ class Regions(Sequence[Face]):
     feeds : tuple of str
         Its feed direction.
     lengths : tuple of float
-        Its reckoned cutting length, mm.
+        Its reckoned length, mm: cutting, `LINK` for each pass, and what clean-up is charged.
     curve : (m, 2) array
-        Number of sub-surfaces and the least cutting length reckoned for it, mm; inf where there is no division.
+        Number of sub-surfaces and the least length reckoned for it, mm; inf where there is no division.
     radius : float
         Outer distance of the rings where the face is divided around bosses, inf where by the nearest boss alone, mm; 0
         where by iso-parametric cuts alone.
@@ -147,7 +151,7 @@ class Divider:
 
     @property
     def curve(self) -> Array:
-        """Least cutting length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
+        """Least reckoned length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
         return self.best.division.curve
 
     def used(self, found: Solution) -> Array:
@@ -241,9 +245,10 @@ class Divider:
 
     @property
     def _ends(self) -> float:
-        """By how much a pass is longer than its line on the face, mm: the strip of a ball of the cutter's radius."""
+        """By how much a pass is dearer than its line on the face, mm: what it is longer, the strip of a ball of the
+        cutter's radius, and its link."""
         worth = self.job.worth
-        return float(2 * np.sqrt(2 * worth.tool.radius * worth.scallop - worth.scallop**2))
+        return float(2 * np.sqrt(2 * worth.tool.radius * worth.scallop - worth.scallop**2)) + LINK
 
     @cached_property
     def _gaps(self) -> tuple[Array, Array]:

@@ -112,7 +112,7 @@ class Option:
     orientations, sub_surfaces : int
         Numbers of different axes and of pieces.
     length : float
-        Reckoned cutting length, mm.
+        Reckoned length of cutting, links and clean-up, mm.
     chosen : bool
         Whether the plan's operations follow it.
     """

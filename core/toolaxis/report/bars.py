@@ -44,6 +44,7 @@ def baselines_picture(rows: Sequence[Baseline]) -> Figure:
     ax.set_title("the same faces by other methods", fontsize=10)
     ax.grid(axis="x", alpha=0.25)
     ax.set_axisbelow(True)
-    handles = [Patch(color=BLUE, label="cutting"), Patch(color=SKY, label="entries, exits, links")]
-    made.legend(handles=handles, loc="outside lower center", ncol=2, fontsize=8, frameon=False)
+    handles = [Patch(color=VERMILION, label="cutting, this plan"), Patch(color=BLUE, label="cutting"),
+               Patch(color=SKY, label="entries, exits, links")]
+    made.legend(handles=handles, loc="outside lower center", ncol=3, fontsize=8, frameon=False)
     return made

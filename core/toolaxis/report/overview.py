@@ -81,10 +81,12 @@ def overview_picture(plan: Plan) -> Figure:
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
-    for op, root, head in zip(operations, roots, heads, strict=True):
+    feet, tips = seen.project(roots)[:, :2], seen.project(heads)[:, :2]
+    at_feet = _apart(feet) > _apart(tips)
+    for op, foot, tip in zip(operations, feet, tips, strict=True):
         _passes(ax, canvas, op)
         if op.done or outcome_of([op], plan.blades) == "incomplete":
-            _arrow(ax, op, *seen.project(np.array([root, head]))[:, :2])
+            _arrow(ax, op, (foot, tip), at_feet)
     done = sum(op.done for op in plan.operations)
     ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
                  f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
@@ -145,14 +147,20 @@ def _passes(ax: Axes, canvas: Canvas, op: Operation) -> None:
         ax.add_collection(LineCollection(runs, colors="#333333", linewidths=0.25))
 
 
-def _arrow(ax: Axes, op: Operation, foot: Array, head: Array) -> None:
-    tip, root = (float(head[0]), float(head[1])), (float(foot[0]), float(foot[1]))
-    halo = [patheffects.withStroke(linewidth=3, foreground="white")]
+def _apart(places: Array) -> float:
+    """How near the two nearest of (n, 2) places are."""
+    return float(cKDTree(places).query(places, k=2)[0][:, 1].min()) if len(places) > 1 else 0.0
+
+
+def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool) -> None:
+    """The axis as an arrow, its number behind the foot or before the tip."""
+    foot, tip = ((float(end[0]), float(end[1])) for end in ends)
     if op.done:
-        ax.plot(*root, "o", color="black", markersize=3.5)
-        ax.annotate("", tip, root, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
-    text = f"{op.number}" if op.done else f"{op.number}: no axis"
-    length = float(np.linalg.norm(head - foot))
-    way = (head - foot) / length if op.done and length > 0 else np.array([0.5, 0.5])
-    ax.annotate(text, tip, textcoords="offset points", xytext=tuple(9 * way), fontsize=11, weight="bold",
-                path_effects=halo, ha="center", va="center")
+        ax.plot(*foot, "o", color="black", markersize=3.5)
+        ax.annotate("", tip, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
+    length = float(np.linalg.norm(ends[1] - ends[0]))
+    way = (ends[1] - ends[0]) / length if op.done and length > 0 else np.array([0.5, 0.5])
+    ax.annotate(f"{op.number}" if op.done else f"{op.number}: no axis", foot if at_foot else tip,
+                textcoords="offset points", xytext=tuple((-10 if at_foot and op.done else 9) * way), fontsize=11,
+                weight="bold", path_effects=[patheffects.withStroke(linewidth=3, foreground="white")], ha="center",
+                va="center", zorder=5)

@@ -348,14 +348,15 @@ def options_picture(options: Sequence[Option]) -> Figure:
     count, length = [one.orientations for one in options], [one.length for one in options]
     ax.plot(count, length, "o-", color=BLUE, markersize=5)
     for one in options:
-        ax.annotate(f"{one.sub_surfaces} sub-surface{'s' if one.sub_surfaces > 1 else ''}",
-                    (one.orientations, one.length), textcoords="offset points", xytext=(6, 6), fontsize=8, color=GREY)
+        ax.annotate(f"{one.sub_surfaces}", (one.orientations, one.length), textcoords="offset points", xytext=(4, 6),
+                    fontsize=8, color=GREY)
         if one.chosen:
             ax.plot(one.orientations, one.length, "o", color=VERMILION, markersize=12, fillstyle="none",
-                    markeredgewidth=1.8, label="chosen")
+                    markeredgewidth=1.8, label="chosen, at the knee")
+    ax.plot([], [], linestyle="none", marker="$n$", color=GREY, markersize=6, label="number of sub-surfaces")
     ax.set_xlabel("different tool axes")
-    ax.set_ylabel("reckoned cutting length, mm")
-    ax.set_title("cutting length against the number of orientations", fontsize=10)
+    ax.set_ylabel("reckoned length, mm")
+    ax.set_title("cutting, links and clean-up against the number of orientations", fontsize=10)
     ax.set_xticks(count)
     ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))
     ax.margins(y=0.12)

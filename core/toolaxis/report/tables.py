@@ -173,9 +173,9 @@ def options_table(options: Sequence[Option]) -> Table:
     rows = [[str(one.orientations), str(one.sub_surfaces), number(one.length, 1),
              f"{100 * (1 - one.length / first):.1f}", "chosen" if one.chosen else ""] for one in options]
     columns: tuple[Column, ...] = (("different\naxes", "right"), ("sub-\nsurfaces", "right"),
-                                   ("reckoned cutting\nlength mm", "right"), ("less than\nthe first %", "right"),
+                                   ("reckoned\nlength mm", "right"), ("less than\nthe first %", "right"),
                                    ("", "left"))
-    return table("cutting length against the number of orientations", columns, rows)
+    return table("cutting, links and clean-up against the number of orientations", columns, rows)
 
 
 def _measured(found: Mapping[str, Clearance | str]) -> str:

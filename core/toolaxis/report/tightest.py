@@ -24,7 +24,7 @@ _COLOURS = {"cutter": (0.96, 0.80, 0.35), "shank": (0.75, 0.75, 0.78), "holder":
 _PART, _MACHINED, _NEAR = (0.84, 0.84, 0.84), (0.80, 0.89, 0.96), (0.95, 0.72, 0.62)
 
 
-_FINE, _COARSE, _MOST = 160, 33, 700
+_FINE, _COARSE, _MOST = 160, 33, 1600
 
 Window = tuple[float, float, float, float]
 
@@ -82,8 +82,8 @@ def tightest_picture(plan: Plan, op: Operation, at: Place) -> Figure:
     _draw(close, plan, op, (at, outlines, camera(back, axis, around, pixels=800)))
     whole.set_title(f"{op.name}: {plan.tool.name} where it is tightest", fontsize=10)
     close.set_title(f"{at.component} at least {at.distance:.3f} mm from face {at.face}", fontsize=10)
-    areas = {"machined face": _MACHINED, f"face {at.face}, nearest": _NEAR, "part": _PART,
-             **{name: _COLOURS[name] for name in outlines}}
+    near = {} if at.face == op.face.number else {f"face {at.face}, nearest": _NEAR}
+    areas = {"machined face": _MACHINED, **near, "part": _PART, **{name: _COLOURS[name] for name in outlines}}
     made.legend(handles=[Patch(facecolor=colour, edgecolor="#555555", linewidth=0.5, label=name)
                          for name, colour in areas.items()], loc="outside lower center", ncol=6, fontsize=8,
                 frameon=False)
