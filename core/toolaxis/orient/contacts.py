@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.distances import judged, motions
+from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
+from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: Points of a wall along each parameter, to see that it is near.
-_ALONG = 16
 
 
 class Contacts(NamedTuple):
@@ -52,20 +52,17 @@ def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], re
 
 
 def _near(points: Array, walls: tuple[Face, ...], reach: float) -> Bools:
-    """Which walls are within reach of each point, (n, walls): by any point of a wall, else by the nearest."""
-    from scipy.spatial import cKDTree
-
+    """Which walls are within reach of each point, (n, walls): which meet the upper or the lower half of a ball."""
     found = np.zeros((len(points), len(walls)), dtype=bool)
+    half, up = Tool.ball(2 * reach, flute_length=(1 + 1e-9) * reach), np.array([0.0, 0.0, 1.0])
     for k, wall in enumerate(walls):
         gap = np.maximum(np.maximum(wall.box[0] - points, points - wall.box[1]), 0.0)
         close = np.flatnonzero(np.linalg.norm(gap, axis=1) <= reach)
-        if not len(close):
-            continue
-        some = wall.evaluate(np.concatenate([wall.grid(_ALONG, _ALONG), around(wall, 8 * _ALONG)])).point
-        found[close, k] = cKDTree(some).query(points[close])[0] <= reach
-        rest = close[~found[close, k]]
-        if len(rest):
-            found[rest, k] = nearest(wall, points[rest]).distance <= reach
+        for axis in (up, -up):
+            rest = close[~found[close, k]]
+            if len(rest):
+                moves = motions(points[rest] - reach * axis, axis)
+                found[rest, k] = judged(cells(wall), half, moves, np.zeros((1, 3))).blocked >= 0
     return found
 
 

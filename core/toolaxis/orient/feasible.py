@@ -354,10 +354,10 @@ class Feasibility:
         good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
         inside = self.face.contains(rows)
         within = ROLES if self.neighbours else (OTHER,)
-        for part, roles in ((good & inside, within), (good & ~inside, ROLES)):
-            if part.any() and any(group.role in roles for group in self.groups):
+        for part, asked in ((good & inside, (False, within)), (good & ~inside, (True, ROLES))):
+            if part.any() and any(group.role in asked[1] for group in self.groups):
                 good[part] = stands_free(self._scene, tips(point[part], normal[part], t, self.tool, self.allowance),
-                                         t, roles)
+                                         t, asked)
         return np.asarray(good)
 
     def room(self, axis: ArrayLike, most: float = 10.0) -> float:

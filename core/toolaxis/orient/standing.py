@@ -16,6 +16,9 @@ Bools = NDArray[np.bool_]
 
 #: How far below the true distance bounds may lie, mm: for the skin, and for everything else.
 FINE, COARSE = 0.0003, 0.002
+#: Edges of the cubes in which positions are first decided together, in radii of the tool; how many positions a cube
+#: must hold on average for that.
+_BLOCKS, _WORTH = (0.8, 0.2, 0.05), 4
 
 
 class Scene(NamedTuple):
@@ -64,7 +67,7 @@ def trouble_at(scene: Scene, places: Array, axis: Array, near: Bools, asked: tup
     return worst
 
 
-def stands_free(scene: Scene, places: Array, axis: Array, roles: tuple[str, ...]) -> Bools:
+def stands_free(scene: Scene, places: Array, axis: Array, asked: tuple[bool, tuple[str, ...]]) -> Bools:
     """Whether the tool keeps its distances from some groups at positions, (n,).
 
     Parameters
@@ -73,17 +76,53 @@ def stands_free(scene: Scene, places: Array, axis: Array, roles: tuple[str, ...]
     places : (n, 3) array
         Tool tips, mm.
     axis : (3,) array
-    roles : tuple of str
-        Groups that are looked at.
+    asked : bool, tuple of str
+        Whether the face itself is looked at; the groups that are looked at.
     """
-    free, moves = np.ones(len(places), dtype=bool), motions(places, axis)
+    itself, roles = asked
+    free = np.ones(len(places), dtype=bool)
     for group in scene.groups:
         some = np.flatnonzero(free)
         if group.role in roles and len(some):
             tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
             required = np.tile(group.required, (len(group.faces), 1))
-            free[some] = judged(group.cells, tool, moves[some], required).blocked < 0
+            if not itself:
+                required[[face.number == scene.number for face in group.faces]] = -np.inf
+            free[some] = _kept(group, tool, places[some], axis, required)
     return free
+
+
+def _kept(group: Group, tool: Tool, places: Array, axis: Array, required: Array) -> Bools:
+    """Whether the tool keeps its distances at positions, (n,): those close together are decided together if they can.
+
+    A distance changes by no more than the tip moves: what the tool keeps at the centre of a ball, and its radius more,
+    it keeps at every tip in the ball.
+    """
+    kept, rest = np.zeros(len(places), dtype=bool), np.arange(len(places))
+    for size in _BLOCKS:
+        if len(rest) < _WORTH:
+            break
+        block, count = _blocks(places[rest], size * tool.radius)
+        if count * _WORTH > len(rest):
+            continue
+        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        np.minimum.at(low, block, places[rest])
+        np.maximum.at(high, block, places[rest])
+        radius = float(np.linalg.norm(high - low, axis=1).max()) / 2
+        found = judged(group.cells, tool, motions((low + high) / 2, axis), required + radius)
+        done = found.blocked[block] < 0
+        kept[rest[done]], rest = True, rest[~done]
+    if len(rest):
+        kept[rest] = judged(group.cells, tool, motions(places[rest], axis), required).blocked < 0
+    return kept
+
+
+def _blocks(places: Array, size: float) -> tuple[NDArray[np.intp], int]:
+    """Which cube of a lattice each place lies in, and how many cubes are taken."""
+    cube = np.floor((places - places.min(axis=0)) / size).astype(np.int64)
+    span = cube.max(axis=0, initial=0) + 1
+    found, block = np.unique((cube[:, 0] * span[1] + cube[:, 1]) * span[2] + cube[:, 2], return_inverse=True)
+    return block, len(found)
 
 
 def _carried_on(tool: Tool, places: Array, axis: Array, group: Group) -> Tool:

@@ -8,7 +8,7 @@ away is left out: cells outside the loops are dropped, cells across a loop shrin
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TypeAlias
 from weakref import WeakKeyDictionary
 
@@ -148,6 +148,11 @@ def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
     InvalidInput
         When there is no face, or the loops of one enclose nothing of its surface.
     """
+    return _grown(tuple(faces), fineness)
+
+
+@lru_cache(maxsize=3)
+def _grown(faces: tuple[Face, ...], fineness: float) -> Cells:
     return joined([cells(face, fineness) for face in faces])
 
 
