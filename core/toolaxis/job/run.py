@@ -25,6 +25,7 @@ from toolaxis.orient.pace import known_machine
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.tolerances import Tolerance
@@ -141,6 +142,8 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     with other methods where that is asked for."""
     whole, compare = asked
     try:
+        if job.workers > 1:
+            _in_cells(job, progress)
         if whole:
             progress.report("looking for blades", 0, 1)
             pattern, refusal = recognised(job.part, progress)
@@ -155,6 +158,14 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     plain = replace(job, regions=None, orientations=None)
     return compared(timed(made), faces,
                     lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name))))
+
+
+def _in_cells(job: Job, progress: Progress) -> None:
+    """Make the cells of all faces before processes are forked, which then share them."""
+    every = [face for part in (job.part, *job.bodies) for face in part.faces]
+    for k, face in enumerate(every):
+        progress.report("surroundings", k, len(every))
+        cells(face)
 
 
 def _listed(obstacles: Any) -> list[Any]:
