@@ -8,14 +8,17 @@ import numpy as np
 
 import toolaxis as ta
 from toolaxis.orient.indexed import task
-from toolaxis.partition.around import candidates
+from toolaxis.partition.around import Around, candidates
 from toolaxis.partition.bosses import distances
+from toolaxis.partition.cover import trade
 from toolaxis.partition.divider import Divider
 from toolaxis.plan.plan import Plan
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"
 BODY = {"stickout": 70, "holder": [(16, 0), (16, 40), (25, 40), (25, 80)]}
 JOBS = (("boss", 4), ("bosses", 6))
+#: Axes are shared in rings too where there are no more kinds of rings than around one boss.
+MOST_RINGS = 3
 
 
 def main() -> None:
@@ -24,7 +27,9 @@ def main() -> None:
         facts = json.loads((FOLDER / f"{name}.json").read_text("utf-8"))
         tool, part = ta.Tool.parse(facts["tool"], **BODY), ta.load(FOLDER / f"{name}.step")
         face = max(part.sculptured, key=lambda one: one.area)
-        divisions(name, part, face, (tool, facts["scallop"]))
+        whole, around = divisions(name, part, face, (tool, facts["scallop"]))
+        if len(around) <= MOST_RINGS:
+            sharing(whole, around)
         start = time.perf_counter()
         plan = ta.plan(part, tool, facts["scallop"], faces=[face.number], regions=count)
         planned = time.perf_counter()
@@ -40,29 +45,45 @@ def short() -> None:
         divisions(name, part, face, (ta.Tool.parse("torus:10x1", **BODY), 0.02))
 
 
-def divisions(name: str, part: ta.Part, face: ta.Face, cut: tuple[ta.Tool, float]) -> None:
-    """Print reckoned cutting length, clean-up included, by iso-parametric cuts and around the bosses."""
+def divisions(name: str, part: ta.Part, face: ta.Face,
+              cut: tuple[ta.Tool, float]) -> tuple[Divider, tuple[Around, ...]]:
+    """Print reckoned length, links and clean-up included, by iso-parametric cuts and around the bosses."""
     tool, scallop = cut
     start = time.perf_counter()
     whole = Divider(task(face, tool, scallop, part=part))
     curve = whole.curve
     cuts = time.perf_counter() - start
     around = candidates(whole, distances(face, tool, part))
-    rows = [("iso-parametric cuts", curve),
-            *((f"rings of {one.radius:g} mm" if np.isfinite(one.radius) else "nearest boss", one.curve)
-              for one in around)]
+    rows = [("iso-parametric cuts", curve), *((_ring(one), one.curve) for one in around)]
     shown = [n for n in (1, 2, 3, 4, 6, 8, 12, 16) if n < len(curve)]
-    print(f"{name}: reckoned cutting length, mm, by number of sub-surfaces ({cuts:.1f} s, around bosses "
+    print(f"{name}: reckoned length, mm, by number of sub-surfaces ({cuts:.1f} s, around bosses "
           f"{time.perf_counter() - start - cuts:.1f} s more)")
     print(f"    {'':22}" + "".join(f"{n:8d}" for n in shown))
     for label, found in rows:
         print(f"    {label:22}" + "".join(f"{found[n]:8.0f}" if np.isfinite(found[n]) else f"{'-':>8}" for n in shown))
+    return whole, around
+
+
+def _ring(one: Around) -> str:
+    return f"rings of {one.radius:g} mm" if np.isfinite(one.radius) else "nearest boss"
+
+
+def sharing(whole: Divider, around: tuple[Around, ...]) -> None:
+    """Print what sharing few axes comes to in pieces by cuts alone, as plans do, and in pieces of rings."""
+    print("    reckoned length, mm, (sub-surfaces) by number of shared axes")
+    for one in around:
+        for part, found in zip(one.parts, one.solutions, strict=True):
+            part.__dict__["best"] = found  # the axes that serve on the whole face serve here too
+    for label, parts in (("iso-parametric cuts", (whole,)), *((_ring(one), one.parts) for one in around)):
+        options = trade(parts, 6).options
+        print(f"    {label:22}" + "".join(f"{one.orientations:3d}: {one.length:.0f} ({one.pieces})" for one in options),
+              flush=True)
 
 
 def judged(plan: Plan, published: list[int]) -> None:
     """Print every sub-surface with what the judge measured."""
     verdict = {seen.name: seen for seen in ta.verify(plan).operations}
-    print(f"    {'':6} {'feed':4} {'passes':>6} {'[zhu2016]':>9} {'width':>6} {'length':>8} {'gouge um':>8} "
+    print(f"    {'':6} {'axis':22} {'feed':4} {'passes':>6} {'[zhu2016]':>9} {'width':>6} {'length':>8} {'gouge um':>8} "
           f"{'cutter/shank/holder':>20} {'clean-up %':>10} {'judge %':>8} {'verdict':7}")
     for k, op in enumerate(plan.operations):
         o, seen = op.orientation, verdict.get(op.name)
@@ -70,7 +91,8 @@ def judged(plan: Plan, published: list[int]) -> None:
             print(f"    {op.face.label:6} {o.outcome}: {'; '.join(o.reasons)}")
             continue
         room = "/".join(f"{o.clearance.get(what, float('nan')):.2f}" for what in ("cutter", "shank", "holder"))
-        print(f"    {op.face.label:6} {o.feed:4} {o.passes:6d} {published[k] if k < len(published) else '-':>9} "
+        axis = " ".join(f"{value:+.4f}" for value in op.frame.z + 0.0)
+        print(f"    {op.face.label:6} {axis:22} {o.feed:4} {o.passes:6d} {published[k] if k < len(published) else '-':>9} "
               f"{o.average_strip_width:6.3f} {o.length:8.1f} {o.gouge * 1e3:8.2f} {room:>20} {o.unreached * 100:10.2f} "
               f"{100 * (1 - seen.share_within):8.2f} {'pass' if seen.passed else 'FAIL':7}")
         for reason in seen.reasons if not seen.passed else ():
