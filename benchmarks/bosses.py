@@ -83,8 +83,8 @@ def sharing(whole: Divider, around: tuple[Around, ...]) -> None:
 def judged(plan: Plan, published: list[int]) -> None:
     """Print every sub-surface with what the judge measured."""
     verdict = {seen.name: seen for seen in ta.verify(plan).operations}
-    print(f"    {'':6} {'axis':22} {'feed':4} {'passes':>6} {'[zhu2016]':>9} {'width':>6} {'length':>8} {'gouge um':>8} "
-          f"{'cutter/shank/holder':>20} {'clean-up %':>10} {'judge %':>8} {'verdict':7}")
+    print(f"    {'':6} {'axis':22} {'feed':4} {'passes':>6} {'[zhu2016]':>9} {'width':>6} {'length':>8} "
+          f"{'gouge um':>8} {'cutter/shank/holder':>20} {'clean-up %':>10} {'judge %':>8} {'verdict':7}")
     for k, op in enumerate(plan.operations):
         o, seen = op.orientation, verdict.get(op.name)
         if seen is None:
@@ -92,7 +92,8 @@ def judged(plan: Plan, published: list[int]) -> None:
             continue
         room = "/".join(f"{o.clearance.get(what, float('nan')):.2f}" for what in ("cutter", "shank", "holder"))
         axis = " ".join(f"{value:+.4f}" for value in op.frame.z + 0.0)
-        print(f"    {op.face.label:6} {axis:22} {o.feed:4} {o.passes:6d} {published[k] if k < len(published) else '-':>9} "
+        there = published[k] if k < len(published) else "-"
+        print(f"    {op.face.label:6} {axis:22} {o.feed:4} {o.passes:6d} {there:>9} "
               f"{o.average_strip_width:6.3f} {o.length:8.1f} {o.gouge * 1e3:8.2f} {room:>20} {o.unreached * 100:10.2f} "
               f"{100 * (1 - seen.share_within):8.2f} {'pass' if seen.passed else 'FAIL':7}")
         for reason in seen.reasons if not seen.passed else ():
