@@ -133,6 +133,16 @@ def test_joined_borders_that_differ_move_by_no_more_than_is_told() -> None:
         join(part, (1, 2), tolerance=1e-4)
 
 
+def test_the_bound_is_that_of_the_surface_not_of_its_control_points() -> None:
+    """At degree 9 control points lie far apart where curves hardly do."""
+    a, b = cut(wave(), [0.0, 0.5, 1.0], [0.0, 1.0])
+    knots, net = elevated(b.surface.knots_v, b.surface.control.swapaxes(0, 1), 3, 9)
+    net[2:-2, :, 2] += 2e-4 * (-1.0) ** np.arange(len(net) - 4)[:, None]
+    b = replace(b, surface=NurbsSurface(b.surface.knots_u, knots, net.swapaxes(0, 1), (3, 9)))
+    whole = join(together(a, b), (1, 2), tolerance=1.2e-4).faces[0]
+    assert on_members(whole) <= whole.tolerance < 6e-5 and on_members(whole) > 0.3 * whole.tolerance
+
+
 @pytest.mark.parametrize("k", range(4))
 def test_parameters_that_go_together_only_nearly_leave_no_range(k: int) -> None:
     patches = cut(wave(), [0.0, 0.4, 1.0], [0.0, 0.5, 1.0])

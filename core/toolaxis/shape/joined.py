@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
+from toolaxis.numeric.bezier import bezier_nets, bezier_rows
 from toolaxis.numeric.overlay import united
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face, Member
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 SMOOTH = radians(0.5)
 #: Most members that are all named in a label.
 _NAMED = 8
+#: Pieces into which spans are cut to tell how far splines are apart.
+_FINE = 4
 #: Way by which rounding moves points, mm.
 _ROUNDING = 1e-9
 #: Greatest angle by which iso-parametric lines may turn across a join, rad.
@@ -112,7 +115,7 @@ def _weighed(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -
             share = _border(surfaces[before], axis, 1)[:, 3] / _border(surfaces[cell], axis, 0)[:, 3]
             surfaces[cell] = replace(surfaces[cell], control=surfaces[cell].control * float(np.median(share)))
         for before, axis in beside:
-            off = _moved(_border(surfaces[cell], axis, 0), _border(surfaces[before], axis, 1))
+            off = _apart(surfaces[before], surfaces[cell], axis)
             if off > tolerance:
                 a, b = grid.faces[before].label, grid.faces[cell].label
                 raise UnsupportedGeometry(f"faces {a} and {b} cannot be joined: their borders are the same curve only "
@@ -121,13 +124,53 @@ def _weighed(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -
     return surfaces
 
 
-def _moved(control: Array, other: Array) -> float:
-    """Greatest way between the splines of two sets of control points at the same parameters, an upper bound, mm."""
-    one, two = (rows.reshape(-1, 4) for rows in (control, other))
-    points, there = one[:, :3] / one[:, 3:], two[:, :3] / two[:, 3:]
-    changed = float(np.abs(one[:, 3] - two[:, 3]).max()) / float(two[:, 3].min())
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    return float(np.linalg.norm(points - there, axis=1).max()) + changed * size
+def _apart(one: NurbsSurface, other: NurbsSurface, axis: int) -> float:
+    """Greatest way between the last side of a surface and the first of another at equal parameters, at most, mm."""
+    knots, degree = knots_along(one, 1 - axis), one.degree[1 - axis]
+    own, now = _border(other, axis, 0), _border(one, axis, 1)
+    rough = _moved(own, now)
+    if rough <= _ROUNDING:
+        return rough
+    breaks = _breaks(knots)
+    rows, first = bezier_rows(knots, degree, breaks[:-1], breaks[1:])
+    active = first[:, None] + np.arange(degree + 1)
+    return _moved(rows @ own[active], rows @ now[active])
+
+
+def _breaks(knots: Array) -> Array:
+    """Lines that cut every span into pieces so short that control points tell how far splines are apart."""
+    spans = np.unique(knots)
+    inner = [np.linspace(a, b, _FINE + 1)[:-1] for a, b in pairwise(spans)]
+    return np.concatenate([*inner, spans[-1:]])
+
+
+def _moved(own: Array, now: Array) -> float:
+    """Greatest way between points of equal parameters of two splines, an upper bound, mm.
+
+    S' - S = (H' - H - (w' - w) S) / w' with H = w S, and every term lies in the hull of its control points.
+
+    Parameters
+    ----------
+    own, now : (..., k, 4) array
+        Homogeneous control points of the one and the other, on the same knots; of pieces where there are more axes.
+    """
+    change = now - own
+    points = own[..., :3] / own[..., 3:]
+    middle = points.mean(axis=-2, keepdims=True)
+    reach = np.linalg.norm(points - middle, axis=-1).max(axis=-1)
+    shift = np.linalg.norm(change[..., :3] - middle * change[..., 3:], axis=-1).max(axis=-1)
+    return float(((shift + reach * np.abs(change[..., 3]).max(axis=-1)) / now[..., 3].min(axis=-1)).max())
+
+
+def _surface_moved(surface: NurbsSurface, control: Array) -> float:
+    """How far a surface moves with other control points at most, mm."""
+    rough = _moved(surface.control.reshape(-1, 4), control.reshape(-1, 4))
+    if rough <= _ROUNDING:
+        return rough
+    lines = _breaks(surface.knots_u), _breaks(surface.knots_v)
+    own, now = (bezier_nets((surface.knots_u, surface.knots_v, net, *surface.degree, True), *lines)
+                for net in (surface.control, control))
+    return _moved(own.reshape(*own.shape[:2], -1, 4), now.reshape(*now.shape[:2], -1, 4))
 
 
 def _lines(grid: Grid, surfaces: dict[Cell, NurbsSurface], ranges: list[Pair], axis: int) -> Array:
@@ -173,7 +216,7 @@ def _assembled(grid: Grid, surfaces: dict[Cell, NurbsSurface], lines: tuple[Arra
         total[place] += surfaces[cell].control
         share[place] += 1
     total /= share[..., None]
-    moved = max(_moved(surfaces[cell].control, total[place]) for cell, place in places.items())
+    moved = max(_surface_moved(surfaces[cell], total[place]) for cell, place in places.items())
     return NurbsSurface(knots[0], knots[1], total, degree), moved
 
 
