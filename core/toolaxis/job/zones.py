@@ -7,6 +7,7 @@ import numpy as np
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
 from toolaxis.orient.impossible import corner_too_large
+from toolaxis.orient.reasons import place
 from toolaxis.path.left_over import FACTOR, also_machined, excess, left_over
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -117,10 +118,10 @@ def told(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
         notes.insert(0, f"{100 * share:.1f} % of the area lies at walls and {_LEFT}")
     under = [zone for zone in zones if not zone.at_wall]
     if under:
-        u, v = np.concatenate([zone.loops[0] for zone in under[:1]]).mean(axis=0)
+        at = op.face.evaluate(np.concatenate([zone.loops[0] for zone in under[:1]]).mean(axis=0)).point[0]
         notes.append(f"{_UNDERCUT}: {sum(zone.area for zone in under):.2f} mm2 at the border stay higher than the "
-                     f"scallop limit, the largest zone around u {u:.4g}, v {v:.4g}: machine that edge again with a "
-                     "neighbour's axis, or give the sub-surface a smoother border")
+                     f"scallop limit, the largest zone, {under[0].area:.2f} mm2, around {place(at)}: machine that edge "
+                     "again with a neighbour's axis, or give the sub-surface a smoother border")
     width = area * (1 - share) / found.length if found.length > 0 else 0.0
     return replace(op, zones=zones, orientation=replace(found, unreached=share, average_strip_width=width,
                                                         reasons=tuple(notes)))
