@@ -22,7 +22,7 @@ from toolaxis.shape.patches import SAME, Pair, Patch, alike, knots_along, placed
 Array = NDArray[np.float64]
 
 #: Greatest angle between normals across a join, rad: a cutter of 10 mm radius dips by 0.4 micrometres there.
-SMOOTH = radians(0.5)
+GREATEST_TURN = radians(0.5)
 #: Most members that are all named in a label.
 _NAMED = 8
 #: Pieces into which spans are cut to tell how far splines are apart.
@@ -30,7 +30,7 @@ _FINE = 4
 #: Way by which rounding moves points, mm.
 _ROUNDING = 1e-9
 #: Greatest angle by which iso-parametric lines may turn across a join, rad.
-CORNER = radians(30.0)
+GREATEST_CORNER = radians(30.0)
 
 
 def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float = GAP) -> Face:
@@ -253,15 +253,15 @@ def _check_turns(face: Face) -> None:
     """That normals, and iso-parametric lines, turn little across every join."""
     for axis, t in joins(face):
         turn = turn_at(face, axis, t)
-        if turn > SMOOTH:
+        if turn > GREATEST_TURN:
             raise UnsupportedGeometry(f"faces {face.label} cannot be joined: normals turn by {np.degrees(turn):.2g} "
-                                      f"degrees across a join, {np.degrees(SMOOTH):g} are allowed: machine them "
+                                      f"degrees across a join, {np.degrees(GREATEST_TURN):g} are allowed: machine them "
                                       "face by face")
         corner = corner_at(face, axis, t)
-        if corner > CORNER:
+        if corner > GREATEST_CORNER:
             raise UnsupportedGeometry(f"faces {face.label} cannot be joined: iso-parametric lines, and passes with "
                                       f"them, would turn by {np.degrees(corner):.0f} degrees across a join, "
-                                      f"{np.degrees(CORNER):.0f} are allowed: machine them face by face")
+                                      f"{np.degrees(GREATEST_CORNER):.0f} are allowed: machine them face by face")
 
 
 def joins(face: Face) -> list[tuple[int, float]]:

@@ -21,7 +21,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """A face turned into the joined directions, with the range of the column's and the row's parameters it fills.
+    """A face turned into the joined directions, with the parameters of its column and its row.
 
     Attributes
     ----------
@@ -38,18 +38,38 @@ class Patch:
     axes: tuple[int, int]
 
     def ours(self, axis: int, own: float) -> float:
-        """Parameter of the column or row from the face's own."""
+        """Parameter of the column or row from the face's own.
+
+        Parameters
+        ----------
+        axis : int
+            0 for the column's, 1 for the row's.
+        own : float
+        """
         return float(self.scale[axis] * own + self.shift[axis])
 
     def own(self, axis: int, ours: float) -> float:
-        """The face's own parameter in its domain, that of an end where it is as good as that."""
+        """The face's own parameter in its domain, that of an end where it is as good as that.
+
+        Parameters
+        ----------
+        axis : int
+            0 for the column's, 1 for the row's.
+        ours : float
+        """
         ends = self.face.surface.domain[self.axes[axis]]
         value = min(max(float((ours - self.shift[axis]) / self.scale[axis]), ends[0]), ends[1])
         near = min(ends, key=lambda end: abs(end - value))
         return near if abs(near - value) <= SAME * (ends[1] - ends[0]) else value
 
     def speed(self, axis: int) -> float:
-        """Greatest length of the derivative by the parameter of the column or row, mm."""
+        """Greatest length of the derivative by the parameter of the column or row, mm.
+
+        Parameters
+        ----------
+        axis : int
+            0 for the column's, 1 for the row's.
+        """
         d = self.face.evaluate(self.face.grid(7, 7))
         return float(np.linalg.norm((d.su, d.sv)[self.axes[axis]], axis=1).max(initial=0) / abs(self.scale[axis]))
 
