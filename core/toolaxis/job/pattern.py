@@ -84,7 +84,8 @@ def recognised(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | 
         return None, ()
     try:
         rotor = blades_of(part)
-        bare, pieces = uncovered(part, progress)
+        numbers = {face.number for face in part.sculptured}.union(*(blade.faces for blade in rotor.blades))
+        bare, pieces = uncovered(part, numbers, progress)
         return _told(replace(pattern_of(bare, rotor), pieces=pieces)), ()
     except NoPattern:
         return None, ()

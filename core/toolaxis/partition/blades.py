@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 SAMPLES = 9
 #: A face is of revolution where its normals pass the axis within this share of their distance from it.
 MEETS = 2e-3
+#: The same for an axis that is not yet known exactly.
+_ROUGHLY = 0.02
+_ROUND_KINDS = ("cylinder", "cone", "torus", "revolution")
 #: Two lines are met by all normals where the second singular value is below this share of the first.
 _ROUND = 1e-6
 #: Faces are alike within this share of their area, and in place within this share of the part's diagonal.
@@ -78,7 +81,8 @@ class Bladed:
     blades : tuple of Blade
         In the order in which a right-handed turn about the axis meets them.
     hub : tuple of int
-        Faces of revolution that border a blade or its fillets, tips apart.
+        Faces of revolution of the bodies that the blades' own bodies stand on; where blades and hub are one body, those
+        that border a blade or its fillets, tips apart.
     """
 
     point: Array
@@ -138,10 +142,15 @@ def blades_of(part: Part) -> Bladed:
         raise UnsupportedGeometry(f"{len(groups)} groups of faces stand around an axis of {count} equal parts: one "
                                   "blade each is needed; blades that touch each other cannot be told apart")
     ordered = _in_turn([(group, samples.centre[group[0]] - point) for group in groups], axis)
-    found = tuple(_blade(part, group, turned, samples, (point, axis)) for group in ordered)
+    own = {n for group in groups for n in group}
+    apart = [body.faces for body in part.bodies if body.closed and not own.intersection(body.faces)]
+    size = [sum(samples.area[n] for n in faces) for faces in apart]
+    disc = {n for faces, area in zip(apart, size, strict=True) if area >= SMALL * max(size) for n in faces}
+    floor = sorted(disc.intersection(turned)) or turned
+    found = tuple(_blade(part, group, (turned, floor), samples, (point, axis)) for group in ordered)
     tips = {n for blade in found for n in blade.tip}
-    beside = {n for group in groups for m in group for n in part.neighbours(m)}
-    return Bladed(point, axis, found, tuple(n for n in turned if n in beside and n not in tips))
+    beside = disc or {n for m in own for n in part.neighbours(m)}
+    return Bladed(point, axis, found, tuple(n for n in floor if n in beside and n not in tips))
 
 
 def _sampled(part: Part) -> _Samples:
@@ -180,6 +189,11 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
                 found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
     if found is None:
         raise NoPattern("no axis has a pattern of like faces around it: blades cannot be found on this part")
+    if not known[0]:  # an axis of inertia, refined by the blades: faces that are of revolution about it tell it exactly
+        near = [face.number for face in part.faces if face.kind in _ROUND_KINDS
+                and _of_revolution(samples, face.number, found[0], found[1], _ROUGHLY)]
+        if near:
+            found = (*_met_by_normals(samples, near), *found[2:])
     return found
 
 
@@ -190,7 +204,7 @@ def _has_like(samples: _Samples, number: int, numbers: list[int]) -> bool:
 
 def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bool, Array, Array]]:
     """Axes worth trying: the line that normals of surfaces of revolution meet, exact, and the axis of inertia."""
-    round_ = [f.number for f in part.faces if f.kind in ("cylinder", "cone", "torus", "revolution")]
+    round_ = [f.number for f in part.faces if f.kind in _ROUND_KINDS]
     result = [(True, *_met_by_normals(samples, round_))] if round_ else []
     points = np.concatenate([samples.points[n] for n in sculptured])
     share = [np.full(len(samples.points[n]), samples.area[n] / len(samples.points[n])) for n in sculptured]
@@ -257,10 +271,10 @@ def _refined(samples: _Samples, pairs: dict[int, int], point: Array, axis: Array
     return foot + d * ((ma - foot) @ d), d
 
 
-def _of_revolution(samples: _Samples, number: int, point: Array, axis: Array) -> bool:
+def _of_revolution(samples: _Samples, number: int, point: Array, axis: Array, within: float = MEETS) -> bool:
     around = np.cross(axis, samples.points[number] - point)
     reach = np.linalg.norm(around, axis=1)
-    return bool((np.abs((samples.normals[number] * around).sum(axis=1)) <= MEETS * np.maximum(reach, 1e-9)).all())
+    return bool((np.abs((samples.normals[number] * around).sum(axis=1)) <= within * np.maximum(reach, 1e-9)).all())
 
 
 def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]]:
@@ -285,10 +299,12 @@ def _in_turn(groups: list[tuple[list[int], Array]], axis: Array) -> list[list[in
     return [groups[k][0] for k in np.argsort(angle)]
 
 
-def _blade(part: Part, group: list[int], turned: list[int], samples: _Samples, line: tuple[Array, Array]) -> Blade:
+def _blade(part: Part, group: list[int], turned: tuple[list[int], list[int]], samples: _Samples,
+           line: tuple[Array, Array]) -> Blade:
+    """A blade from its faces; `turned` are all faces of revolution, and those that may be the hub's."""
     own = set(group)
-    fillets = [n for n in group if any(m in turned for m in part.neighbours(n, "tangent"))]
-    tip = [n for n in turned if part.neighbours(n) and own.issuperset(part.neighbours(n))]
+    fillets = [n for n in group if any(m in turned[1] for m in part.neighbours(n, "tangent"))]
+    tip = [n for n in turned[0] if part.neighbours(n) and own.issuperset(part.neighbours(n))]
     body = [n for n in group if n not in fillets]
     if len(body) < 2:
         raise NoPattern(f"face {group[0]} stands around the axis with its like, but has no second side: no blades")

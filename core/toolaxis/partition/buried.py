@@ -1,5 +1,6 @@
 """What is left of faces outside the other bodies of a part: blades that are drawn down into their disc."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -235,12 +236,15 @@ def _depth(face: Face, solid: Solid, lines: tuple[Array, Array]) -> Array:
     return depth.reshape(shape)
 
 
-def uncovered(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Part, dict[int, tuple[Face, ...]]]:
-    """A part with its sculptured faces cut back to what no other of its bodies covers.
+def uncovered(part: Part, numbers: Collection[int],
+              progress: Progress = NO_PROGRESS) -> tuple[Part, dict[int, tuple[Face, ...]]]:
+    """A part with faces cut back to what no other of its bodies covers.
 
     Parameters
     ----------
     part : Part
+    numbers : collection of int
+        Of the faces to look at.
     progress : Progress
 
     Returns
@@ -260,8 +264,8 @@ def uncovered(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Part, dict[
     if len(solids) < 2:
         return part, {}
     pieces = {}
-    for k, face in enumerate(part.sculptured):
-        progress.report("looking for what other bodies cover", k, len(part.sculptured))
+    for k, face in enumerate(map(part.face, sorted(numbers))):
+        progress.report("looking for what other bodies cover", k, len(numbers))
         left = exposed(face, solids)
         if left != (face,):
             pieces[face.number] = left
