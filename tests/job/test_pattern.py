@@ -9,7 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.job.axes import with_operations
 from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.pattern import recognised, too_narrow
+from toolaxis.job.pattern import recognised, shared_out, too_narrow
 from toolaxis.job.rooms import tightest
 from toolaxis.plan.document import plan_document
 from toolaxis.plan.plan import Plan
@@ -21,6 +21,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
 COUNT = 4
+BLISK = Path(__file__).parents[2] / "examples" / "blisk.step"
 
 
 def turn(angle: float) -> np.ndarray:
@@ -190,3 +191,15 @@ def test_a_gap_narrower_than_the_tool_is_infeasible_and_names_the_widest() -> No
     assert made.outcome == "incomplete" and len(made.operations) == 24
     assert all(op.orientation.outcome == "infeasible" for op in made.operations)
     assert "widest cutter that passes" in made.operations[5].orientation.reasons[0]
+
+
+@pytest.mark.parametrize(("diameter", "left"), [(10, True), (6, False)])
+def test_fillets_tighter_than_the_cutter_are_left_to_a_smaller_one(diameter: float, left: bool) -> None:
+    pattern, _ = recognised(ta.load(BLISK))
+    assert pattern is not None
+    found = shared_out(pattern, ta.Tool.torus(diameter, 1), 0.1)
+    fillets = {face.number for face in pattern.first if pattern.blades.side_of(face.number) == "fillet"}
+    assert fillets
+    assert {face.number for face in found.whole} & fillets == (set() if left else fillets)
+    assert set(found.left) == (fillets if left else set())
+    assert all("3.50 mm radius" in why for why in found.left.values())

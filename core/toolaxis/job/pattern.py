@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 ALIKE = 1e-3
 #: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
 _FACETS = 8
+#: Share of a fillet that is tighter than the cutter from which it is left to a smaller one.
+_TIGHT = 0.9
 #: Greatest turn of normals across a strip of an edge, and of a fillet, rad.
 _NOSE, _FILLET = np.radians(95.0), np.radians(50.0)
 
@@ -222,7 +224,8 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
         What the cutter has to keep from a neighbouring blade, mm.
     """
     refused = too_narrow(pattern, tool, clearance)
-    left = {face.number: why for face in pattern.first for why in [_facets(face, tool)] if why}
+    left = {face.number: why for face in pattern.first
+            for why in [_facets(face, tool) or _tight(face, pattern.blades.side_of(face.number), tool)] if why}
     divided: list[Face] = []
     whole: list[Face] = []
     for face in pattern.first:
@@ -245,3 +248,17 @@ def _facets(face: Face, tool: Tool) -> str:
         return ""
     return (f"face {face.number} is left to clean-up as a whole: kinks cut its {face.area:.1f} mm2 into {count} facets "
             "that are too small for axes of their own; make it smooth in CAD to have it machined")
+
+
+def _tight(face: Face, side: str, tool: Tool) -> str:
+    """Why a fillet is left to clean-up: it is tighter than the cutter; empty where not.
+
+    Leaning, a cutter with a small corner reaches parts of such a fillet, in rags that are not worth their axes.
+    """
+    if side != "fillet":
+        return ""
+    bent = face.curvature(face.grid(12, 12)).k1
+    if (bent * tool.radius > 1).mean() < _TIGHT:
+        return ""
+    return (f"face {face.number} is left to clean-up as a whole: a hollow fillet of {1 / np.median(bent):.2f} mm radius, "
+            f"tighter than the cutter's {tool.radius:g} mm; a ball end no larger than that reaches it")
