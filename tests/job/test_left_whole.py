@@ -104,3 +104,14 @@ def test_a_face_that_is_merely_not_machined_stays_incomplete(footed: Plan) -> No
     floor = footed.operations[0].face.number
     plan = ta.plan(footed.part, footed.tool, 0.1, faces=[floor], machine="cone:0,0,-1,1")
     assert plan.outcome == "incomplete" and not plan.operations[0].left
+
+
+@pytest.mark.parametrize("asked", [{"regions": 2}, pytest.param({"orientations": 2}, marks=pytest.mark.long)])
+def test_a_fillet_that_cannot_be_divided_does_not_refuse_the_part(footed: Plan, asked: dict[str, int]) -> None:
+    numbers = [op.face.number for op in footed.operations]
+    plan = ta.plan(footed.part, footed.tool, 0.1, faces=numbers, machine="cone:0,0,1,5", **asked)
+    assert plan.outcome == "complete"
+    assert [op.face.number for op in plan.operations if op.left] == numbers[1:]
+    floor = [op for op in plan.operations if op.face.number == numbers[0]]
+    assert sum(op.face.area for op in floor) == pytest.approx(footed.operations[0].face.area, rel=1e-6)
+    assert len(floor) == 2 or "orientations" in asked

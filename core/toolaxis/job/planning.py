@@ -34,6 +34,7 @@ from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
+from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool
 
@@ -170,14 +171,16 @@ class Job:
                     machine=self.machine)
 
     def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
-        """Sub-surfaces of each face by itself."""
+        """Sub-surfaces of each face by itself; a number of them is not asked of faces narrower than the cutter."""
         if self.regions is None:
             return [Target(face) for face in faces]
+        slim = "auto" if self.regions != 1 else 1
 
         def _division(k: int, inner: Progress) -> Regions:
             named = inner.within(f"face {faces[k].label}")
             standing = distances(faces[k], self.tool, self.part, self._obstacles)
-            return regions_of(self._task(faces[k], inner), self.regions, progress=named, bosses=standing)
+            count = slim if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
+            return regions_of(self._task(faces[k], inner), count, progress=named, bosses=standing)
 
         found = abreast(_division, len(faces), self.workers, progress)
         if found.cancelled:
@@ -188,8 +191,10 @@ class Job:
     def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
         """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from."""
         most = MOST if self.regions is None else checked_count(self.regions) or MOST
-        dividers = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
-                    for face in faces]
+        every = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
+                 for face in faces]
+        dividers = [one for one in every if len(one.best.known)] or every
+        alone = [Target(one.job.worth.face) for one in every if one not in dividers]
         options: tuple[Option, ...] = ()
         count = checked_count(self.orientations, "orientations")
         if count is None:
@@ -199,7 +204,7 @@ class Job:
         else:
             chosen = shared(dividers, count, progress=progress)
         return by_axis([Target(piece, axis, True) for one in chosen.regions
-                        for piece, axis in zip(one.faces, one.axes, strict=True)]), options
+                        for piece, axis in zip(one.faces, one.axes, strict=True)]) + alone, options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""

@@ -217,7 +217,7 @@ def tool_outlines(tool: Tool, reach: float) -> dict[str, Array]:
     reach : float
         Where a shank of unknown length ends in the picture, mm.
     """
-    cutter = tool.profile.polyline(0.02 * tool.radius)
+    cutter = tool.profile.polyline(0.002 * tool.radius)
     outlines = {"cutter": np.vstack([cutter, [0.0, cutter[-1, 1]]])}
     for name, line in tool.outlines.items():
         outlines[name] = np.vstack([[0.0, line[0, 1]], line, [0.0, line[-1, 1]]])
