@@ -168,7 +168,7 @@ def test_objectives_choose_by_what_they_name(make):
     assert by_passes[0].passes <= by_length[0].passes * 1.001
     assert by_length[0].length <= by_passes[0].length * 1.001
     with pytest.raises(InvalidInput, match="objective"):
-        Worth(face, TOOL, H, objective="time")
+        Worth(face, TOOL, H, objective="weight")
 
 
 def test_what_stays_at_walls_is_charged(make):

@@ -82,8 +82,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "all), ball (a ball end of the same radius along the mean normal)")
     sub.add_argument("--compare", action="store_true",
                      help="also plan the same faces by the other methods: a table of passes, lengths and times")
-    sub.add_argument("--objective", default="length", choices=("length", "passes"),
-                     help="what is least: cutting length (default) or number of passes")
+    sub.add_argument("--objective", default="length", choices=("length", "passes", "time"),
+                     help="what is least: cutting length (default), number of passes, or the time that --machine takes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")

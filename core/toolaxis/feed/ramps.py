@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 _DEGREE = 5
 #: Points to a knot at first, and places in a window at least and in all at most.
 _POINTS, _PLACES, _MOST = 12, 4, 4096
+#: Points to a knot of curves that need not pass near points.
+_APART = 9
 #: Shares of jerk, at the greatest speed of a window, that the curve itself and its change of speed may take.
 _CURVE, _CROSS = 1 / 3, 1 / 3
 #: Share of an acceleration that the curve itself may take.
@@ -34,21 +36,24 @@ _NOTHING = 1e-12
 
 
 class Bend(NamedTuple):
-    """A smooth curve and how it bends.
+    """A smooth curve and how it bends, or several over one parameter.
 
     Attributes
     ----------
     curve : BSpline
         Coordinates over the path parameter, mm or rad.
     length : float
-        Of the path, mm.
-    derivatives : three (n, d) arrays
-        First, second and third derivative at even places.
+        Of the path parameter, mm.
+    derivatives : three (n, d) or (k, n, d) arrays
+        First, second and third derivative along the path at even places of the parameter.
+    stretch : (k, n) array, optional
+        What the path goes for one mm of the parameter; 1 unless given.
     """
 
     curve: BSpline
     length: float
     derivatives: tuple[Array, Array, Array]
+    stretch: Array | None = None
 
 
 class Ramps(NamedTuple):
@@ -109,7 +114,7 @@ def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, t
     """
     bend = bend_of(points, tips, feed, len(bounds.velocity), tolerance)
     tries = [_windowed(np.eye(len(bounds.velocity))[None], bend, number, feed, bounds)
-             for number in _numbers(len(bend.derivatives[0]))]
+             for number in _numbers(bend.derivatives[0].shape[-2])]
     best = tries[int(np.argmin([float(_times(one).sum()) for one in tries]))]
     number = best.limits[0].shape[1]
     return Ramps(bend.curve, np.linspace(0.0, bend.length, number + 1), best.speeds[0],
@@ -117,7 +122,7 @@ def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, t
 
 
 def durations(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
-    """Time along one curve with the axes set up in many ways, (k,) s: that of `ramps` for each.
+    """Time along one curve, or k curves, with the axes set up in k ways, (k,) s: that of `ramps` for each.
 
     Parameters
     ----------
@@ -132,8 +137,13 @@ def durations(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisB
     best = np.full(len(matrices), np.inf)
     for begin in range(0, len(matrices), _BATCH):
         some = slice(begin, begin + _BATCH)
-        for number in _numbers(len(bend.derivatives[0])):
-            best[some] = np.minimum(best[some], _times(_windowed(matrices[some], bend, number, feed, bounds)))
+        part = bend
+        if bend.derivatives[0].ndim == 3:
+            first, second, third = (rows[some] for rows in bend.derivatives)
+            part = bend._replace(derivatives=(first, second, third),
+                                 stretch=None if bend.stretch is None else bend.stretch[some])
+        for number in _numbers(bend.derivatives[0].shape[-2]):
+            best[some] = np.minimum(best[some], _times(_windowed(matrices[some], part, number, feed, bounds)))
     return best
 
 
@@ -168,6 +178,31 @@ def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tol
     return Bend(curve, float(along[-1]), (first, second, third))
 
 
+def bends_of(points: ArrayLike, along: ArrayLike) -> Bend:
+    """Smooth curves near points that belong to the same parameters, one for each of k ways to go, with few knots.
+
+    Parameters
+    ----------
+    points : (k, n, 3) array_like
+        Tool tips, mm, n of at least 8.
+    along : (n,) array_like
+        Parameters, ascending, mm.
+    """
+    rows, places = np.asarray(points, dtype=float), np.asarray(along, dtype=float)
+    count, n, _ = rows.shape
+    inner = places[_APART:-_APART:_APART]
+    knots = np.concatenate([np.full(_DEGREE + 1, places[0]), inner, np.full(_DEGREE + 1, places[-1])])
+    curve = make_lsq_spline(places, rows.swapaxes(0, 1).reshape(n, -1), knots, _DEGREE)
+    count_of = int(np.clip(n, 16 * _PLACES, _MOST))
+    s = places[0] + (np.arange(count_of) + 0.5) * ((places[-1] - places[0]) / count_of)
+    first, second = (np.asarray(curve(s, order)).reshape(len(s), count, 3).swapaxes(0, 1) for order in (1, 2))
+    stretch = np.linalg.norm(first, axis=2)
+    pace = np.maximum(stretch, _NOTHING)[..., None]
+    way = first / pace
+    bent = (second - (way * second).sum(axis=2, keepdims=True) * way) / pace**2
+    return Bend(curve, float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
+
+
 def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int]:
     """A curve within the tolerance of the points, with few knots, and their number; else one through the points."""
     apart = _POINTS
@@ -182,9 +217,9 @@ def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int
 
 
 class _Windows(NamedTuple):
-    """Ramps of k set-ups: length of a window, speeds (k, w + 1) and limits (k, w)."""
+    """Ramps of k set-ups: lengths of windows (k, w), speeds (k, w + 1) and limits (k, w)."""
 
-    run: float
+    run: Array
     speeds: Array
     limits: tuple[Array, Array, Array]
 
@@ -196,7 +231,7 @@ def _numbers(count: int) -> list[int]:
 
 def _windowed(matrices: Array, bend: Bend, number: int, feed: float, bounds: AxisBounds) -> _Windows:
     """Ramps between a number of windows of one length."""
-    count = len(bend.derivatives[0])
+    count = bend.derivatives[0].shape[-2]
     starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
     first, second, third = (np.maximum.reduceat(np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING, starts, axis=1)
                             for rows in bend.derivatives)
@@ -209,8 +244,10 @@ def _windowed(matrices: Array, bend: Bend, number: int, feed: float, bounds: Axi
     j = ((bounds.jerk - third * speed**3 - 3 * second * speed * a[..., None]) / first).min(axis=2)
     caps = np.zeros((len(top), number + 1))
     caps[:, 1:-1] = np.minimum(top[:, :-1], top[:, 1:])
-    run = bend.length / number
-    chain = look_ahead(np.full(a.size, run), a.reshape(-1), j.reshape(-1), np.append(caps[:, :-1].reshape(-1), 0.0))
+    run = np.full(a.shape, bend.length / number)
+    if bend.stretch is not None:
+        run = np.add.reduceat(bend.stretch, starts, axis=1) * (bend.length / count)
+    chain = look_ahead(run.reshape(-1), a.reshape(-1), j.reshape(-1), np.append(caps[:, :-1].reshape(-1), 0.0))
     caps[:, :-1] = chain[:-1].reshape(len(top), number)  # each set-up begins and ends at rest: one chain serves all
     return _Windows(run, caps, (top, a, j))
 

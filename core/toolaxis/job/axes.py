@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.job.timing import timed
+from toolaxis.job.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
@@ -52,7 +52,7 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     return task(op.face, plan.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
                 part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
-                direction=plan.inputs.direction, progress=progress)
+                direction=plan.inputs.direction, feeds=feeds_of(plan.inputs), progress=progress)
 
 
 def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:

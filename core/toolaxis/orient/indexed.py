@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.gouge import least_distance
 from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.limits import AllOf, AxisLimits
 from toolaxis.machine.mounting import MachineLike, machine_limits
 from toolaxis.numeric.vectors import as_rows, unit
@@ -16,9 +17,11 @@ from toolaxis.orient.crossing import Crossing
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.mounted import at_face, held, out_of_travel
+from toolaxis.orient.mounted import at_face, held, mounting_of, out_of_travel
+from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
+from toolaxis.orient.quickest import quickest
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
@@ -121,14 +124,15 @@ class Task:
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None, allowance: float = 0.0,
-         direction: str = "zigzag", progress: Progress = NO_PROGRESS) -> Task:
+         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> Task:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
-    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, progress
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, feeds
         As for `best_axis`.
     limits : AxisLimits, optional
+    progress : Progress
 
     Raises
     ------
@@ -136,7 +140,8 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
         When an argument is out of range.
     """
     given = Tolerance() if tolerance is None else tolerance
-    worth = Worth(face, tool, scallop, allowance, objective)
+    pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
+    worth = Worth(face, tool, scallop, allowance, objective, pace)
     chord = min(given.chord_for(scallop), given.gouge / 2)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
@@ -169,8 +174,9 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
-              starts: ArrayLike | None = None, progress: Progress = NO_PROGRESS) -> Orientation:
-    """The fixed tool axis that machines a face with the least cutting length, or in the fewest passes.
+              starts: ArrayLike | None = None, feeds: Feeds | None = None,
+              progress: Progress = NO_PROGRESS) -> Orientation:
+    """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
 
     Parameters
     ----------
@@ -187,7 +193,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; for comparison "roman":
         the axis of Roman's rule, and "normal": the mean normal, each with the same proof and nothing beside it.
     objective : str
-        "length" or "passes": what is to be least.
+        "length", "passes" or "time": what is to be least. Time goes by an estimate (`toolaxis.orient.pace`), and by
+        the planner of feeds between the best axes of different lobes.
     part : Part, optional
         The part that the face belongs to, by its number: its skin and its other faces are looked after.
     skin, surroundings : sequence of Face
@@ -201,6 +208,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         "zigzag", "climb" or "conventional": the passes that are proven.
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
+    feeds : Feeds, optional
+        What is programmed; for the objective "time", which also needs a machine that states its limits.
     progress : Progress
 
     Returns
@@ -224,7 +233,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
                progress=progress)
     return searched(job, method, starts)
 
@@ -265,7 +274,7 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
         How often each is tried, repaired between; 1 to take them as they are.
     """
     refused: list[str] = []
-    found = held(ledger, found)
+    found = quickest(job.worth, held(ledger, found), job.made)
     for k in range(len(found)):
         accepted = _accepted(job, ledger, found[k], refused, attempts)
         if accepted is not None:

@@ -35,6 +35,8 @@ class Ledger:
     unreached : (n,) array
     passes, length : (n, 2) array
         For feed "u" and "v", what is left to a clean-up tool charged; as if the axis were free.
+    values : (n, 2) array
+        What is to be least, for both feeds, charged, whether the axes are free or not.
     counts : int
         Exact counts made.
     closer : int
@@ -57,6 +59,7 @@ class Ledger:
     unreached: Array = field(default_factory=lambda: np.empty(0))
     passes: Array = field(default_factory=lambda: np.empty((0, 2)))
     length: Array = field(default_factory=lambda: np.empty((0, 2)))
+    values: Array = field(default_factory=lambda: np.empty((0, 2)))
     counts: int = 0
     closer: int = 0
     excluded: int = 0
@@ -87,7 +90,7 @@ class Ledger:
         out = np.isin(reason, (LIMITS, BACK))
         self.excluded += int(out.sum())
         priceless = np.full((int(out.sum()), 2), np.inf)
-        self._enter(axes[out], Verdicts(reason[out], amount[out], np.zeros(len(priceless))), priceless, priceless)
+        self._enter(axes[out], Verdicts(reason[out], amount[out], np.zeros(len(priceless))), (priceless,) * 3)
         self.look(axes[~out])
 
     def look(self, axes: Array) -> slice:
@@ -114,7 +117,8 @@ class Ledger:
             verdict, price = self.feasibility.screen(rows), self.worth.screen(rows)
             charge = np.array([self.worth.charge(float(length), float(u)) if u > 0 else 1.0
                                for length, u in zip(price.length.min(axis=1), verdict.unreached, strict=True)])[:, None]
-            self._enter(rows, verdict, price.passes * charge, price.length * charge)
+            values = self.worth.values(rows, price)
+            self._enter(rows, verdict, (price.passes * charge, price.length * charge, values * charge))
         for axis, angle, found in self.closed:
             self._shut(first, axis, angle, found)
         self.progress.offer(lambda: (self.worth.face, self.map()))
@@ -139,18 +143,15 @@ class Ledger:
         for row in np.flatnonzero(near):
             self.forbid(first + int(row), found.reason, found.amount)
 
-    def _enter(self, axes: Array, verdict: Verdicts, passes: Array, length: Array) -> None:
+    def _enter(self, axes: Array, verdict: Verdicts, prices: tuple[Array, Array, Array]) -> None:
+        passes, length, values = prices
         self.axes = np.concatenate([self.axes, axes])
         self.reason = np.concatenate([self.reason, verdict.reason])
         self.amount = np.concatenate([self.amount, verdict.amount])
         self.unreached = np.concatenate([self.unreached, verdict.unreached])
         self.passes = np.concatenate([self.passes, passes])
         self.length = np.concatenate([self.length, length])
-
-    @property
-    def values(self) -> Array:
-        """What is to be least, for both feeds, (n, 2), whether the axes are free or not."""
-        return self.length if self.worth.objective == "length" else self.passes
+        self.values = np.concatenate([self.values, values])
 
     @property
     def price(self) -> Array:
@@ -210,7 +211,7 @@ class Ledger:
         self.progress.check()
         self.counts += 1
         passes, length = self.worth.counted(axis, FEEDS[feed])
-        value = length if self.worth.objective == "length" else passes
+        value = self.worth.value(axis, feed, passes, length)
         return value * self.worth.charge(length, unreached), passes, length
 
     def map(self) -> AxisMap:

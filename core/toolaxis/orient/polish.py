@@ -218,6 +218,6 @@ def _lowest(middle: Array, axes: Array, hope: Array, step: float) -> Array | Non
 def _ratio(ledger: Ledger, one: Candidate) -> float:
     """Exact value of a candidate over its screening value; 1 where screening knows none."""
     found = ledger.worth.screen(one.axis[None])
-    table = found.length if ledger.worth.objective == "length" else found.passes
-    screened = float(table[0, one.feed]) * ledger.worth.charge(float(found.length[0].min()), one.unreached)
+    charge = ledger.worth.charge(float(found.length[0].min()), one.unreached)
+    screened = float(ledger.worth.values(one.axis[None], found)[0, one.feed]) * charge
     return one.value / screened if np.isfinite(screened) else 1.0

@@ -101,10 +101,14 @@ def frame_of(field: NormalField) -> Array:
 def indifferent(ledger: Ledger) -> bool:
     """Whether all free axes cost the same: those of a ball end, where none of them leaves anything at walls.
 
+    In time they differ.
+
     Parameters
     ----------
     ledger : Ledger
     """
+    if ledger.worth.objective == "time":
+        return False
     return ledger.feasibility.tool.flat_radius == 0 and not ledger.unreached[ledger.reason == FREE].any()
 
 

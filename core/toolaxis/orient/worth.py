@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.orient.pace import Pace
 from toolaxis.path.chart import Cut, IsoChart
 from toolaxis.path.count import measure
 from toolaxis.path.estimate import Estimates, Estimator
@@ -16,7 +17,7 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-OBJECTIVES = ("length", "passes")
+OBJECTIVES = ("length", "passes", "time")
 FEEDS = ("u", "v")
 #: What a mm of the clean-up tool's passes is worth in mm of this tool's: a ball a quarter as large takes about half the
 #: feed rate.  With 3, the example with one boss took a fifth more cutting length for a tenth less to clean up, dearer
@@ -38,12 +39,14 @@ class Worth:
     allowance : float
         Stock left on the face, mm.
     objective : str
-        "length" or "passes": what is to be least.
+        "length", "passes" or "time": what is to be least.
+    pace : Pace, optional
+        How fast the machine goes; needed for the objective "time".
 
     Raises
     ------
     InvalidInput
-        When the objective is neither, or scallop or allowance are out of range.
+        When the objective is none of these or lacks a pace, or scallop or allowance are out of range.
     """
 
     face: Face
@@ -51,8 +54,11 @@ class Worth:
     scallop: float
     allowance: float = 0.0
     objective: str = "length"
+    pace: Pace | None = None
 
     def __post_init__(self) -> None:
+        if self.objective == "time" and self.pace is None:
+            raise InvalidInput("objective 'time' needs a machine with known limits and a feed: give both")
         if self.objective not in OBJECTIVES:
             raise InvalidInput(f"objective is {self.objective!r}: it must be one of {', '.join(OBJECTIVES)}")
         Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance)
@@ -81,6 +87,35 @@ class Worth:
             Unit vectors.
         """
         return self.estimator.many(axes, exact=False)
+
+    def values(self, axes: Array, found: Estimates) -> Array:
+        """What is to be least for axes in both feed directions, (k, 2).
+
+        Parameters
+        ----------
+        axes : (k, 3) array
+        found : Estimates
+            Their passes and lengths.
+        """
+        if self.objective == "time":
+            assert self.pace is not None
+            return self.pace.seconds(axes, found.passes, found.length)
+        return found.length if self.objective == "length" else found.passes
+
+    def value(self, axis: Array, feed: int, passes: float, length: float) -> float:
+        """What is to be least for one axis and feed.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : int
+            Index in `FEEDS`.
+        passes, length : float
+        """
+        if self.objective == "time":
+            assert self.pace is not None
+            return float(self.pace.seconds(axis[None], np.array([[passes] * 2]), np.array([[length] * 2]))[0, feed])
+        return length if self.objective == "length" else passes
 
     def counted(self, axis: Array, feed: str) -> tuple[float, float]:
         """Exact count of passes and cutting length, mm, of one axis and feed; inf where it leaves no strip.

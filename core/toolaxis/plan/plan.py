@@ -19,7 +19,7 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 
 METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
-OBJECTIVES = ("length", "passes")
+OBJECTIVES = ("length", "passes", "time")
 DIRECTIONS = ("zigzag", "climb", "conventional")
 #: What a change of the tool axis between operations is reckoned to take, s.
 INDEX_SECONDS = 6.0
