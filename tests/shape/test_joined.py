@@ -14,7 +14,7 @@ from toolaxis.shape.adjacency import Edge
 from toolaxis.shape.analytic import Cylinder, Sphere
 from toolaxis.shape.face import Face
 from toolaxis.shape.joined import joined, joins
-from toolaxis.shape.kinks import kinks_of
+from toolaxis.shape.kinks import kinks_of, split_at_kinks, with_kinks
 from toolaxis.shape.meeting import meetings
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
@@ -167,6 +167,24 @@ def test_speeds_become_the_same_on_both_sides() -> None:
     v = np.linspace(0.1, 0.9, 9)
     left, right = (whole.evaluate(np.column_stack([np.full(9, at), v])).su for at in (np.nextafter(t, 0), t))
     assert np.allclose(left, right, rtol=1e-9)
+
+
+def test_kinks_of_members_go_on_and_joins_are_none() -> None:
+    face = wave()
+    knots, net = face.surface.knots_v, face.surface.control.swapaxes(0, 1)
+    while np.count_nonzero(knots == 0.4) < 3:
+        knots, net = insert_knot(knots, net, 3, 0.4)
+    net[5:, :, 2] += 0.5 * np.arange(1, len(net) - 4)[:, None]
+    creased = replace(face, surface=NurbsSurface(face.surface.knots_u, knots, net.swapaxes(0, 1), (3, 3)))
+    patches = [with_kinks(p) for p in cut(creased, [0.0, 0.5, 1.0], [0.0, 1.0])]
+    patches[1] = with_kinks(written(replace(patches[1], kinks=((), ())), (True, False, True), 3.0))
+    assert patches[1].kinks[1] == () and len(patches[1].kinks[0]) == 1
+    whole = join(together(*patches), (1, 2)).faces[0]
+    assert whole.kinks[0] == () and whole.kinks[1] == pytest.approx((0.4,))
+    pieces = split_at_kinks(whole)
+    assert [one.label for one in pieces] == ["1+2a", "1+2b"]
+    assert [[own.label for own in own_pieces(one)] for one in pieces] == [["1a", "2a"], ["1b", "2b"]]
+    assert sum(own.area for one in pieces for own in own_pieces(one)) == pytest.approx(whole.area, rel=1e-6)
 
 
 def test_many_patches_have_a_short_name() -> None:
