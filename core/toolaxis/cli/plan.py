@@ -103,6 +103,10 @@ def _told(made: Plan, given: Namespace) -> int:
 
         for line in blades_lines(made):
             say(f"toolaxis: {line}")
+    asked = next((one.orientations for one in made.options if one.chosen), given.orientations)
+    if isinstance(asked, int) and made.orientations > asked:
+        say(f"toolaxis: warning: {made.orientations} axes instead of {asked}: for some sub-surfaces no shared "
+            "axis passed the proof, and one was searched; plan.json says why")
     for op in made.operations:
         if made.blades is not None and op.number in made.blades.copies:
             continue

@@ -40,16 +40,20 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
+#: How a reason begins that tells why a shared axis does not serve.
+REFUSED = "shared axis refused: "
 #: Methods that search as another one does.
 _SEARCHES = {"ball": "normal"}
 
 
 class Target(NamedTuple):
-    """A sub-surface, the axis that its division reckoned with, if any, and whether it shares that with others."""
+    """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, and the axes
+    that others share."""
 
     face: Face
     axis: Array | None = None
     shared: bool = False
+    others: tuple[Array, ...] = ()
 
 
 def by_axis(targets: list[Target]) -> list[Target]:
@@ -189,7 +193,10 @@ class Job:
                 for piece, axis in zip_longest(one.faces, one.axes)]
 
     def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
-        """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from."""
+        """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from.
+
+        A face for which no division was found stays whole with an axis of its own, unless that is so of all.
+        """
         most = MOST if self.regions is None else checked_count(self.regions) or MOST
         every = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
                  for face in faces]
@@ -203,8 +210,10 @@ class Job:
             chosen = found[knee]
         else:
             chosen = shared(dividers, count, progress=progress)
-        return by_axis([Target(piece, axis, True) for one in chosen.regions
-                        for piece, axis in zip(one.faces, one.axes, strict=True)]) + alone, options
+        axes = np.unique(np.concatenate([one.axes for one in chosen.regions]), axis=0)
+        rows = [(piece, axis) for one in chosen.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
+        return by_axis([Target(piece, axis, True, tuple(other for other in axes if (other != axis).any()))
+                        for piece, axis in rows]) + alone, options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""
@@ -214,14 +223,14 @@ class Job:
         try:
             found, path = Orientation(None), None
             if axis is not None and target.shared:
-                found, path = judged(self._task(face, inner), axis)
+                found, path = self._shared(target, inner)
             if found.axis is None and self.inputs.method == "one":
                 why = found.reasons or ("no axis found that all sub-surfaces allow",)
                 return Operation(number, face, replace(found, reasons=why))
             if found.axis is None:
                 refused = found.reasons
                 found, path = self._searched(face, axis, inner)
-                found = replace(found, reasons=(*(f"shared axis refused: {why}" for why in refused), *found.reasons))
+                found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
         except Cancelled:
             raise
         except ToolAxisError as reason:  # this face cannot be done; the others can
@@ -229,6 +238,20 @@ class Job:
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
+
+    def _shared(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
+        """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
+        assert target.axis is not None
+        job = self._task(target.face, progress)
+        found, path = judged(job, target.axis)
+        if found.axis is not None:
+            return found, path
+        rest = [one for one in (judged(job, other) for other in target.others) if one[0].axis is not None]
+        if not rest:
+            return found, path
+        other, path = min(rest, key=lambda one: one[0].length * job.worth.charge(one[0].length, one[0].unreached))
+        refused = tuple(f"{REFUSED}{why}; another shared axis serves" for why in found.reasons)
+        return replace(other, reasons=(*other.reasons, *refused)), path
 
     def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
@@ -246,8 +269,9 @@ class Job:
 
     def _task(self, face: Face, progress: Progress) -> Task:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
-                           objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part, allowance=self.inputs.allowance,
-                           tolerance=self.inputs.tolerance, direction=self.inputs.direction, progress=progress)
+                           objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
+                           allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
+                           direction=self.inputs.direction, progress=progress)
 
 
 @dataclass(frozen=True, eq=False)
