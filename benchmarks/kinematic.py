@@ -6,16 +6,21 @@ Printed are the times that were measured on a Mikron UCP 710; ours are those of 
 
 from collections.abc import Sequence
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from benchmarks._manta import manta_passes
 
+from toolaxis.feed.constraints import linear_bounds
+from toolaxis.feed.ramps import ramps
 from toolaxis.feed.schedule import Feeds, index_time
 from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
 from toolaxis.machine.polytopes import Level, alignments, best_along, box, pole_zone, preferred
 from toolaxis.orient.fastest import cutting_seconds, fastest
 from toolaxis.orient.kinematic import Setup, Stretch, setup, setups_by_pass
+from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 FEEDS = Feeds(500.0, tolerance=0.01)
@@ -92,6 +97,24 @@ def told(name: str, passes: Sequence[Stretch], share: float) -> None:
               f"   of that index moves {turn:6.1f} s")
 
 
+def drawn(folder: Path) -> None:
+    """The paper's Figs. 8, 12, 16 and 20 by this model."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rule, curve = rules()[199], manta_passes(12)[0]
+    aligned = setup(MIKRON, (rule,))
+    polytope_figure(MIKRON, Level.JERK, aligned.feed, {"as drawn": (0, 0), "aligned": aligned.rotary}).savefig(
+        folder / "polytope.png")
+    reach_figure(MIKRON, Level.JERK).savefig(folder / "reach.png")
+    straight = rule.tips[0] + np.linspace(0, 1, 60)[:, None] * (rule.tips[-1] - rule.tips[0])
+    bounds = linear_bounds(MIKRON.machine)
+    for name, tips, rotary in (("paraboloid-200", straight, aligned.rotary),
+                               ("manta", curve.tips, setup(MIKRON, (curve,)).rotary)):
+        passes = {label: ramps(linear_coordinates(MIKRON.machine, tips, angles), tips, FEEDS.cut, bounds, 0.01)
+                  for label, angles in (("A = C = 0", np.zeros(2)), ("jerk polytope", rotary))}
+        feed_figure(passes, FEEDS.cut).savefig(folder / f"feed-{name}.png")
+    print(f"\npictures in {folder}")
+
+
 def main() -> None:
     """Tables 2 to 4, the solutions and the pole zones."""
     machine = MIKRON.machine
@@ -111,6 +134,7 @@ def main() -> None:
     count, few = MANTA
     told("Manta (Table 4)", manta_passes(few), count / few)
     print(UNEXPLAINED)
+    drawn(Path("out") / "kinematic")
 
 
 if __name__ == "__main__":
