@@ -1,6 +1,7 @@
 """One blade planned, its operations turned to the others and proven there; broken patterns are refused with reasons."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from toolaxis.report.blades import blades_lines
 from toolaxis.report.tables import baselines_table
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
-from toolaxis.shape.part import Part
+from toolaxis.shape.part import Body, Part
 
 COUNT = 4
 BLISK = Path(__file__).parents[2] / "examples" / "blisk.step"
@@ -169,6 +170,16 @@ def test_blades_that_touch_are_refused() -> None:
     pattern, warnings = recognised(ring())
     assert pattern is None
     assert len(warnings) == 1 and "touch" in warnings[0]
+
+
+def test_a_stray_body_is_told_and_not_machined() -> None:
+    whole = wheel()
+    tiny = [face.transformed(np.diag([0.005, 0.005, 0.005, 1.0])) for face in sides()]
+    part = Part.from_faces([*whole.faces, *tiny])
+    part = replace(part, bodies=(Body("solid", (len(part.faces) - 1, len(part.faces)), True),))
+    pattern, warnings = recognised(part)
+    assert pattern is not None and warnings == () and pattern.rest == ()
+    assert any("faces 10, 11 belong to stray bodies" in text for text in pattern.part.warnings)
 
 
 def test_a_part_without_blades_is_not_warned_of() -> None:

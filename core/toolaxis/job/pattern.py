@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -17,13 +18,15 @@ from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
-from toolaxis.shape.part import PLAIN_KINDS, Part
+from toolaxis.shape.part import PLAIN_KINDS, Body, Part
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
 #: Blades whose faces differ by less are told as alike, mm.
 ALIKE = 1e-3
+#: Closed bodies smaller than this share of the part's diagonal are there by mistake.
+_STRAY = 5e-3
 #: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
 _FACETS = 8
 #: Share of a fillet that is tighter than the cutter from which it is left to a smaller one.
@@ -62,12 +65,23 @@ class Pattern:
         return tuple(face for name in named for face in map(self.part.face, named[name])
                      if face.kind not in PLAIN_KINDS and self.pieces.get(face.number, (face,)))
 
+    @cached_property
+    def stray(self) -> tuple[int, ...]:
+        """Sculptured faces of closed bodies that are so small beside the part that they are there by mistake."""
+        faces = {n for body in self.part.bodies if body.closed and self._across(body) < _STRAY * self.part.diagonal
+                 for n in body.faces}
+        return tuple(face.number for face in self.part.sculptured if face.number in faces)
+
+    def _across(self, body: Body) -> float:
+        boxes = np.array([self.part.face(n).box for n in body.faces])
+        return float(np.linalg.norm(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)))
+
     @property
     def rest(self) -> tuple[Face, ...]:
         """The sculptured faces that belong to no blade, each piece of them that no other body covers by itself."""
         found: list[Face] = []
         for face in self.part.sculptured:
-            if self.blades.blade_of(face.number) is None:
+            if self.blades.blade_of(face.number) is None and face.number not in self.stray:
                 left = self.pieces.get(face.number, (face,))
                 found += [piece.trimmed(piece.trims, face.label + letters(k)) for k, piece in enumerate(left)] \
                     if len(left) > 1 else left
@@ -143,6 +157,9 @@ def _told(pattern: Pattern) -> Pattern:
         area = sum(piece.area for left in small.values() for piece in left)
         notes.append(f"other bodies divide {len(small)} faces of blades ({min(small)} the first): their smaller "
                      f"pieces, {area:.2f} mm2, are not machined")
+    if pattern.stray:
+        notes.append(f"faces {', '.join(map(str, pattern.stray))} belong to stray bodies smaller than "
+                     f"{_STRAY * pattern.part.diagonal:.1f} mm: they are kept clear of, not machined")
     return replace(pattern, part=pattern.part.with_warnings(*notes))
 
 
@@ -260,5 +277,5 @@ def _tight(face: Face, side: str, tool: Tool) -> str:
     bent = face.curvature(face.grid(12, 12)).k1
     if (bent * tool.radius > 1).mean() < _TIGHT:
         return ""
-    return (f"face {face.number} is left to clean-up as a whole: a hollow fillet of {1 / np.median(bent):.2f} mm radius, "
-            f"tighter than the cutter's {tool.radius:g} mm; a ball end no larger than that reaches it")
+    return (f"face {face.number} is left to clean-up as a whole: a hollow fillet of {1 / np.median(bent):.2f} mm "
+            f"radius, tighter than the cutter's {tool.radius:g} mm; a ball end no larger than that reaches it")
