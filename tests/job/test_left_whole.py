@@ -70,13 +70,16 @@ def test_a_closed_ring_is_as_wide_as_from_border_to_border() -> None:
     assert mean_width(ring) == pytest.approx(2.0, rel=0.05)
 
 
+def post(fillet: float) -> ta.Part:
+    cq = pytest.importorskip("cadquery")
+    return ta.load(cq.Workplane().box(36, 30, 10).faces(">Z").workplane().circle(4).extrude(12)
+                   .edges(cq.selectors.BoxSelector((-5, -5, 4.5), (5, 5, 5.5))).fillet(fillet))
+
+
 @pytest.fixture(scope="module")
 def footed() -> Plan:
     """A floor with a post whose fillet is tighter than the cutter's corner, floor and fillet asked for."""
-    cq = pytest.importorskip("cadquery")
-    solid = (cq.Workplane().box(36, 30, 10).faces(">Z").workplane().circle(4).extrude(12)
-             .edges(cq.selectors.BoxSelector((-5, -5, 4.5), (5, 5, 5.5))).fillet(0.4))
-    part = ta.load(solid)
+    part = post(0.4)
     floor = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(4, 4)).point[:, 2], 5))
     fillet = next(f for f in part.faces if f.kind == "torus")
     return ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1,
@@ -87,8 +90,7 @@ def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_p
                                                              capsys: pytest.CaptureFixture[str]) -> None:
     floor, fillet = footed.operations
     assert footed.outcome == "complete" and floor.done and fillet.left
-    assert "0.61 mm wide" in fillet.orientation.reasons[0] and "ball of the corner radius" in str(
-        fillet.orientation.reasons[0])
+    assert "0.61 mm wide" in fillet.orientation.reasons[0] and "fillet of 0.40 mm" in fillet.orientation.reasons[0]
     assert fillet.zones[0].area == pytest.approx(fillet.face.area, rel=1e-12) == pytest.approx(16.5, abs=0.5)
     with staged(tmp_path / "plan") as stage:
         write_plan(footed, stage.folder)
@@ -98,6 +100,17 @@ def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_p
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) == 0
     assert "clean-up" in capsys.readouterr().out
     assert overview_picture(footed).axes
+
+
+@pytest.mark.parametrize(("radius", "cutter", "left"), [(2.0, 8, True), (2.0, 3.8, False)])
+def test_a_fillet_tighter_than_the_cutter_is_left_where_no_axis_was_found(radius: float, cutter: float,
+                                                                          left: bool) -> None:
+    part = post(radius)
+    fillet = next(face for face in part.faces if face.kind == "torus")
+    plan = ta.plan(part, ta.Tool.torus(cutter, 0.5, stickout=30), 0.1, faces=[fillet.number])
+    (op,) = plan.operations
+    assert plan.outcome == "incomplete" and op.left == left and not op.done
+    assert ("fillet of 2.00 mm radius, tighter than the cutter's 4 mm" in op.orientation.reasons[0]) == left
 
 
 def test_a_face_that_is_merely_not_machined_stays_incomplete(footed: Plan) -> None:

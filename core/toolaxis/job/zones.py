@@ -38,12 +38,12 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
     -------
     Plan
         Every operation's share for clean-up is that of its zones; "cancelled" where the user asked to stop.  Narrow
-        faces that no axis can machine, or hardly, have no operation but one zone.
+        faces that no axis can machine, or hardly, have no operation but one zone; a plan of nothing else is incomplete.
     """
     if plan.outcome == "cancelled":
         return plan
     stage = progress.within("clean-up zones")
-    plan = _without_corners(plan, stage)
+    plan = _without_fillets(plan, stage)
     asked = [op for op in plan.operations if op.done]
     while asked:
         found = abreast(lambda k, inner: zones_of(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
@@ -53,19 +53,27 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
         plan = replace(plan, operations=tuple(made.get(op.number, op) for op in plan.operations))
         lost = {op.face.number for op in made.values() if op.left}  # what it would have machined stays, for others too
         asked = [op for op in plan.operations if op.done and op.face.number in lost]
-    return replace(plan, outcome=outcome_of(plan.operations, plan.blades))
+    some = any(op.done for op in plan.operations)
+    return replace(plan, outcome=outcome_of(plan.operations, plan.blades) if some else "incomplete")
 
 
-def _without_corners(plan: Plan, progress: Progress) -> Plan:
-    """A plan in which narrow faces that are proven to be tighter than the cutter's corner are left to clean-up."""
+def _without_fillets(plan: Plan, progress: Progress) -> Plan:
+    """A plan in which narrow faces without an axis that are tighter than the cutter are left to clean-up."""
     made = []
     for op in plan.operations:
-        if not op.done and mean_width(op.face) < 2 * plan.tool.radius:
-            why = corner_too_large(search_task(plan, op, progress).feasibility)
-            made.append(_left_whole(op, why) if why else op)
-        else:
-            made.append(op)
+        why = "" if op.done or mean_width(op.face) >= 2 * plan.tool.radius else _too_tight(plan, op, progress)
+        made.append(_left_whole(op, why) if why else op)
     return replace(plan, operations=tuple(made))
+
+
+def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
+    """Why a face without an axis is one for a smaller tool; empty where it need not be."""
+    radius = plan.tool.radius
+    bent = op.face.curvature(op.face.grid(12, 12)).k1
+    if len(bent) and (bent * radius > 1).mean() > WHOLLY:
+        return (f"a hollow fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {radius:g} mm, for "
+                "which no axis was found: a ball end no larger than that reaches it")
+    return corner_too_large(search_task(plan, op, progress).feasibility)
 
 
 def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
