@@ -13,12 +13,16 @@ from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.pattern import recognised, shared_out, too_narrow
 from toolaxis.job.rooms import tightest
 from toolaxis.plan.document import plan_document
+from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
 from toolaxis.report.blades import blades_lines
+from toolaxis.report.hatching import COLOUR
+from toolaxis.report.overview import overview_picture
 from toolaxis.report.tables import baselines_table
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.part import Body, Part
 
 COUNT = 4
@@ -180,6 +184,35 @@ def test_a_stray_body_is_told_and_not_machined() -> None:
     pattern, warnings = recognised(part)
     assert pattern is not None and warnings == () and pattern.rest == ()
     assert any("faces 10, 11 belong to stray bodies" in text for text in pattern.part.warnings)
+
+
+def test_a_fillet_that_is_left_is_hatched_in_the_picture_of_the_part(plan: Plan) -> None:
+    assert plan.blades is not None
+    bare = replace(plan, operations=tuple(replace(op, zones=()) for op in plan.operations))
+    names = plan.blades.blades[0].faces
+    first = replace(plan.blades.blades[0], faces={**names, "fillet": names["pressure"], "pressure": ()})
+    blades = replace(plan.blades, blades=(first, *plan.blades.blades[1:]))
+    ops = (bare.operations[0], replace(bare.operations[1], path=None, orientation=Orientation(None)),
+           *bare.operations[2:])
+    shown = [np.asarray(overview_picture(made).axes[0].images[0].get_array())
+             for made in (bare, replace(bare, operations=ops, blades=blades))]
+    hatched = [int((np.abs(image[..., :3] - COLOUR).max(axis=-1) < 0.01).sum()) for image in shown]
+    assert hatched[0] == 0 and hatched[1] > 100
+
+
+def test_many_small_facets_are_left_to_clean_up() -> None:
+    z, x = np.meshgrid(np.linspace(-6, 6, 25), np.linspace(20, 30, 4), indexing="ij")
+    cut = [with_kinks(Face.from_bspline(np.dstack([x, bulge * (1 - (z / 6) ** 2), z]), degree=(1, 3), flip=flip))
+           for bulge, flip in ((2.0, False), (0.5, True))]
+    hub = wheel().faces[0]
+    part = Part.from_faces([hub, *(face.transformed(turn(np.pi / 2 * k)) for k in range(4) for face in cut)])
+    pattern, _ = recognised(part)
+    assert pattern is not None
+    share = shared_out(pattern, ta.Tool.torus(diameter=6, corner_radius=1), 0.1)
+    assert share.left.keys() == {2, 3} and share.divided == () and share.refused == {}
+    assert "24 facets" in share.left[2] and "left to clean-up as a whole" in share.left[2]
+    few = shared_out(pattern, ta.Tool.torus(diameter=2, corner_radius=0.5), 0.1)
+    assert few.left == {} and len(few.divided) == 2
 
 
 def test_a_part_without_blades_is_not_warned_of() -> None:
