@@ -72,6 +72,7 @@ def test_travel_is_said_not_to_be_judged_without_a_place(plan) -> None:
 
 @pytest.mark.parametrize(("words", "message"), [
     ({"machine": "lathe"}, "machine 'lathe' is neither a file nor one of the library"),
+    ({"objective": "time"}, "objective .time. needs a machine"),
     ({"machine": "cone:0,0,1,40", "offset": (0, 0, 1)}, "without a machine"),
     ({"offset": (0, 0, 1)}, "without a machine"), ({"machine": "mikron-ucp-710", "offset": (0, 1)}, "work offset")])
 def test_wrong_machines_and_places_are_refused(words, message) -> None:

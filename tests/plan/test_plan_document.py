@@ -153,7 +153,7 @@ def test_a_broken_document_is_refused(change: Callable[[dict[str, Any]], None], 
     ({"scallop": 0.02, "spindle": np.inf}, "spindle"),
     ({"scallop": 0.02, "method": "guess"}, "sphere, sectors, roman, normal, one or ball"),
     ({"scallop": 0.02, "direction": "up"}, "zigzag, climb or conventional"),
-    ({"scallop": 0.02, "objective": "time"}, "length or passes"),
+    ({"scallop": 0.02, "objective": "weight"}, "passes or time"),
 ])
 def test_wrong_inputs(values: dict[str, Any], said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
