@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 #: Panels over the range of v, pieces over the range of u, and Gauss points in each.
-PANELS, PIECES, POINTS = 48, 6, 4
+PANELS, PIECES, POINTS = 48, 12, 4
 
 #: Samples along each side of the face in the search of its extremes.
 SAMPLES = 48
