@@ -1,6 +1,7 @@
 """One blade planned, its operations turned to the others and proven there; broken patterns are refused with reasons."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -247,3 +248,16 @@ def test_fillets_tighter_than_the_cutter_are_left_to_a_smaller_one(diameter: flo
     assert {face.number for face in found.whole} & fillets == (set() if left else fillets)
     assert set(found.left) == (fillets if left else set())
     assert all("3.50 mm radius" in why for why in found.left.values())
+
+
+@pytest.mark.long
+def test_tools_keep_clear_of_all_of_a_face_though_only_pieces_of_it_are_machined() -> None:
+    path = Path(os.environ.get("TOOLAXIS_SHARED", Path(__file__).parents[3] / "shared")) / "parts/kj66_impeller.step"
+    if not path.exists():
+        pytest.skip(f"{path} is not there: set TOOLAXIS_SHARED")
+    part = ta.load(path)
+    pattern, _ = recognised(part)
+    assert pattern is not None
+    assert all(pattern.part.face(face.number) is face for face in part.faces)
+    assert len([piece for piece in pattern.rest if piece.number == 88]) >= 9
+    assert all(face.area < 0.7 * part.face(face.number).area for face in pattern.first if face.number in (1, 3))

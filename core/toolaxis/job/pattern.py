@@ -58,11 +58,20 @@ class Pattern:
     motions: tuple[Array, ...]
     pieces: dict[int, tuple[Face, ...]] = field(default_factory=dict)
 
+    def face(self, number: int) -> Face:
+        """A face of a blade without what other bodies cover; where they part it, its largest piece.
+
+        Parameters
+        ----------
+        number : int
+        """
+        return (self.pieces.get(number) or (self.part.face(number),))[0]
+
     @property
     def first(self) -> tuple[Face, ...]:
         """The sculptured faces of the first blade, and its piece of the hub where that is sculptured."""
         named = self.blades.blades[0].faces
-        return tuple(face for name in named for face in map(self.part.face, named[name])
+        return tuple(face for name in named for face in map(self.face, named[name])
                      if face.kind not in PLAIN_KINDS and self.pieces.get(face.number, (face,)))
 
     @cached_property
@@ -102,7 +111,9 @@ def recognised(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | 
         rotor = blades_of(part)
         numbers = {face.number for face in part.sculptured}.union(*(blade.faces for blade in rotor.blades))
         bare, pieces = uncovered(part, numbers, progress)
-        return _told(replace(pattern_of(bare, rotor), pieces=pieces)), ()
+        # tools keep clear of whole faces: only what is machined is cut back
+        return _told(replace(pattern_of(bare, rotor), part=part.with_warnings(*bare.warnings[len(part.warnings):]),
+                             pieces=pieces)), ()
     except NoPattern:
         return None, ()
     except UnsupportedGeometry as reason:
@@ -145,7 +156,7 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
 
 def _told(pattern: Pattern) -> Pattern:
     """The pattern with warnings: blades that differ, and pieces of a blade's faces that are too many to be planned."""
-    far, number = max((off(pattern.part.face(n), other, matrix), other.face.number)
+    far, number = max((off(pattern.face(n), other, matrix), other.face.number)
                       for matrix, found in zip(pattern.motions, pattern.matching, strict=True)
                       for n, other in found.items() if other.chart is not None)
     notes = []
@@ -196,12 +207,12 @@ def too_narrow(pattern: Pattern, tool: Tool, clearance: float) -> dict[int, str]
     -------
     dict of int to str, by number of the face; proven for every axis.
     """
-    part, blades = pattern.part, pattern.blades.blades
-    around = [face for k in {1, len(blades) - 1} for face in _walls(part, blades[k])]
+    blades = pattern.blades.blades
+    around = [pattern.face(face.number) for k in {1, len(blades) - 1} for face in _walls(pattern.part, blades[k])]
     found = {}
     for name in ("suction", "pressure"):
         for number in blades[0].faces[name]:
-            gap = ahead(part.face(number), around)
+            gap = ahead(pattern.face(number), around)
             if gap is not None and reach_along_normal(tool) > widest(gap, clearance):
                 found[number] = _refusal(name, number, gap, tool, clearance)
     return found

@@ -119,7 +119,7 @@ class Job:
         one = replace(self, part=apart, regions=regions,
                       whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
         faces = [piece for face in share.divided for piece in split_at_kinks(face)]
-        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), self.part, share)
+        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), pattern, share)
         found = spread_out(pattern, first, _Planner(self), progress)
         if found.outcome != "cancelled" and pattern.rest:
             faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]

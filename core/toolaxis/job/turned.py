@@ -52,17 +52,17 @@ class Planner(Protocol):
         """The operation of a face of a part, its axis searched."""
 
 
-def with_refused(first: Plan, part: Part, share: Share) -> Plan:
+def with_refused(first: Plan, pattern: Pattern, share: Share) -> Plan:
     """The plan of the first blade with the faces that cannot be machined, or are left to clean-up, at its end.
 
     Parameters
     ----------
     first : Plan
-    part : Part
+    pattern : Pattern
     share : Share
     """
-    faces = [(part.face(number), "infeasible", why) for number, why in share.refused.items()]
-    faces += [(part.face(number), "not_found", why) for number, why in share.left.items()]
+    faces = [(pattern.face(number), "infeasible", why) for number, why in share.refused.items()]
+    faces += [(pattern.face(number), "not_found", why) for number, why in share.left.items()]
     made = tuple(Operation(len(first.operations) + k, face, Orientation(None, outcome=outcome, reasons=(why,)),
                            zones=(Zone(face.outline, face.area),) if face.number in share.left else ())
                  for k, (face, outcome, why) in enumerate(faces, 1))
@@ -172,7 +172,7 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
         reason = f"no face where the turn puts face {number}: plan the faces of this blade ({beside} ...) by hand"
         return Operation(op.number, op.face, Orientation(None, reasons=(reason,))), False
     suffix = op.face.label.removeprefix(str(number))
-    piece, away = turned_piece(op.face, pattern.part.face(number), other, matrix, f"{other.face.number}{suffix}")
+    piece, away = turned_piece(op.face, pattern.face(number), other, matrix, f"{other.face.number}{suffix}")
     apart = pattern.blades.apart(pattern.part, piece.number)
     if not op.done:
         whole = tuple(Zone(piece.outline, piece.area) for _ in op.zones)
