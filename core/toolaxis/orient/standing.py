@@ -86,7 +86,7 @@ def stands_free(scene: Scene, places: Array, axis: Array, asked: tuple[bool, tup
         if group.role in roles and len(some):
             tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
             required = np.tile(group.required, (len(group.faces), 1))
-            if not itself:
+            if not itself and group.role == SKIN:  # obstacles have numbers of their own
                 required[[face.number == scene.number for face in group.faces]] = -np.inf
             free[some] = _kept(group, tool, places[some], axis, required)
     return free
