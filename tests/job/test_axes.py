@@ -28,7 +28,7 @@ def test_another_axis_costs_more_and_may_be_taken_over(small_plan: Plan) -> None
     assert tried.done and tried.orientation.length >= 1.02 * op.orientation.length
     assert np.allclose(tried.frame.z, tried.orientation.axis)
     plan = with_operations(small_plan, {1: tried})
-    assert plan.operations[0] is tried and plan.outcome == "complete"
+    assert plan.operations[0].path is tried.path and plan.outcome == "complete"
     assert verify(plan).passed
 
 

@@ -167,7 +167,7 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
     if witness is None:
         ledger = Ledger(job.feasibility, job.worth, job.progress)
         ledger.look(t[None])
-        found, proof = finished(job, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
+        found, proof, _ = finished(job, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
         witness = proof.witness
     job.progress.check()
     if witness is not None:

@@ -52,6 +52,8 @@ def corner_too_large(feasibility: Feasibility) -> str:
     if radius <= 0 or skin.role != SKIN or tool.flute_length < 2 * radius:
         return ""
     some = feasibility.dense
+    if not len(some.uv):
+        return ""
     centre = some.point + (radius + feasibility.allowance) * some.normal
     ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
     slack = max(face.tolerance for face in skin.faces) + 2 * FINE

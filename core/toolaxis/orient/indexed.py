@@ -48,6 +48,8 @@ RULES = ("roman", "normal")
 #: Height above everything at which links cross, mm.
 CROSSING = 5.0
 _ATTEMPTS = 4
+#: Share of a face that passes may miss, away from walls, before the next best axis is tried.
+_MISSED = 5e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,12 +277,18 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     """
     refused: list[str] = []
     found = quickest(job.worth, held(ledger, found), job.made)
+    best: tuple[float, Orientation, int] | None = None
     for k in range(len(found)):
-        accepted = _accepted(job, ledger, found[k], refused, attempts)
-        if accepted is not None:
-            others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
-            return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
-                           evaluations=ledger.evaluations, lobes=others)
+        accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
+        if accepted is not None and (best is None or missed < best[0]):
+            best = missed, accepted, k
+        if best is not None and best[0] <= _MISSED:
+            break
+    if best is not None:
+        _, accepted, k = best
+        others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
+        return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
+                       evaluations=ledger.evaluations, lobes=others)
     if ledger.proven:
         outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
     else:
@@ -295,25 +303,31 @@ def _sound(job: Task, one: Candidate) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str], attempts: int) -> Orientation | None:
-    """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str],
+              attempts: int) -> tuple[Orientation | None, float]:
+    """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused.
+
+    With it the share of the face that its passes miss though nothing stands beside it.
+    """
     candidate: Candidate | None = one
     for attempt in range(attempts):
         if candidate is None:
-            return None
+            return None, 0.0
         witness = ledger.feasibility.witness(candidate.axis)
         if witness is None:
-            result, proof = finished(job, candidate)
+            result, proof, missed = finished(job, candidate)
             if proof.witness is None:
-                return result
+                if missed > _MISSED:
+                    refused.append(f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face")
+                return result, missed
             witness = proof.witness
         refused.append(f"refused {direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
         candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
-    return None
+    return None, 0.0
 
 
-def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
-    """Passes made and proven for one candidate.
+def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
+    """Passes made and proven for one candidate, and the share of the face that they miss, walls aside.
 
     Parameters
     ----------
@@ -324,19 +338,19 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof]:
     try:
         placed = job.laid(one.axis, feed)
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
-        return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason)))
+        return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0
     path = job.traced(placed)
     beyond = out_of_travel(job.feasibility.limits, path)
     proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,
                                                progress=job.progress)
-    unreached = job.feasibility.unreached(one.axis)
+    unreached, missed = job.feasibility.unreached(one.axis), placed.uncut
     if unreached > 0:
-        unreached = max(unreached, placed.uncut)
+        unreached, missed = max(unreached, missed), 0.0
     length = path.length(Motion.CUT)
     area = job.worth.face.area * (1 - unreached)
     notes = () if unreached == 0 else (f"{100 * unreached:.1f} % of the area lies at walls and is left to clean-up",)
     return Orientation(one.axis, feed, path.passes, one.passes, length, area / length if length > 0 else 0.0,
-                       proof.gouge, proof.clearance, "feasible", notes, unreached=unreached), proof
+                       proof.gouge, proof.clearance, "feasible", notes, unreached=unreached), proof, missed
 
 
 def _other(job: Task, one: Candidate) -> Orientation:
@@ -382,7 +396,7 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
         witness = job.feasibility.witness(t)
         if witness is None:
             best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
-            result, proof = finished(job, best)
+            result, proof, _ = finished(job, best)
             if proof.witness is None:
                 return replace(result, evaluations=1 + len(feeds))
             witness = proof.witness

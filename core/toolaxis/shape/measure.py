@@ -112,7 +112,7 @@ def mean_width(face: "Face") -> float:
     for loop in face.outline:
         points = face.evaluate(walk(loop, stations(loop, step))).point
         length += float(np.linalg.norm(points - np.roll(points, -1, axis=0), axis=1).sum())
-    return 2 * face.area / length
+    return 2 * face.area / length if length > 0 else 0.0
 
 
 def box(face: "Face") -> Array:

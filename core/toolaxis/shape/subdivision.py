@@ -223,7 +223,8 @@ class _Builder:
         e, rest = remainder(bounds, half) + self.extra, second_remainder(bounds[:, 3:], half) + self.extra
         longest = 2 * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) + 2 * e
         fine = (e <= self.fineness + self.extra) & (longest <= self.face.diagonal / _COARSEST)
-        done = fine | (longest <= self.face.diagonal / _FINEST) | (len(self.levels) >= _DEEPEST)
+        least = max(self.face.diagonal / _FINEST, self.fineness + 2 * self.extra)  # a face without area has no diagonal
+        done = fine | (longest <= least) | (len(self.levels) >= _DEEPEST)
         return np.column_stack([d.point, a, b, e, bend, rest]), level.single & done
 
     def split(self) -> None:
