@@ -9,7 +9,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from toolaxis.batch.run import batch as batch
     from toolaxis.cad.loading import load as load
+    from toolaxis.cad.machines import load_machine as load_machine
     from toolaxis.contact.clearance import clearance as clearance
     from toolaxis.contact.drop import drop_cutter as drop_cutter
     from toolaxis.contact.gouge import gouge as gouge
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
     from toolaxis.job.judge import verify as verify
     from toolaxis.job.run import plan as plan
-    from toolaxis.machine.catalogue import load_machine as load_machine
     from toolaxis.machine.mounting import Mounting as Mounting
     from toolaxis.orient.indexed import best_axis as best_axis
     from toolaxis.partition.regions import partition as partition
@@ -46,7 +47,8 @@ _HOME = {
     "estimate": "path.estimate", "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
-    "Cancelled": "errors", "load_machine": "machine.catalogue", "Mounting": "machine.mounting", "join": "shape.skins",
+    "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",
+    "batch": "batch.run",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605
@@ -68,11 +70,12 @@ def __dir__() -> list[str]:
 
 
 class _Package(ModuleType):
-    """The package as an object: `partition`, `plan` and `verify` stay the public functions.
+    """The package as an object: `batch`, `partition`, `plan` and `verify` stay the public functions.
 
     Subpackages have the same names, and the import system would put them in the functions' place.
     """
 
+    batch = property(lambda self: _resolve("batch"), lambda self, subpackage: None)
     partition = property(lambda self: _resolve("partition"), lambda self, subpackage: None)
     plan = property(lambda self: _resolve("plan"), lambda self, subpackage: None)
     verify = property(lambda self: _resolve("verify"), lambda self, subpackage: None)

@@ -47,3 +47,11 @@ def test_the_empty_path() -> None:
 def test_refusals(change: dict[str, np.ndarray], said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
         replace(path(), **change)
+
+
+def test_links_are_rapid_along_their_own_axis_and_never_while_it_turns() -> None:
+    lean = np.array([[0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]])
+    axis = lean[[0, 0, 0, 0, 1, 1]]
+    cl = np.array([[6.0, 0, 8], [0, 0, 0], [1, 0, 0], [7, 0, 8], [-5, 0, 8], [1.0, 0, 0]])
+    path = ToolPath(cl, cl, axis, axis, np.array([3, 3, 0, 3, 3, 3]), np.array([0, 6]))
+    assert path.rapid.tolist() == [True, True, False, True, False, True]

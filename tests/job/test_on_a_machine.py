@@ -11,6 +11,7 @@ import toolaxis as ta
 from toolaxis.feed.schedule import index_time
 from toolaxis.job.axes import try_axis, with_operations
 from toolaxis.job.folder import read_json, read_plan, write_plan
+from toolaxis.job.judge import verdict_document
 from toolaxis.job.timing import timed
 from toolaxis.machine.mounting import Mounting
 from toolaxis.report.tables import plan_table
@@ -30,7 +31,7 @@ def test_axes_are_held_and_the_plan_says_where(plan, tmp_path: Path) -> None:
     op = plan.operations[0]
     assert plan.outcome == "complete", op.orientation.reasons
     assert plan.machine is not None and plan.inputs.limits == "cone:0,0,1,40"
-    assert "machine" not in plan.not_checked and "collision with the machine itself" in plan.not_checked
+    assert "machine" not in plan.not_checked and "collision with the machine itself" not in plan.not_checked
     write_plan(plan, tmp_path)
     document = read_json(tmp_path / "plan.json")
     assert document["machine"]["name"] == "Mikron UCP 710" and document["machine"]["kind"] == "table-table"
@@ -43,7 +44,9 @@ def test_axes_are_held_and_the_plan_says_where(plan, tmp_path: Path) -> None:
     again = read_plan(tmp_path)
     assert again.machine is not None and np.allclose(again.machine.table_from_part, [[1, 0, 0, -20], [0, 1, 0, -15],
                                                                                      [0, 0, 1, 60], [0, 0, 0, 1]])
-    assert ta.verify(again).passed
+    verdict = ta.verify(again)
+    assert verdict.passed
+    assert "collision with the machine itself" in verdict_document(again, verdict)["not_checked"]
 
 
 def test_the_judge_refuses_a_part_that_was_moved_out_of_the_travel(plan) -> None:
@@ -68,6 +71,8 @@ def test_travel_is_said_not_to_be_judged_without_a_place(plan) -> None:
     assert "travel of the machine's linear axes" in bare.not_checked
     short = replace(plan, tool=ta.Tool.torus(diameter=12, corner_radius=2))
     assert "travel of the machine's linear axes" in short.not_checked
+    hollow = replace(plan, machine=replace(plan.machine, machine=replace(plan.machine.machine, bodies=())))
+    assert all("collision with the machine itself" in one.not_checked for one in (bare, short, hollow))
 
 
 @pytest.mark.parametrize(("words", "message"), [

@@ -135,7 +135,7 @@ def test_the_number_of_orientations_is_chosen_from_their_curve(tmp_path: Path) -
 
 @pytest.mark.parametrize("change, said", [
     ({"regions": 0}, "number of sub-surfaces is 0"), ({"orientations": 17}, "number of orientations is 17"),
-    ({"strategy": "five-axis"}, "strategy 'five-axis' is not part"), ({"faces": []}, "list of faces is empty"),
+    ({"strategy": "five-axis"}, "strategy is 'five-axis'"), ({"faces": []}, "list of faces is empty"),
     ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method is 'guess'"),
     ({"machine": 7}, "machine is a int"), ({"datum": (0, 0)}, "datum"), ({"allowance": -1}, "allowance"),
 ])

@@ -84,3 +84,12 @@ def test_nothing_else_imports_numba() -> None:
     importing = re.compile(r"^\s*(import|from) numba\b", re.MULTILINE)
     guilty = [str(path.relative_to(CORE)) for path in CORE.rglob("*.py") if importing.search(path.read_text())]
     assert guilty == ["toolaxis/numeric/compiled.py"]
+
+
+def test_what_has_to_be_compiled_is_counted(tmp_path: Path) -> None:
+    (tmp_path / "one.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+                                     "@compiled\ndef double(x):\n    return 2 * x\n")
+    script = ("from toolaxis.numeric.compiled import compilations\nseen = compilations()\nimport one\n"
+              "assert one.double(1.5) == 3.0\nprint('seen', seen())")
+    counts = [run(script, tmp_path, **environment) for environment in ({}, {}, {"TOOLAXIS_NUMBA": "0"})]
+    assert [text.strip() for text in counts] == ["seen 1", "seen 0", "seen 0"]

@@ -1,10 +1,11 @@
-"""Links cross as low as is proven clear: lower than everything where nothing is in the way, above what is."""
+"""Links go straight over to what begins beside, and cross elsewhere as low as is proven clear."""
 
 import numpy as np
 import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.job.rooms import tightest
 from toolaxis.orient.crossing import OVER, Crossing
 from toolaxis.orient.indexed import task
 from toolaxis.orient.setting import grouped
@@ -34,7 +35,7 @@ def box(x0: float, x1: float, y0: float, y1: float, height: float) -> list[ta.Fa
 
 
 def test_links_stay_low_where_nothing_is_in_the_way(sheet: ta.Face) -> None:
-    path = task(sheet, TOOL, 0.05).made(AXIS, "u")
+    path = task(sheet, TOOL, 0.05, direction="climb").made(AXIS, "u")
     height = path.cl @ AXIS
     top = height.max()
     assert height[0] == pytest.approx(top) and height[-1] == pytest.approx(top), "it comes from the top and goes there"
@@ -48,6 +49,29 @@ def test_links_stay_low_where_nothing_is_in_the_way(sheet: ta.Face) -> None:
             tip = path.cl[k - 1] + share * (path.cl[k] - path.cl[k - 1])
             grid = sheet.evaluate(sheet.grid(80, 80)).point
             assert cutter_distance(grid, tip) >= OVER - 1e-6
+
+
+def test_zigzag_goes_straight_over_to_the_next_pass(sheet: ta.Face) -> None:
+    path = task(sheet, TOOL, 0.05).made(AXIS, "u")
+    assert path.passes > 10 and (path.kind[3:-3] != Motion.LINK).all()
+    grid = sheet.evaluate(sheet.grid(150, 150)).point
+    over = np.flatnonzero(np.isin(path.kind[1:], (Motion.EXIT, Motion.ENTRY))) + 1
+    assert len(over) >= 2 * (path.passes - 1)
+    for k in over:
+        for share in np.linspace(0, 1, 9):
+            tip = path.cl[k - 1] + share * (path.cl[k] - path.cl[k - 1])
+            assert cutter_distance(grid, tip) >= -Tolerance().gouge - 1e-6
+    assert path.length(Motion.EXIT, Motion.ENTRY) < 6.0 * path.passes
+
+
+def test_a_lift_stays_where_something_stands_between_or_the_way_is_long(sheet: ta.Face) -> None:
+    ends = np.array([[20.0, 10, 3.0], [50.0, 10, 3.0], [5.0, 9, 3.0]])
+    begins = ends + np.array([[3.0, 0, 0], [3.0, 0, 0], [9.0, 0, 0]])
+    post = box(21, 22, 9, 11, 4.0)
+    over = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=post), AXIS, 60.0).beside(ends, begins)
+    assert np.isnan(over[0]).all(), "a post stands between"
+    assert np.allclose(over[1], [51.5, 10, 3.0]), "nothing is in the way"
+    assert np.isnan(over[2]).all(), "nine millimetres are not beside"
 
 
 def cutter_distance(points: np.ndarray, tip: np.ndarray) -> float:
@@ -86,6 +110,9 @@ def test_a_plan_with_low_links_passes_the_judge_beside_a_box(sheet: ta.Face) -> 
     assert made.travel < 1.6 * made.length
     verdict = ta.verify(made)
     assert verdict.passed, verdict.reasons
+    place = tightest(made)
+    assert place is not None
+    assert place.distance >= min(made.operations[0].orientation.clearance.values()), "never less than what was proven"
 
 
 def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,

@@ -14,6 +14,7 @@ from toolaxis.partition.around import parted
 from toolaxis.partition.bosses import bosses_of, distances
 from toolaxis.partition.lattice import Lattice
 from toolaxis.path.left_over import left_over, machined
+from toolaxis.plan.plan import Plan
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -93,6 +94,37 @@ def test_zones_and_machined_area_are_the_sub_surface(name: str) -> None:
     rest = machined(piece, zones)
     is_made_of(piece, [*rest, *(piece.trimmed(zone.loops) for zone in zones)])
     assert sum(zone.area for zone in zones) + sum(one.area for one in rest) == pytest.approx(piece.area, rel=1e-6)
+
+
+def is_whole(part: ta.Part, plan: Plan, numbers: set[int]) -> None:
+    """The sub-surfaces of a plan are the faces with these numbers, and zones and the rest each sub-surface."""
+    assert numbers == {op.face.number for op in plan.operations}
+    for number in numbers:
+        is_made_of(part.faces[number - 1], [op.face for op in plan.operations if op.face.number == number])
+    for op in plan.operations:
+        is_made_of(op.face, [*machined(op.face, op.zones), *(op.face.trimmed(zone.loops) for zone in op.zones)])
+
+
+@pytest.mark.long
+def test_a_plan_of_a_whole_blisk_leaves_nothing_out() -> None:
+    tool = ta.Tool.torus(10, 1, stickout=70, holder=[(10, 0), (10, 40), (25, 40), (25, 80)])
+    plan = ta.plan(EXAMPLES / "blisk.step", tool, 0.02, workers=2)
+    part, _ = read("blisk")
+    assert sum(not op.done for op in plan.operations) == 4 * 16, "fillets"
+    is_whole(part, plan, {face.number for face in part.sculptured})
+
+
+@pytest.mark.long
+def test_a_plan_of_a_skin_and_of_a_blade_of_the_impeller_leaves_nothing_out() -> None:
+    skin = ta.plan(EXAMPLES / "skin.step", TOOL, 0.2, faces="skins", regions=3)
+    assert len(skin.operations) > 1
+    numbers = skin.operations[0].face.numbers
+    joined = ta.join(ta.load(EXAMPLES / "skin.step"), numbers)
+    is_made_of(joined.faces[numbers[0] - 1], [op.face for op in skin.operations])
+    part, _ = read("impeller")
+    side = max(part.sculptured, key=lambda face: face.area)
+    tool = ta.Tool.torus(6, 1, stickout=50, holder=[(10, 0), (10, 40), (25, 40), (25, 80)])
+    is_whole(part, ta.plan(part, tool, 0.1, faces=[side.number], regions=3), {side.number})
 
 
 @pytest.mark.long

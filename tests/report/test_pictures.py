@@ -15,7 +15,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.zone import Zone
-from toolaxis.report.bars import baselines_picture
+from toolaxis.report.bars import baselines_picture, options_picture
 from toolaxis.report.hatching import COLOUR
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.overview import coloured, overview_picture
@@ -24,7 +24,6 @@ from toolaxis.report.plots import (
     cutting_lines,
     map_picture,
     operation_picture,
-    options_picture,
     study_picture,
     widths_picture,
 )
@@ -129,7 +128,10 @@ def test_cutting_lines_are_the_uninterrupted_cuts() -> None:
     op = planned()[1]
     assert op.path is not None
     lines = cutting_lines(op.path)
-    assert len(lines) == 12 and all(len(line) == 19 for line in lines)
+    assert len(lines) == 12 and all(len(line) == 20 for line in lines), "from the point at which each begins"
+    few = ToolPath(*(rows[[0, 19]] for rows in (op.path.cc, op.path.cl, op.path.axis, op.path.normal)),
+                   np.array([Motion.ENTRY, Motion.CUT], dtype=np.int8), np.array([0, 2]))
+    assert np.array_equal(cutting_lines(few)[0], few.cc), "one straight is a line too"
 
 
 @pytest.mark.parametrize("angle", [0.0, 10.0, 45.0, 90.0, 120.0])

@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 
 #: Length, mm, by which a link may miss the tool axis, or the crossing height, and still be rapid.
 STRAIGHT = 1e-5
+#: Turn of the axis, rad, below which it stands still.
+STILL = 1e-6
 
 
 class Motion(IntEnum):
@@ -86,16 +88,19 @@ class ToolPath:
 
     @property
     def rapid(self) -> NDArray[np.bool_]:
-        """Which motions are rapid, (n,): links along the mean axis, and those across above everything that is cut."""
+        """Which motions are rapid, (n,): links along the axis, and those across above everything that is cut, both only
+        where the axis stands still."""
         axis = self.axis.mean(axis=0)
         axis = axis / np.linalg.norm(axis)
-        steps = np.diff(self.cl, axis=0, prepend=self.cl[:1])
+        steps, turns = (np.diff(rows, axis=0, prepend=rows[:1]) for rows in (self.cl, self.axis))
         heights = self.cl @ axis
-        along = np.linalg.norm(steps - (steps @ axis)[:, None] * axis, axis=1) <= STRAIGHT
+        aside = steps - (steps * self.axis).sum(axis=1, keepdims=True) * self.axis
+        along = np.linalg.norm(aside, axis=1) <= STRAIGHT
         low = float(heights[self.kind != Motion.LINK].max(initial=-np.inf))
         above = heights >= max(float(heights.max(initial=-np.inf)) - STRAIGHT, low + STRAIGHT)
         both = above & np.concatenate([[True], above])[:-1]
-        return np.asarray((self.kind == Motion.LINK) & (along | both))
+        still = np.linalg.norm(turns, axis=1) <= STILL
+        return np.asarray((self.kind == Motion.LINK) & still & (along | both))
 
     def length(self, *kinds: Motion) -> float:
         """Length of the tip's motion, mm, of the given kinds; of all when none is given.

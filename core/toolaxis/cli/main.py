@@ -35,6 +35,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_verify(commands)
     _add_post(commands)
+    _add_batch(commands)
     return top
 
 
@@ -93,7 +94,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
-    sub.add_argument("--strategy", help=argparse.SUPPRESS)
+    sub.add_argument("--strategy", default="indexed", metavar="NAME",
+                     help="indexed (default): one fixed axis for each sub-surface; sturz: simultaneous five-axis "
+                          "milling with the best constant lead; two-point: the same with a flat end or torus that "
+                          "touches hollow faces at two points")
     sub.set_defaults(module="toolaxis.cli.plan")
 
 
@@ -127,6 +131,20 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.post")
+
+
+def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("batch", help="plan many parts, each in a process of its own, resumable",
+                              description="Plan the jobs of a TOML file ([defaults] and [[jobs]]), each into its own "
+                                          "folder. Started again, it goes on where it stopped. Exit code 1 where a job "
+                                          "is not complete.")
+    sub.add_argument("jobs", metavar="JOBS.toml")
+    sub.add_argument("--out", metavar="DIR", help="folder for the jobs' folders (default: out/NAME of the job file)")
+    sub.add_argument("--workers", type=int, metavar="N", help="processes; all cores unless given")
+    sub.add_argument("--scheduler", metavar="ADDRESS",
+                     help="dask.distributed scheduler, such as tcp://host:8786, whose workers take the jobs")
+    sub.add_argument("--json", action="store_true", help="machine-readable summary on stdout")
+    sub.set_defaults(module="toolaxis.cli.batch")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

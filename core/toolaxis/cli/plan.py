@@ -6,16 +6,14 @@ from pathlib import Path
 
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.errors import Cancelled
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
-from toolaxis.job.spec import Spec
+from toolaxis.job.spec import Spec, by_strategy
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of
 from toolaxis.progress import Progress
-
-_LATER = {"strategy": ("any other strategy than one fixed axis per face", "leave it out")}
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -42,6 +40,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
+                        strategy=given.strategy,
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
                         rapid=spec.inputs.rapid, compare=given.compare,
                         orientations=spec.orientations, workers=given.workers, progress=progress)
@@ -56,10 +55,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _spec(given: Namespace) -> Spec:
-    for name, (what, remedy) in _LATER.items():
-        value = getattr(given, name)
-        if value is not None and (name, value) != ("strategy", "indexed"):
-            raise InvalidInput(f"--{name} {value}: {what} is not part of this version: {remedy}")
+    by_strategy(given.strategy, given.method, given.objective)
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
@@ -107,6 +103,8 @@ def _told(made: Plan, given: Namespace) -> int:
     if isinstance(asked, int) and made.orientations > asked:
         say(f"toolaxis: warning: {made.orientations} axes instead of {asked}: for some sub-surfaces no shared "
             "axis passed the proof, and one was searched; plan.json says why")
+    for why in made.in_the_way:
+        say(f"toolaxis: warning: {why}")
     for op in made.operations:
         if made.blades is not None and op.number in made.blades.copies:
             continue
@@ -138,5 +136,5 @@ def _left_over(op: Operation) -> None:
         say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
             f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
-        if why.startswith("undercut"):
+        if why.startswith(("undercut", "one contact", "no contact")):
             say(f"toolaxis: warning: face {op.face.label}: {why}")

@@ -4,11 +4,11 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
+from toolaxis.cad.machines import load_machine
 from toolaxis.cli.output import print_json, say
 from toolaxis.job.folder import read_plan, staged
 from toolaxis.job.posting import posted, verdict_of
 from toolaxis.job.spec import offset_from
-from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.gcode import Options

@@ -7,7 +7,7 @@ from pathlib import Path
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.job.folder import read_plan, staged, write_json
-from toolaxis.job.judge import passes, verdict_document, verify_plan
+from toolaxis.job.judge import not_judged, passes, verdict_document, verify_plan
 from toolaxis.report.tables import verdict_table
 
 
@@ -45,6 +45,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         if op.done and op.orientation.unreached > 0:
             say(f"toolaxis: {op.name}: the plan leaves {100 * op.orientation.unreached:.1f} % of the area, at "
                 "walls, to clean-up: that share was not asked for")
+    if not_judged(plan):
+        say(f"toolaxis: not checked: {', '.join(not_judged(plan))}")
     for reason in document["reasons"]:
         say(f"toolaxis: {reason}")
     if plan.outcome == "cancelled":

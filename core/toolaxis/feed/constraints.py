@@ -85,3 +85,37 @@ def linear_bounds(machine: Machine) -> AxisBounds:
     """
     levels = np.array([axis.drive.levels(axis.name) for axis in machine.linear])
     return AxisBounds(levels[:, 0], levels[:, 1], levels[:, 2])
+
+
+def followed(points: ArrayLike, tips: ArrayLike, feed: float, width: int) -> tuple[Array, Array, Array]:
+    """Axis positions and tips of a curved path, checked, and the way of the tip to each.
+
+    Parameters
+    ----------
+    points : (n, width) array_like
+        mm or rad
+    tips : (n, 3) array_like
+        mm
+    feed : float
+        mm/s
+    width : int
+        Number of axes.
+
+    Returns
+    -------
+    (n, width), (n, 3) and (n,) arrays
+
+    Raises
+    ------
+    InvalidInput
+        When there are fewer than six points, shapes do not fit, points coincide, or the feed is not above zero.
+    """
+    joints, rows = as_rows(points, width, "joint coordinates"), as_rows(tips, 3, "tips")
+    if len(joints) != len(rows) or len(rows) < 6:
+        raise InvalidInput(f"{len(joints)} joint positions for {len(rows)} tips: six or more of each are needed")
+    if not feed > 0:
+        raise InvalidInput(f"feed is {feed} mm/s: it must be above zero")
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    if not (steps > 0).all():
+        raise InvalidInput(f"points {int(np.argmin(steps))} and the next coincide: leave one out")
+    return joints, rows, np.concatenate([[0.0], np.cumsum(steps)])

@@ -11,11 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 
-from toolaxis.errors import InvalidInput
 from toolaxis.feed.barrier import SpeedProblem, greatest_speeds
-from toolaxis.feed.constraints import AxisBounds
+from toolaxis.feed.constraints import AxisBounds, followed
 from toolaxis.feed.profile import profile
-from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]
 
@@ -114,15 +112,7 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
     **Source** [grandguillaume2021] Eq. (9), with 3 s' s'' f_s + s'^3 f_ss in its third line.
     Property: no axis exceeds its velocity, acceleration or jerk by more than a millionth at the sampled times.
     """
-    joints, rows = as_rows(points, len(bounds.velocity), "joint coordinates"), as_rows(tips, 3, "tips")
-    if len(joints) != len(rows) or len(rows) < 6:
-        raise InvalidInput(f"{len(joints)} joint positions for {len(rows)} tips: six or more of each are needed")
-    if not feed > 0:
-        raise InvalidInput(f"feed is {feed} mm/s: it must be above zero")
-    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
-    if not (steps > 0).all():
-        raise InvalidInput(f"points {int(np.argmin(steps))} and the next coincide: leave one out")
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    joints, rows, along = followed(points, tips, feed, len(bounds.velocity))
     curve, tip = make_interp_spline(along, joints, 5), make_interp_spline(along, rows, 5)
     limits = _limits_along(curve, tip, float(along[-1]), feed, bounds)
     count = stations or _enough(float(along[-1]), limits, len(rows))

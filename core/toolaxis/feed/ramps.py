@@ -11,11 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 
-from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds
+from toolaxis.feed.constraints import AxisBounds, followed
 from toolaxis.feed.polyline import look_ahead
 from toolaxis.feed.profile import travel_time
-from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]
 
@@ -162,15 +160,7 @@ def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tol
     InvalidInput
         As `ramps`.
     """
-    joints, rows = as_rows(points, width, "joint coordinates"), as_rows(tips, 3, "tips")
-    if len(joints) != len(rows) or len(rows) <= _DEGREE:
-        raise InvalidInput(f"{len(joints)} joint positions for {len(rows)} tips: six or more of each are needed")
-    if not feed > 0:
-        raise InvalidInput(f"feed is {feed} mm/s: it must be above zero")
-    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
-    if not (steps > 0).all():
-        raise InvalidInput(f"points {int(np.argmin(steps))} and the next coincide: leave one out")
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    joints, _, along = followed(points, tips, feed, width)
     curve, knots = _smooth(along, joints, tolerance)
     count = int(np.clip(4 * knots, 16 * _PLACES, _MOST))
     s = (np.arange(count) + 0.5) * (along[-1] / count)

@@ -12,9 +12,9 @@ from toolaxis.job.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.orient.indexed import Task, combined, finished, task
+from toolaxis.orient.indexed import Task, finished, task
 from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.mounted import held_axis
+from toolaxis.orient.mounted import combined, held_axis
 from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis

@@ -9,15 +9,16 @@ from toolaxis.shape.face import Face
 
 #: Rules that choose an axis for each sub-surface of the plan.
 BY_SUB_SURFACE = ("sectors", "roman", "normal")
-#: What takes the faces whole: one axis for all of them, and a ball end along their mean normals.
-WHOLE = ("one", "ball")
+#: What takes the faces whole: one axis for all of them, a ball end along their mean normals, and a moving axis.
+WHOLE = ("one", "ball", "sturz")
 
 
 def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
     """A plan with what other methods come to.
 
     Sectors, Roman's rule and mean normals on the same sub-surfaces; one fixed axis for all faces; and a ball end of the
-    same radius along each face's mean normal.
+    same radius along each face's mean normal; and five axes with a constant lead where the machine drives two rotary
+    axes.
 
     Parameters
     ----------
@@ -35,13 +36,16 @@ def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[F
 
     Notes
     -----
-    **Source**: [zhu2016] Table 4 and Sec. 6.2; its five-axis row has no counterpart here.
+    **Source**: [zhu2016] Table 4 and Sec. 6.2.
     """
     rows = [baseline("plan", made)]
     pieces = [op.face for op in made.operations]
+    rotary = () if made.machine is None else made.machine.machine.rotary
     for method in (*BY_SUB_SURFACE, *WHOLE):
         whole = method in WHOLE
         if method == made.inputs.method and (not whole or len(pieces) == len(faces)):
+            continue
+        if method == "sturz" and sum(not axis.by_hand for axis in rotary) < 2:
             continue
         other = again(method, faces if whole else pieces)
         if other.outcome == "cancelled":

@@ -79,11 +79,11 @@ def staged(target: Path) -> Iterator[Stage]:
         raise InvalidInput(f"output folder {target} is a file: give another name with --out")
     made: list[Path] = []
     try:
-        made = _made(above)
+        made = made_folders(above)
         folder = Path(tempfile.mkdtemp(prefix=f".{target.name or 'plan'}-", dir=above))
         folder.chmod(0o755)
     except OSError as reason:
-        _removed(made)
+        remove_empty(made)
         raise InvalidInput(f"output folder {target} cannot be written ({reason.strerror}): give another with "
                            "--out") from reason
     try:
@@ -95,18 +95,34 @@ def staged(target: Path) -> Iterator[Stage]:
             shutil.rmtree(folder, ignore_errors=True)
             raise
         finally:
-            _removed(made)
+            remove_empty(made)
 
 
-def _made(folder: Path) -> list[Path]:
-    """Make a folder and those above it; the ones that were made, the innermost first."""
+def made_folders(folder: Path) -> list[Path]:
+    """Make a folder and those above it; the ones that were made, the innermost first.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    OSError
+        When one cannot be made.
+    """
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     return missing
 
 
-def _removed(folders: list[Path]) -> None:
-    """Remove folders that stayed empty."""
+def remove_empty(folders: list[Path]) -> None:
+    """Remove folders that stayed empty.
+
+    Parameters
+    ----------
+    folders : list of Path
+        The innermost first.
+    """
     for folder in folders:
         try:
             folder.rmdir()

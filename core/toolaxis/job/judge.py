@@ -101,8 +101,20 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing)],
-            "not_checked": list(plan.not_checked),
+            "not_checked": list(not_judged(plan)),
             "operations": [_operation_document(op) for op in verdict.operations]}
+
+
+def not_judged(plan: Plan) -> tuple[str, ...]:
+    """What the verdict says nothing of: what was not given, and bodies of the machine, which planning alone looks at.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    itself = "collision with the machine itself"
+    missing = [name for name in plan.not_checked if not name.startswith("collision with the machine")]
+    return (*missing, itself) if plan.machine is not None else tuple(missing)
 
 
 def passes(plan: Plan, verdict: Verdict) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
+from toolaxis.orient.impossible import tight_fillet
 from toolaxis.partition.blades import Bladed, NoPattern, blades_of
 from toolaxis.partition.buried import uncovered
 from toolaxis.partition.gaps import Nearness, ahead, nearness, reach_along_normal, widest
@@ -29,8 +30,6 @@ ALIKE = 1e-3
 _STRAY = 5e-3
 #: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
 _FACETS = 8
-#: Share of a fillet that is tighter than the cutter from which it is left to a smaller one.
-_TIGHT = 0.9
 #: Greatest turn of normals across a strip of an edge, and of a fillet, rad.
 _NOSE, _FILLET = np.radians(95.0), np.radians(50.0)
 
@@ -279,14 +278,7 @@ def _facets(face: Face, tool: Tool) -> str:
 
 
 def _tight(face: Face, side: str, tool: Tool) -> str:
-    """Why a fillet is left to clean-up: it is tighter than the cutter; empty where not.
-
-    Leaning, a cutter with a small corner reaches parts of such a fillet, in rags that are not worth their axes.
-    """
-    if side != "fillet":
-        return ""
-    bent = face.curvature(face.grid(12, 12)).k1
-    if (bent * tool.radius > 1).mean() < _TIGHT:
-        return ""
-    return (f"face {face.number} is left to clean-up as a whole: a hollow fillet of {1 / np.median(bent):.2f} mm "
-            f"radius, tighter than the cutter's {tool.radius:g} mm; a ball end no larger than that reaches it")
+    """Why a fillet is left to clean-up: it is tighter than the cutter; empty where not."""
+    tight = tight_fillet(face, tool) if side == "fillet" else ""
+    return tight and (f"face {face.number} is left to clean-up as a whole: {tight}; a ball end no larger than that "
+                      "reaches it")

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.contact.rings import Setting, rings, stand_of
 from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.job.axes import search_task
@@ -21,20 +23,22 @@ from toolaxis.path.isoparametric import layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.report.bars import baselines_picture
+from toolaxis.report.bars import baselines_picture, options_picture
+from toolaxis.report.contacts import contacts_picture
 from toolaxis.report.hemisphere import hemisphere_picture
+from toolaxis.report.machine import has_machine_picture, machine_picture
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
     WidthStudy,
     map_picture,
     operation_picture,
-    options_picture,
     study_picture,
     widths_picture,
 )
 from toolaxis.report.raster import mean_direction
 from toolaxis.report.tightest import tightest_picture
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.verdict import Verdict
 
@@ -43,6 +47,8 @@ Array = NDArray[np.float64]
 DPI = 110
 _ANGLES = 9
 _POINTS = 60
+#: Places of a path among which the one with two contacts is chosen.
+_PLACES = 200
 
 
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
@@ -51,7 +57,10 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     The tool is drawn once more where it comes nearest to what it must keep clear of; turned copies of operations are
     drawn in the picture of the whole part only.
 
-    A choice between numbers of orientations is drawn as their curve, a comparison of methods as bars.
+    A choice between numbers of orientations is drawn as their curve, a comparison of methods as bars, and a machine
+    that states its bodies with part and tool at each orientation.
+
+    Where the axis moves, its passes are drawn, and where it makes two contacts, the cutter at the widest of them.
 
     The operation on the largest face also gets what takes longer: the study of estimate and count, and the axis of the
     paper's sectors marked on its hemisphere.
@@ -68,6 +77,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
         options_picture(plan.options).savefig(folder / "orientations.png", dpi=DPI)
     if plan.baselines:
         baselines_picture(plan.baselines).savefig(folder / "baselines.png", dpi=DPI)
+    if has_machine_picture(plan):
+        machine_picture(plan).savefig(folder / "machine.png", dpi=DPI)
     closest = tightest(plan, progress)
     if closest is not None:
         tightest_picture(plan, closest.operation, closest).savefig(folder / "tightest.png", dpi=DPI)
@@ -84,6 +95,11 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
             operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
+        if op.done and op.orientation.lead is not None:
+            if plan.inputs.method == "two-point":
+                _draw_contacts(plan, op, folder)
+            continue
+        if op.done:
             _draw_widths(plan, op, job, folder)
         if op is largest:
             _draw_study(plan, op, job, folder)
@@ -149,6 +165,27 @@ def _draw_widths(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
             width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
             lines.append((op.face.evaluate(uv).point, width))
     widths_picture(lines, (op.face, plan.tool), op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
+
+
+def _draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
+    """Draw the cutter where its strip is about the widest with two contacts, of some places of the path."""
+    assert op.path is not None
+    cut = np.flatnonzero(op.path.kind == Motion.CUT)
+    some = cut[:: max(len(cut) // _PLACES, 1)]
+    found = nearest(op.face, op.path.cc[some])
+    on = found.distance < 1e-6
+    some, uv = some[on], found.uv[on]
+    if not len(some):
+        return
+    d = op.face.evaluate(uv)
+    setting = Setting(op.face, plan.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
+                      plan.inputs.allowance, plan.inputs.tolerance)
+    stand = stand_of(setting, op.path.cl[some], op.path.axis[some])
+    sides = np.abs(rings(setting, stand).sides).max(axis=1)
+    best = int(np.argmin(np.where(stand.lift > 0.9 * stand.lift.max(), sides, np.inf)))
+    one = setting.rows(np.array([best]))
+    ring = rings(one, stand.rows(np.array([best])))
+    contacts_picture(one, ring, op.name).savefig(folder / f"{op.name}-contacts.png", dpi=DPI)
 
 
 def _draw_study(plan: Plan, op: Operation, job: Task, folder: Path) -> None:

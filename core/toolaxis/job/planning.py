@@ -20,8 +20,11 @@ from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import Task, combined, searched
+from toolaxis.orient.flat_plan import two_point
+from toolaxis.orient.indexed import Task, searched
 from toolaxis.orient.indexed import task as search_task
+from toolaxis.orient.mounted import combined
+from toolaxis.orient.sturz import sturz
 from toolaxis.orient.together import together
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import shared, trade
@@ -44,6 +47,8 @@ Array = NDArray[np.float64]
 REFUSED = "shared axis refused: "
 #: Methods that search as another one does.
 _SEARCHES = {"ball": "normal"}
+#: Methods that move the axis.
+_MOVING = {"sturz": sturz, "two-point": two_point}
 
 
 class Target(NamedTuple):
@@ -255,6 +260,11 @@ class Job:
 
     def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
+        moving = _MOVING.get(self.inputs.method)
+        if moving is not None:
+            plain = self if self.inputs.objective != "time" else replace(self, inputs=replace(self.inputs,
+                                                                                              objective="length"))
+            return moving(plain._task(face, progress))
         job = Remembering(self._task(face, progress))
         found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
         return found, None if found.axis is None else job.path

@@ -1,15 +1,23 @@
 """From a plan's folder to a program and its setup sheet, or to CL files."""
 
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_json
+from toolaxis.job.order import arranged
+from toolaxis.machine.catalogue import machine_to_toml
+from toolaxis.machine.kinematics import placement
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import apt_text
 from toolaxis.post.dialects.known import APT, dialect_named
-from toolaxis.post.gcode import Options, program_of, program_text
-from toolaxis.post.sheet import sheet_text
+from toolaxis.post.dialects.tip_control import tip_control_of
+from toolaxis.post.gcode import Options, bare_program, program_of, program_text
+from toolaxis.post.moving import moves, moving_text
+from toolaxis.post.sheet import moving_sheet_text, sheet_text
 
 
 def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,
@@ -45,9 +53,34 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
     found = dialect_named(dialect)
     if mounting is None:
         raise InvalidInput(f"dialect {dialect} writes rotary angles and the plan names no machine: give --machine")
-    program = program_of(plan, mounting, found, options, name)
+    if moves(plan):
+        control, file = tip_control_of(found), f"program-{dialect}{found.suffix}"
+        text = moving_text(plan, mounting, control, options, name)
+        sheet = moving_sheet_text(bare_program(plan, mounting, found, options, name), control, file, verdict)
+        return {file: text, f"setup-{dialect}.md": sheet}
+    arranged_for = _arranged(plan, mounting)
+    for op, stood in zip(plan.operations, arranged_for.operations, strict=True):
+        if op.done and not stood.done:
+            raise InvalidInput(f"{op.name}: {stood.orientation.reasons[0].removeprefix('infeasible: ')}; move the part "
+                               "on the table, or plan for this machine")
+    if arranged_for.in_the_way:
+        raise InvalidInput(f"the machine meets something between operations: {arranged_for.in_the_way[0]}; move the "
+                           "part on the table, or plan again")
+    angles = {op.number: op.rotary for op in arranged_for.operations if op.rotary}
+    chosen = Options() if options is None else options
+    program = program_of(arranged_for, mounting, found, replace(chosen, angles={**angles, **chosen.angles}), name)
     file = f"program-{dialect}{found.suffix}"
     return {file: program_text(program, found), f"setup-{dialect}.md": sheet_text(program, found, file, verdict)}
+
+
+def _arranged(plan: Plan, mounting: Mounting) -> Plan:
+    """The plan at the rotary angles that it was made with on its own machine, else at the best ones in its order."""
+    own = plan.machine
+    same = own is not None and machine_to_toml(own.machine) == machine_to_toml(mounting.machine) and np.array_equal(
+        placement(own.table_from_part), placement(mounting.table_from_part))
+    if same and all(op.rotary for op in plan.operations if op.done):
+        return plan
+    return arranged(replace(plan, machine=mounting))
 
 
 def verdict_of(folder: Path) -> str:

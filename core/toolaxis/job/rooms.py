@@ -146,7 +146,7 @@ def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> Tightest | None:
         if c == 0 and group.role != OTHER:
             continue
         limit = value + 10 * ROUGH if best is None else best.distance
-        for distance, face, _, move in _nearest(plan, op, group, {c: limit}).values():
+        for distance, face, _, move in _nearest(plan, op, group, {c: limit}).values():  # rougher than what is proven
             place, tip = _standing(plan, group, move, c)
-            best = Tightest(op, COMPONENTS[c], distance, face, place, tip)
+            best = Tightest(op, COMPONENTS[c], max(distance, value), face, place, tip)
     return best

@@ -7,20 +7,24 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from toolaxis.cad.loading import load
+from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.units import tool_warnings
+from toolaxis.contact.rings import check_bottom
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
-from toolaxis.job.spec import chosen_faces, with_joined
+from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, with_joined
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.zones import zoned
-from toolaxis.machine.limits import AxisLimits, written
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.orient.indexed import METHODS, combined
+from toolaxis.orient.indexed import METHODS
+from toolaxis.orient.mounted import combined
 from toolaxis.orient.pace import known_machine
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.plan import Inputs, Plan
@@ -64,7 +68,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         Greatest number of different axes: faces are divided so that sub-surfaces share them; "auto" tries all numbers,
         gives them as the plan's options and takes the one at the knee; each has its own unless given.
     strategy : str
-        "indexed": every sub-surface has one fixed axis; others are not part of this version.
+        "indexed": every sub-surface has one fixed axis; "sturz": simultaneous five-axis milling with the best constant
+        lead, for comparison or where one fixed axis does not do; "two-point": simultaneous five-axis milling in which a
+        flat end or torus touches hollow faces at two points.
     objective : str
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
         limits of its axes. Faces are divided by cutting length.
@@ -110,8 +116,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     UnsupportedGeometry
         When faces cannot be joined.
     """
-    if strategy != "indexed":
-        raise InvalidInput(f"strategy {strategy!r} is not part of this version: leave it out")
+    method = by_strategy(strategy, method, objective)
     checked_count(regions)
     checked_count(orientations, "orientations")
     if orientations is not None and method != "sphere":
@@ -124,8 +129,12 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
                     float(spindle), tolerance or Tolerance(), float(rapid))
     if objective == "time":
         known_machine(mounting)
+    if strategy != "indexed" and mounting is not None:
+        check_five_axes(mounting.machine, strategy)
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
+    if strategy == "two-point":
+        check_bottom(cutter)
     loaded, numbers = with_joined(load(part), faces)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
     bodies = tuple(load(body) for body in _listed(obstacles))
@@ -134,7 +143,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
               checked_workers(workers), machine=mounting)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     with heard(progress):
-        return timed(_carried_out(job, targets, (whole, compare), progress))
+        return timed(_carried_out(job, targets, (whole, compare), progress), reorder=True)
 
 
 def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
@@ -156,8 +165,8 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     if not compare or made.outcome == "cancelled":
         return made
     plain = replace(job, regions=None, orientations=None)
-    return compared(timed(made), faces,
-                    lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name))))
+    return compared(timed(made, reorder=True), faces,
+                    lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name)), reorder=True))
 
 
 def _in_cells(job: Job, progress: Progress) -> None:
@@ -179,6 +188,10 @@ def _listed(obstacles: Any) -> list[Any]:
 def _machine(machine: MachineLike | None, limits: AxisLimits | str | None,
              offset: ArrayLike | None) -> tuple[Mounting | None, AxisLimits | None]:
     """The machine with the part on it, if one is given, and the other limits of the axis."""
+    if isinstance(machine, str) and not machine.startswith(SHORT_FORMS):
+        machine = load_machine(machine) if machine else None
+    elif isinstance(machine, Machine):
+        machine = with_hulls(machine)
     found = machine_limits(machine, offset) if machine else None
     if found is None and offset is not None:
         raise InvalidInput("a place of the part on the table is given without a machine: name the machine too")

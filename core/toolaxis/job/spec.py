@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.toolfile import load_holder, load_tool
-from toolaxis.plan.plan import Inputs
+from toolaxis.machine.configurations import Machine
+from toolaxis.plan.plan import STRATEGIES, Inputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.shape.skins import join, skins
@@ -90,6 +91,56 @@ class Spec:
     def numbers(self) -> Numbers | str | None:
         """The face list as `toolaxis.plan` takes it."""
         return parse_faces(self.faces) if self.faces else None
+
+
+def by_strategy(strategy: str, method: str = "sphere", objective: str = "length") -> str:
+    """The method of a strategy.
+
+    Parameters
+    ----------
+    strategy : str
+        One of `toolaxis.plan.plan.STRATEGIES`.
+    method : str
+        How fixed axes are found.
+    objective : str
+
+    Raises
+    ------
+    InvalidInput
+        When there is no such strategy, or the method or the objective is not one of it.
+    """
+    if strategy not in STRATEGIES:
+        raise InvalidInput(f"strategy is {strategy!r}: use {', '.join(STRATEGIES[:-1])} or {STRATEGIES[-1]}")
+    if strategy == "indexed":
+        if method in STRATEGIES:
+            raise InvalidInput(f"method {method!r} moves the axis: ask for the strategy {method!r} instead")
+        return method
+    if method not in ("sphere", strategy):
+        raise InvalidInput(f"method {method!r} finds fixed axes and strategy {strategy!r} moves them: leave out one of "
+                           "both")
+    if objective == "time":
+        raise InvalidInput(f"strategy {strategy!r} chooses how to lean by length or passes: leave out the objective "
+                           "time")
+    return strategy
+
+
+def check_five_axes(machine: Machine, strategy: str) -> None:
+    """Check that a machine can move its axis while it cuts.
+
+    Parameters
+    ----------
+    machine : Machine
+    strategy : str
+
+    Raises
+    ------
+    InvalidInput
+        When it has no two rotary axes of its own drives.
+    """
+    driven = sum(not axis.by_hand for axis in machine.rotary)
+    if driven < 2:
+        raise InvalidInput(f"strategy {strategy!r} moves two rotary axes while it cuts and {machine.name} drives "
+                           f"{driven}: name another machine or leave out the strategy")
 
 
 def parse_faces(text: str) -> Numbers | str:

@@ -6,11 +6,13 @@ from math import inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.five_axes import five_axis_time
 from toolaxis.feed.profile import travel_time
 from toolaxis.feed.schedule import Feeds, index_time, machining_time
-from toolaxis.machine.kinematics import linear_coordinates, nearest_turn
+from toolaxis.job.order import arranged
+from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
-from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
 from toolaxis.plan.timing import MachiningTime
@@ -21,36 +23,43 @@ Array = NDArray[np.float64]
 _SAME = 1e-6
 
 
-def timed(plan: Plan) -> Plan:
-    """A plan with the time of each operation where its machine states all limits; as it is elsewhere.
+def timed(plan: Plan, reorder: bool = False) -> Plan:
+    """A plan with the rotary angles of each operation on its machine, and the time where that states all limits.
 
     Paths are what a control takes that follows cuts as smooth curves within half the gouge tolerance and goes as fast
-    as its axes do in rapid traverse.  Between operations the rotary axes turn to the solution with the least turn, as
-    in programs; where the part's place on the table is known, Z goes up before that and X and Y go over after it.  Axes
-    that are set by hand take `INDEX_SECONDS`.
+    as its axes do in rapid traverse.  Between operations the rotary axes turn to those solutions that take least time
+    together, as in programs; where the part's place on the table is known, Z goes up before that and X and Y go over
+    after it.  Axes that are set by hand take `INDEX_SECONDS`.  Where the tool axis moves, all axes keep their limits
+    along the path; with a path that the machine cannot follow a plan stays without times.
 
     Parameters
     ----------
     plan : Plan
-
-    Raises
-    ------
-    InvalidInput
-        When a path has no fixed axis, or none that the machine can take.
+    reorder : bool
+        Whether operations may be put in the order that takes least time between them, see `toolaxis.job.order`.
     """
+    plan = plan if reorder and plan.order is not None else arranged(plan, reorder)
     plain = replace(plan, operations=tuple(replace(op, time=None) for op in plan.operations))
     if plan.machine is None or plan.machine.machine.unstated:
         return plain
     mounting = replace(plan.machine, tool_length=plan.tool.gauge_length)
     stand, last, done = np.zeros(len(mounting.machine.rotary)), None, []
     for op in plan.operations:
-        rows = rotary_of(mounting, op, mounting.tool_length)
         if op.path is None:
             done.append(op)
             continue
-        if not len(rows):  # an axis that the machine does not hold
+        if op.orientation.lead is not None:
+            moved = _moving(mounting, op, stand, plan.inputs)
+            if moved is None:
+                return plain
+            time, angles, end = moved
+            index = 0.0 if last is None else _between(mounting, (last, stand), (op, angles))
+            done.append(replace(op, time=time.at(tuple(angles.tolist()), index)))
+            stand, last = end, op
+            continue
+        if len(op.rotary) != len(stand):  # an axis that the machine does not hold
             return plain
-        angles = nearest_turn(mounting.machine, rows, stand)
+        angles = np.array(op.rotary, dtype=float)
         index = 0.0 if last is None else _between(mounting, (last, stand), (op, angles))
         time = _path_time(mounting, op, angles, plan.inputs)
         done.append(replace(op, time=time.at(tuple(angles.tolist()), index)))
@@ -67,6 +76,18 @@ def feeds_of(inputs: Inputs) -> Feeds:
     """
     return Feeds(inputs.feedrate / 60, rapid=inf, crossing=inputs.rapid / 60, tolerance=inputs.tolerance.gouge / 2,
                  smooth=True)
+
+
+def _moving(mounting: Mounting, op: Operation, stand: Array,
+            inputs: Inputs) -> tuple[MachiningTime, Array, Array] | None:
+    """Time of a path with a moving axis, and where the rotary axes stand at its ends; None where it is too much for
+    the machine."""
+    assert op.path is not None
+    try:
+        return five_axis_time(mounting.machine, op.path, feeds_of(inputs), mounting.table_from_part,
+                              float(mounting.tool_length or 0.0), stand)
+    except InvalidInput:
+        return None
 
 
 def _path_time(mounting: Mounting, op: Operation, angles: Array, inputs: Inputs) -> MachiningTime:

@@ -6,7 +6,7 @@ import numpy as np
 
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
-from toolaxis.orient.impossible import corner_too_large
+from toolaxis.orient.impossible import corner_too_large, tight_fillet
 from toolaxis.orient.reasons import place
 from toolaxis.path.left_over import FACTOR, also_machined, excess, left_over
 from toolaxis.plan.operation import Operation
@@ -68,11 +68,9 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
 
 def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
     """Why a face without an axis is one for a smaller tool; empty where it need not be."""
-    radius = plan.tool.radius
-    bent = op.face.curvature(op.face.grid(12, 12)).k1
-    if len(bent) and (bent * radius > 1).mean() > WHOLLY:
-        return (f"a hollow fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {radius:g} mm, for "
-                "which no axis was found: a ball end no larger than that reaches it")
+    tight = tight_fillet(op.face, plan.tool)
+    if tight:
+        return f"{tight}, for which no axis was found: a ball end no larger than that reaches it"
     return corner_too_large(search_task(plan, op, progress).feasibility)
 
 
@@ -92,6 +90,8 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
         When the user asked to stop.
     """
     assert op.path is not None and op.orientation.axis is not None
+    if op.orientation.lead is not None:  # a constant lead is taken only where it serves the whole sub-surface
+        return ()
     axis, feasibility = op.orientation.axis, search_task(plan, op, progress).feasibility
     zones = left_over(op.face, plan.tool, op.path, plan.inputs.scallop, plan.inputs.allowance,
                       lambda uv: ~feasibility.reach(uv, axis), progress)

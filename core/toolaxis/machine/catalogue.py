@@ -15,11 +15,12 @@ import numpy as np
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.bodies import body_from, body_lines
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.fcm import machine_from_fcm
 from toolaxis.resources import named_files
 
-_MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head"}
+_MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head", "body"}
 _LINEAR = {"name", "direction", "limits", "velocity", "acceleration", "jerk"}
 _ROTARY = _LINEAR | {"point", "increment", "by_hand"}
 _DRIVE = ("velocity", "acceleration", "jerk")
@@ -61,19 +62,20 @@ def load_machine(text: str) -> Machine:
         content = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as reason:
         raise InvalidInput(f"{path} cannot be read: {reason}") from reason
-    reader = machine_from_fcm if path.suffix.lower() == ".fcm" else machine_from_toml
     try:
-        return reader(content)
+        return machine_from_fcm(content) if path.suffix.lower() == ".fcm" else machine_from_toml(content, path.parent)
     except InvalidInput as reason:
         raise InvalidInput(f"machine file {path.name}: {reason}") from reason
 
 
-def machine_from_toml(text: str) -> Machine:
+def machine_from_toml(text: str, folder: Path | None = None) -> Machine:
     """A machine from the text of a TOML file.
 
     Parameters
     ----------
     text : str
+    folder : Path, optional
+        Where STEP files of its bodies are looked for.
 
     Raises
     ------
@@ -94,7 +96,8 @@ def machine_from_toml(text: str) -> Machine:
         tuple(_rotary(item) for item in _list(content, "head")),
         _numbers(content.get("spindle", [0, 0, 1]), 3, "spindle"),
         _numbers(content.get("gauge", [0, 0, 0]), 3, "gauge"),
-        str(content.get("source", "")), tuple(str(item) for item in _list(content, "assumed")))
+        str(content.get("source", "")), tuple(str(item) for item in _list(content, "assumed")),
+        tuple(body_from(item, folder) for item in _list(content, "body")))
 
 
 def _list(content: dict[str, Any], word: str) -> list[Any]:
@@ -196,6 +199,8 @@ def machine_to_toml(machine: Machine) -> str:
                       f"point = {_listed(turn.point)}", f"increment = {_degrees(turn.increment)!r}"]
             lines += _written_limits(turn.low, turn.high, _degrees)
             lines += ["by_hand = true"] if turn.drive is None else _written_drive(turn.drive, _degrees)
+    for body in machine.bodies:
+        lines += ["", "[[body]]", *body_lines(body)]
     return "\n".join(lines) + "\n"
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.axes import LinearAxis, RotaryAxis
+from toolaxis.machine.bodies import BED, Body
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
@@ -42,12 +43,14 @@ class Machine:
         Where its numbers are from.
     assumed : tuple of str
         Which of its numbers are assumed, in words.
+    bodies : tuple of Body
+        What it is made of, as far as that is known; the linear axes then stand in their order from the table.
 
     Raises
     ------
     InvalidInput
         When two axes have one name, the linear ones lie in a plane, there are more than two rotary axes, the two are
-        parallel, or one never changes the tool axis.
+        parallel, one never changes the tool axis, or a body is carried by no axis or by two.
     """
 
     name: str
@@ -58,6 +61,7 @@ class Machine:
     gauge: Array | tuple[float, float, float] = (0.0, 0.0, 0.0)
     source: str = ""
     assumed: tuple[str, ...] = ()
+    bodies: tuple[Body, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spindle", unit(as_rows(self.spindle, 3, "spindle direction")[0]))
@@ -72,6 +76,17 @@ class Machine:
         if len(self.rotary) > 2:
             raise InvalidInput(f"machine {self.name!r} has {len(self.rotary)} rotary axes: at most two are handled")
         self._check_rotary()
+        self._check_bodies()
+
+    def _check_bodies(self) -> None:
+        carriers: dict[str, str] = {}
+        for body in self.bodies:
+            if body.carried not in (BED, *self.names):
+                raise InvalidInput(f"body {body.name} of machine {self.name!r} is carried by {body.carried!r}: use "
+                                   f"{', '.join((BED, *self.names))}")
+            if carriers.setdefault(body.name, body.carried) != body.carried:
+                raise InvalidInput(f"body {body.name} of machine {self.name!r} is carried by {carriers[body.name]} and "
+                                   f"by {body.carried}: give its pieces one axis, or two names")
 
     def _check_rotary(self) -> None:
         turning = [axis.direction for axis in self.rotary]

@@ -214,6 +214,8 @@ def refusal(limits: AxisLimits, axis: ArrayLike) -> str:
     return f"the axis is {degrees(float(limits.excess(one)[0])):.2f} deg outside the limits"
 
 
+#: How the short forms of limits begin.
+SHORT_FORMS = ("cone:", "rotary:")
 _FORMS = "write cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D,z=X/Y/Z,x=X/Y/Z (degrees), several joined by +"
 
 

@@ -12,8 +12,9 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
-from toolaxis.machine.limits import ROUNDING, AxisLimits, parse_limits
+from toolaxis.machine.limits import ROUNDING, SHORT_FORMS, AxisLimits, parse_limits
 from toolaxis.machine.reach import reach_excess, travel_excess
+from toolaxis.machine.standing import beside_part, meeting_at
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
@@ -43,6 +44,8 @@ class Mounting:
         Tips that every allowed axis must bring inside the linear travel, part's frame, mm.
     slack : float
         By how much they may miss it, mm.
+    room : float
+        How far bodies of both sides must be apart there, the tool left out, mm; negative for how deep they may meet.
 
     Raises
     ------
@@ -55,11 +58,15 @@ class Mounting:
     tool_length: float | None = None
     reached: Array = field(default_factory=lambda: np.empty((0, 3)))
     slack: float = 0.0
+    room: float = 0.0
+    _last: dict[bytes, Bools] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.machine, Machine):
             raise InvalidInput(f"machine is a {type(self.machine).__name__}: give a Machine, such as "
                                "toolaxis.load_machine(\"dmg-dmu-60t\")")
+        for body in self.machine.bodies:
+            _ = body.convex
         placement(self.table_from_part)
         if self.tool_length is not None and not (np.isfinite(self.tool_length) and self.tool_length >= 0):
             raise InvalidInput(f"tool length is {self.tool_length} mm: it must be finite and zero or more")
@@ -68,6 +75,18 @@ class Mounting:
     def judges_travel(self) -> bool:
         """Whether place and tool length are known, so that linear travel can be judged."""
         return self.table_from_part is not None and self.tool_length is not None
+
+    @property
+    def judges_bodies(self) -> bool:
+        """Whether besides the machine has bodies on both sides, the table's and the spindle's, to be held apart."""
+        sides = {beside_part(self.machine, body) for body in self.machine.bodies}
+        return self.judges_travel and len(sides) == 2
+
+    @property
+    def judges_index_moves(self) -> bool:
+        """Whether bodies are judged and Z has an upper end, to which programs retract before rotary axes turn."""
+        upright = np.abs(self.machine.directions - np.eye(3)).max() <= 1e-9
+        return self.judges_bodies and bool(upright) and bool(np.isfinite(self.machine.linear[2].high))
 
     def reaching(self, points: ArrayLike, slack: float = 0.0) -> "Mounting":
         """The same with tips that must be reached.
@@ -79,7 +98,7 @@ class Mounting:
         slack : float
             By how much they may miss the travel, mm: what the points differ from the tips really used.
         """
-        return replace(self, reached=as_rows(points, 3, "points"), slack=float(slack))
+        return replace(self, reached=as_rows(points, 3, "points"), slack=float(slack), room=-float(slack))
 
     def allowed(self, axes: ArrayLike) -> Bools:
         """Whether some solution lies within all rotary ranges and brings what must be reached inside the travel, (n,).
@@ -89,12 +108,22 @@ class Mounting:
         axes : (n, 3) array_like
         """
         rows = as_rows(axes, 3, "axis")
+        key = rows.tobytes()
+        if key not in self._last:  # asked twice in a row by those who also want to know how far an axis is outside
+            self._last.clear()
+            self._last[key] = self._allowed(rows)
+        return self._last[key].copy()
+
+    def _allowed(self, rows: Array) -> Bools:
         found = rotary_angles(self.machine, rows, table_from_part=self.table_from_part)
         within = found.within.copy()
         if self.judges_travel and len(self.reached):
             for branch in range(within.shape[1]):
                 some = np.flatnonzero(within[:, branch])
                 within[some, branch] = self._worst(found.joints[some, branch]) <= self.slack
+                some = np.flatnonzero(within[:, branch])
+                if self.judges_bodies and len(some):
+                    within[some, branch] = self.apart(found.joints[some, branch])[0].min(axis=1) >= self.room
         return np.asarray(within.any(axis=1))
 
     def _worst(self, rotary: Array) -> Array:
@@ -104,6 +133,19 @@ class Mounting:
                                 float(self.tool_length or 0.0), self.table_from_part)
         out = np.max([axis.excess(at[:, i]) for i, axis in enumerate(self.machine.linear)], axis=0)
         return np.asarray(out.reshape(count, n).max(axis=1, initial=0.0))
+
+    def apart(self, rotary: Array) -> tuple[Array, list[tuple[str, str]]]:
+        """How far bodies of both sides are apart with the outermost of the tips to be reached, (n, k) mm, and their
+        names; see `toolaxis.machine.standing.meeting_at`.
+
+        Parameters
+        ----------
+        rotary : (n, m) array
+            rad
+        """
+        ends = np.unique(np.concatenate([self.reached.argmin(axis=0), self.reached.argmax(axis=0)]))
+        return meeting_at(self.machine, rotary, self.reached[ends], float(self.tool_length or 0.0),
+                          self.table_from_part)
 
     def excess(self, axes: ArrayLike) -> Array:
         """Angle from each axis to the nearest one within the rotary ranges, (n,) rad; 0 where it is allowed.
@@ -219,7 +261,32 @@ class Mounting:
             return f"no position of {name} reaches the axis: it is {degrees(away):.2f} deg beyond the rotary ranges"
         if bool(self.allowed(one)[0]):
             return ""
-        return f"{self.out_of_travel(self.reached, one)} to reach the face"
+        return f"{self.out_of_travel(self.reached, one) or self._meets(one)} to reach the face"
+
+    def _meets(self, axis: Array) -> str:
+        """Which bodies meet in the solution in which they do least, in words."""
+        rows = self.solutions(axis)
+        rows = rows[self._worst(rows) <= self.slack]
+        if not len(rows):
+            return f"linear axes of {self.machine.name} would leave their travel in every solution"
+        apart, names = self.apart(rows)
+        best = int(np.argmax(apart.min(axis=1)))
+        one, other = names[int(np.argmin(apart[best]))]
+        least = float(apart[best].min())
+        how = f"meets the {other} by {-least:.1f} mm" if least < 0 else f"comes within {least:.1f} mm of the {other}"
+        return f"the {one} {how}{self.at(rows[best])}"
+
+    def at(self, rotary: ArrayLike) -> str:
+        """Where the rotary axes stand, as messages write it: " at A -85 C 12"; empty without any.
+
+        Parameters
+        ----------
+        rotary : (m,) array_like
+            rad
+        """
+        angles = " ".join(f"{axis.name} {round(degrees(float(angle)), 3) + 0.0:g}"
+                          for axis, angle in zip(self.machine.rotary, np.atleast_1d(rotary), strict=True))
+        return f" at {angles}" if angles else ""
 
     def out_of_travel(self, points: ArrayLike, axis: ArrayLike) -> str:
         """Which linear axis leaves its travel most, in words; empty where none does.
@@ -253,7 +320,7 @@ def machine_limits(machine: MachineLike, table_from_part: ArrayLike | None = Non
         When it is none of these, or a place is given for something that is no machine.
     """
     if isinstance(machine, str):
-        short = machine.startswith(("cone:", "rotary:"))
+        short = machine.startswith(SHORT_FORMS)
         machine = parse_limits(machine) if short else load_machine(machine)
     if isinstance(machine, Machine):
         return Mounting(machine, table_from_part)

@@ -92,6 +92,32 @@ def _stamp(kernel: Any, options: str) -> None:
         store._source_stamp = kernel.source_stamp
 
 
+def compilations() -> Callable[[], int]:
+    """Begin to count the kernels that have to be compiled as there is no code for them on disk yet.
+
+    Returns
+    -------
+    callable
+        How many were, since; 0 for ever where numba cannot be used.
+    """
+    if _numba is None:
+        return lambda: 0
+    from numba.core import event
+
+    class _Count(event.Listener):
+        seen = 0
+
+        def on_start(self, event: Any) -> None:
+            self.seen += 1
+
+        def on_end(self, event: Any) -> None:
+            pass
+
+    count = _Count()
+    event.register("numba:compile", count)  # type: ignore[no-untyped-call]
+    return lambda: count.seen
+
+
 def _borrowed() -> Any:
     if _numba is None:
         return lambda array: array

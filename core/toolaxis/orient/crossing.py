@@ -1,4 +1,4 @@
-"""How low a tool may cross from stroke to stroke: the least lift at which nothing is in its way."""
+"""How a tool gets from stroke to stroke: straight over to one beside, or with the least lift that nothing stands in."""
 
 from dataclasses import dataclass
 
@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.distances import judged
 from toolaxis.orient.setting import OTHER, Group
+from toolaxis.path.linking import BESIDE, LIFTS, ROOFS
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
@@ -14,8 +15,6 @@ Bools = NDArray[np.bool_]
 
 #: What the cutter keeps from the skin while it crosses, mm: stock that is still to be cut may stand there.
 OVER = 1.0
-#: Lifts above the higher end of a link that are tried, mm.
-_LIFTS = (1.0, 3.0, 8.0, 20.0, 45.0, 90.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +53,7 @@ class Crossing:
         found = np.full(len(ends), self.top)
         base = np.maximum(ends @ self.axis, begins @ self.axis)
         left = np.arange(len(ends))
-        for lift in _LIFTS:
+        for lift in LIFTS:
             left = left[base[left] + lift < self.top]
             if not len(left):
                 break
@@ -63,6 +62,26 @@ class Crossing:
             across, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
             free = self._clear(*across, over=True) & self._clear(*up) & self._clear(*down)
             found[left[free]] = height[free]
+            left = left[~free]
+        return found
+
+    def beside(self, ends: Array, begins: Array) -> Array:
+        """Tips over which it may go straight from stroke to stroke at feed rate, (k, 3) mm; nan where it must lift.
+
+        Both straights keep what the strokes themselves keep: the gouge limit from the skin, distances to all else.
+
+        Parameters
+        ----------
+        ends, begins : (k, 3) array
+            Tips at the end of a stroke and at the begin of the next, mm.
+        """
+        found = np.full(ends.shape, np.nan)
+        far = np.linalg.norm(begins - ends, axis=1)
+        left = np.flatnonzero(far <= BESIDE)
+        for share in ROOFS:
+            over = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * self.axis
+            free = self._clear(ends[left], over) & self._clear(over, begins[left])
+            found[left[free]] = over[free]
             left = left[~free]
         return found
 

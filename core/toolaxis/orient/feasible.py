@@ -23,7 +23,6 @@ from toolaxis.orient.contacts import Contacts, around, contacts_at
 from toolaxis.orient.normals import NormalField
 from toolaxis.orient.setting import OTHER, ROLES, SKIN, Group
 from toolaxis.orient.standing import COARSE, Scene, stands_free, trouble_at
-from toolaxis.orient.standing import FINE as FINE
 from toolaxis.orient.verdicts import (
     BACK,
     CUTTER,

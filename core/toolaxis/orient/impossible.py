@@ -10,7 +10,11 @@ from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.reasons import place
 from toolaxis.orient.setting import SKIN
 from toolaxis.orient.standing import FINE
+from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+
+#: Share of a face that must be tighter than the cutter for all of it to be called so.
+_TIGHT = 0.9
 
 
 def spread_too_wide(feasibility: Feasibility) -> str:
@@ -32,6 +36,22 @@ def spread_too_wide(feasibility: Feasibility) -> str:
     size = f"a cap of {degrees(cap.radius):.1f} deg" if cap.centre.any() else "more than a hemisphere"
     return (f"the normals of face {feasibility.face.label} fill {size}, and no axis is within {degrees(most):.1f} deg "
             f"of those at {', '.join(place(p) for p in rim)}")
+
+
+def tight_fillet(face: Face, tool: Tool) -> str:
+    """What to say of a face nearly all of which is a hollow tighter than the cutter; empty where it is not.
+
+    Leaning, a cutter with a small corner reaches parts of such a face, in rags that are not worth their axes.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    """
+    bent = face.curvature(face.grid(12, 12)).k1
+    if not len(bent) or (bent * tool.radius > 1).mean() <= _TIGHT:
+        return ""
+    return f"a hollow fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {tool.radius:g} mm"
 
 
 def corner_too_large(feasibility: Feasibility) -> str:

@@ -10,14 +10,14 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.gouge import least_distance
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.limits import AllOf, AxisLimits
-from toolaxis.machine.mounting import MachineLike, machine_limits
+from toolaxis.machine.limits import AxisLimits
+from toolaxis.machine.mounting import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.orient.crossing import Crossing
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.mounted import at_face, held, mounting_of, out_of_travel
+from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held, make_room, mounting_of, stopped
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
@@ -110,7 +110,8 @@ class Task:
                     for group in self.groups)
         crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance)
         return trace(placed, self.direction, self.feasibility.tolerance,
-                     linking=Linking(height, run_in=0.0 if walls else 1.0, lower=crossing.heights))
+                     linking=Linking(height, run_in=0.0 if walls else 1.0, lower=crossing.heights,
+                                     beside=crossing.beside))
 
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The very passes, links and ramps included, that `finished` proves.
@@ -152,24 +153,6 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
                               obstacles=obstacles) for limit in (kept, given))
     reach = at_face(limits, face, tool)
     return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, progress, direction)
-
-
-def combined(machine: MachineLike | None, limits: AxisLimits | str | None) -> AxisLimits | None:
-    """Limits from a machine and from further limits.
-
-    Parameters
-    ----------
-    machine : Machine, AxisLimits, str or None
-        Whatever `toolaxis.machine.mounting.machine_limits` takes.
-    limits : AxisLimits, str or None
-
-    Raises
-    ------
-    InvalidInput
-        When one of them is no limit.
-    """
-    found = [machine_limits(one) for one in (machine, limits) if one is not None]
-    return AllOf(tuple(found)) if len(found) > 1 else found[0] if found else None
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
@@ -257,7 +240,12 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
-        return settled(job, ledger, METHODS[method](ledger), 1 if method in RULES else _ATTEMPTS)
+        attempts = 1 if method in RULES else _ATTEMPTS
+        result = settled(job, ledger, METHODS[method](ledger), attempts)
+        if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
+            return result
+        ledger = Ledger(ledger.feasibility, job.worth, job.progress, first)
+        return better_of(result, settled(job, ledger, METHODS[method](ledger), attempts))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
                            evaluations=ledger.evaluations, map=ledger.map())
@@ -321,7 +309,8 @@ def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str],
                     refused.append(f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face")
                 return result, missed
             witness = proof.witness
-        refused.append(f"refused {direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
+        refused.append(f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
+        make_room(ledger, candidate.axis, witness)
         candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
     return None, 0.0
 
@@ -340,7 +329,7 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
         return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0
     path = job.traced(placed)
-    beyond = out_of_travel(job.feasibility.limits, path)
+    beyond = stopped(job.feasibility, path, job.groups)
     proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,
                                                progress=job.progress)
     unreached, missed = job.feasibility.unreached(one.axis), placed.uncut

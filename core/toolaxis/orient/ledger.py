@@ -1,10 +1,11 @@
 """Every axis that a search looked at, with its verdict and its price."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.machine.limits import AxisLimits
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.closer import Closer
 from toolaxis.orient.feasible import Feasibility
@@ -195,8 +196,21 @@ class Ledger:
             self.learn(found.points)
         if len(found.uv):
             self.feasibility = self.feasibility.watching(found.uv)
-            free = np.flatnonzero(self.reason == FREE)
-            self.reason[free], self.amount[free] = self.feasibility.quick(self.axes[free])
+            self._quick_again()
+
+    def tighten(self, limits: AxisLimits) -> None:
+        """Hold narrower limits against all free axes, and against those still to come.
+
+        Parameters
+        ----------
+        limits : AxisLimits
+        """
+        self.feasibility = replace(self.feasibility, limits=limits)
+        self._quick_again()
+
+    def _quick_again(self) -> None:
+        free = np.flatnonzero(self.reason == FREE)
+        self.reason[free], self.amount[free] = self.feasibility.quick(self.axes[free])
 
     def count(self, axis: Array, feed: int, unreached: float) -> tuple[float, float, float]:
         """Exact value, passes and length of an axis for one feed; the value is charged for what stays.

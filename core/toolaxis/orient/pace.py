@@ -33,8 +33,8 @@ _LEAST = 8
 _RUN = 6
 #: Steps that count as none, mm, and the least sine of an angle between axis and normal.
 _STILL, _UPRIGHT = 1e-6, 1e-3
-#: How high above its approach a tip crosses to the next pass in the estimate, mm.
-_RISE = 2.0
+#: How far the next pass begins from the end of one in the estimate, mm.
+_STEP = 1.0
 
 
 class _Line(NamedTuple):
@@ -113,12 +113,10 @@ class Pace:
     @cached_property
     def ends(self) -> float:
         """What the ends of a pass take: off its end, over to the next and onto that, s."""
-        linking = Linking(0.0)
-        ramp, high = linking.run_in / np.sqrt(2), linking.approach
-        steps = np.array([(0, 0, 0), (ramp, 0, ramp), (0, 0, high), (0, 0, _RISE), (0, 1, 0), (0, 0, -_RISE),
-                          (0, 0, -high), (-ramp, 0, -ramp)], dtype=float)
+        ramp = Linking(0.0).run_in / np.sqrt(2)
+        steps = np.array([(0, 0, 0), (ramp, 0, ramp), (0, _STEP, 0), (-ramp, 0, -ramp)], dtype=float)
         slow = self.feeds.cut if self.feeds.approach is None else self.feeds.approach
-        wanted = [slow, slow, *[self.feeds.rapid] * 3, slow, slow]
+        wanted = [slow] * (len(steps) - 1)
         tips, bounds = np.cumsum(steps, axis=0), linear_bounds(self.mounting.machine)
         return schedule_polyline(tips, tips, wanted, bounds, self.feeds.tolerance).duration
 

@@ -28,9 +28,8 @@ _SPACING, _CLOSER = np.radians(8.0), (np.radians(4.0), np.radians(2.0))
 _FEW = 12
 #: Share of a cell below which there is nothing in it.
 _NOTHING = 1e-12
-#: What the link of a pass to the next one is worth, mm of cutting: some 10 mm at thrice the feed rate.  Without it the
-#: waved example was cut into as many small pieces as allowed: 2 % less cutting, but half as many passes and a seventh
-#: of links more.
+#: What the way from a pass over to the next one is worth, mm of cutting: a step aside and two stops.  Without it the
+#: waved example was cut into as many small pieces as allowed: 2 % less cutting, but half as many passes more.
 LINK = 3.0
 
 

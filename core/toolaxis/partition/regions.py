@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.orient.indexed import Task, combined, task
+from toolaxis.orient.indexed import Task, task
+from toolaxis.orient.mounted import combined
 from toolaxis.orient.setting import Obstacles
 from toolaxis.partition.around import Distance, candidates, slivers
 from toolaxis.partition.bosses import distances

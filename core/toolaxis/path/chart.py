@@ -64,6 +64,16 @@ class Cut:
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be finite and not below minus the corner "
                                f"radius {self.tool.corner_radius} mm")
 
+    def axes(self, face: Face, uv: Array) -> Array:
+        """The axis at contacts, (3,) or (n, 3) unit vectors: one for all of them here.
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        """
+        return self.axis
+
     @cached_property
     def numbers(self) -> Array:
         """Sizes of the cutter as screening takes them."""
@@ -255,4 +265,4 @@ def tip_points(chart: Chart, cut: Cut, along: ArrayLike, step: ArrayLike) -> tup
     uv = chart.uv(np.asarray(along, dtype=float), np.asarray(step, dtype=float))
     normal = chart.face.normal(uv)
     point = chart.face.evaluate(uv).point
-    return point, tips(point, normal, cut.axis, cut.tool, cut.allowance), normal
+    return point, tips(point, normal, cut.axes(chart.face, uv), cut.tool, cut.allowance), normal

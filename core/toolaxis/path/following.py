@@ -1,4 +1,4 @@
-"""Points along curves, close enough that neither the contact's nor the tip's chords leave them by the tolerance."""
+"""Points along curves, close enough that no chord of contacts, tips or moving axes leaves them by the tolerance."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,8 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     pieces : (m, 3) array
         along0, along1, step of each piece.
     chord : float
-        Chord tolerance, mm, kept by the polylines through contacts and through tips.
+        Chord tolerance, mm, kept by the polylines through contacts and tips, and where the axis moves through points
+        on it as far from the tip as the cutter is wide.
 
     Returns
     -------
@@ -59,12 +60,14 @@ def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> 
 
 
 def _deviations(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
-    """Greatest distance of contacts and tips from the chords at three inner places of each gap, mm."""
+    """Greatest distance of what is followed from the chords at three inner places of each gap, mm."""
     places = np.concatenate([[0.0], _PROBES, [1.0]])
     along = (low[:, None] + (high - low)[:, None] * places).ravel()
-    contact, tip, _ = tip_points(chart, cut, along, np.repeat(step, len(places)))
+    steps = np.repeat(step, len(places))
+    contact, tip, _ = tip_points(chart, cut, along, steps)
+    axes = cut.axes(chart.face, chart.uv(along, steps))
     worst = np.zeros(len(low))
-    for curve in (contact, tip):
+    for curve in (contact, tip) if axes.ndim == 1 else (contact, tip, tip + 2 * cut.tool.radius * axes):
         nodes = curve.reshape(len(low), len(places), 3)
         start, line = nodes[:, :1], nodes[:, -1:] - nodes[:, :1]
         square = np.maximum((line**2).sum(axis=2), np.finfo(float).tiny)

@@ -1,4 +1,4 @@
-"""From pieces of passes to one tool path: run in, cut, run out, retract along the axis, cross, come down."""
+"""From pieces of passes to one tool path: run in, cut, run out; on to the next beside it, or up, across and down."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +14,10 @@ Array = NDArray[np.float64]
 #: Cosine of the angle between axis and normal below which a retract along the axis does not leave the surface, and the
 #: way aside before it, mm, where no ramp is asked for.
 FLANK, ASIDE = 0.03, 0.3
+#: A stroke this near begins beside the end of the other, mm: to lift, to cross and to come down takes about as long.
+BESIDE = 8.0
+#: Heights of the way over to it that are tried, as shares of its length, and lifts above the higher end of a link, mm.
+ROOFS, LIFTS = (0.0, 0.25, 0.5, 1.0), (1.0, 3.0, 8.0, 20.0, 45.0, 90.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +50,10 @@ class Linking:
     lower : callable, optional
         Takes the tips (k, 3) above the end of each stroke and those above the begin of the next, mm, and answers at
         which heights along the axis the tip may cross between them, (k,) mm; all cross at `height` without it.
+    beside : callable, optional
+        Takes the tips (k, 3) at the end of each stroke and at the begin of the next, ramps included, mm, and answers
+        over which tip (k, 3) it may go straight from one to the other at feed rate, nan where it must lift; it always
+        lifts without it.
 
     Raises
     ------
@@ -57,6 +65,7 @@ class Linking:
     run_in: float = 1.0
     approach: float = 2.0
     lower: Callable[[Array, Array], Array] | None = None
+    beside: Callable[[Array, Array], Array] | None = None
 
     def __post_init__(self) -> None:
         for name in ("height", "run_in", "approach"):
@@ -71,8 +80,8 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
 
     Each stroke is entered and left on a ramp at 45 degrees between feed and axis, and by a short move along the axis;
     where the axis runs along the surface the ramp leads away from it, for a retract would scrape what stands between
-    passes.  Between strokes the tip rises to a crossing height, goes across, and comes down.  The path begins and ends
-    at the greatest one.
+    passes.  Between strokes the tip goes straight over at feed rate where `beside` allows it; elsewhere it rises to a
+    crossing height, goes across, and comes down.  The path begins and ends at the greatest one.
 
     Parameters
     ----------
@@ -89,26 +98,32 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
     Notes
     -----
     **Properties**: (1) the first point and all CUT points are those of the strokes in their order, links in between;
-    (2) every move across happens at `height` or above, or where `lower` says; (3) `breaks` start at the move that comes
-    down from it.
+    (2) every rapid move across happens at `height` or above, or where `lower` says; (3) `breaks` start at the move that
+    comes down from it, or at the first point after the one that `beside` gave.
     """
     strokes = [stroke for some in passes for stroke in some]
     if not strokes:
         empty = np.empty((0, 3))
         return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
-    entries, exits = [_entry(one, axis, linking) for one in strokes], [_exit(one, axis, linking) for one in strokes]
-    heights = _heights(strokes, (entries, exits), axis, linking)
+    entries = [entry_points(one, axis, linking) for one in strokes]
+    exits = [exit_points(one, axis, linking) for one in strokes]
+    over = _over((entries, exits), axis, linking)
+    stays = np.isfinite(over[:, 0])
+    heights = _heights(strokes, (entries, exits, stays), axis, linking)
     tips: list[Array] = []
     contacts: list[Array] = []
     normals: list[Array] = []
     kinds: list[NDArray[np.int8]] = []
     for k, stroke in enumerate(strokes):
-        before = np.concatenate([_lifted(entries[k][:1], axis, heights[k]), entries[k]])
+        kind = kinds_of(2 + len(entries[k][1:]), len(stroke.tip), 1 + len(exits[k]))
+        before = np.concatenate([_lifted(entries[k][:1], axis, heights[k]), entries[k]])[2 * stays[k]:]
         after = np.concatenate([exits[k], _lifted(exits[k][-1:], axis, heights[k + 1])])
+        if stays[k + 1]:
+            after = np.concatenate([exits[k][:-1], over[k + 1:k + 2]])
         tips += [before, stroke.tip, after]
         contacts += [before, stroke.contact, after]
         normals += [np.tile(axis, (len(before), 1)), stroke.normal, np.tile(axis, (len(after), 1))]
-        kinds.append(_kinds(len(before), len(stroke.tip), len(after)))
+        kinds.append(kind[2 * stays[k]:len(kind) - stays[k + 1]])
     cl = np.concatenate(tips)
     ends = np.cumsum([len(kind) for kind in kinds])
     breaks = np.concatenate([[0], ends[np.cumsum([len(some) for some in passes]) - 1]])
@@ -116,16 +131,29 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
                     np.concatenate(kinds), breaks.astype(np.int64))
 
 
-def _heights(strokes: list[Stroke], ends: tuple[list[Array], list[Array]], axis: Array, linking: Linking) -> Array:
+def _over(near: tuple[list[Array], list[Array]], axis: Array, linking: Linking) -> Array:
+    """Tips over which it goes straight to each stroke, and after the last one, (strokes + 1, 3); nan where it lifts."""
+    entries, exits = near
+    over = np.full((len(entries) + 1, 3), np.nan)
+    if linking.beside is not None and len(entries) > 1:
+        ends = np.array([near_end(one[::-1], axis, linking) for one in exits[:-1]])
+        begins = np.array([near_end(one, axis, linking) for one in entries[1:]])
+        over[1:-1] = linking.beside(ends, begins)
+    return over
+
+
+def _heights(strokes: list[Stroke], ends: tuple[list[Array], list[Array], NDArray[np.bool_]], axis: Array,
+             linking: Linking) -> Array:
     """Heights along the axis at which the tip comes, crosses from stroke to stroke, and goes, (strokes + 1,) mm."""
     tops = [float((stroke.tip @ axis).max()) for stroke in strokes]
     heights = np.full(len(strokes) + 1, max([linking.height, *(top + linking.approach + linking.run_in
                                                                for top in tops)]))
-    if linking.lower is not None and len(strokes) > 1:
-        entries, exits = ends
-        end, begin = np.array([one[-1] for one in exits[:-1]]), np.array([one[0] for one in entries[1:]])
+    entries, exits, stays = ends
+    rows = np.flatnonzero(~stays[1:-1])
+    if linking.lower is not None and len(rows):
+        end, begin = np.array([exits[k][-1] for k in rows]), np.array([entries[k + 1][0] for k in rows])
         asked = np.maximum(linking.lower(end, begin), np.maximum(end @ axis, begin @ axis))
-        heights[1:-1] = np.minimum(heights[1:-1], asked)
+        heights[1 + rows] = np.minimum(heights[1 + rows], asked)
     return heights
 
 
@@ -133,8 +161,15 @@ def _lifted(near: Array, axis: Array, height: float) -> Array:
     return near + max(height - float(near[0] @ axis), 0.0) * axis
 
 
-def _kinds(before: int, cutting: int, after: int) -> NDArray[np.int8]:
-    """Kinds of motion of one stroke: across and down, then in; the first cut point is still arrived at by the entry."""
+def kinds_of(before: int, cutting: int, after: int) -> NDArray[np.int8]:
+    """Kinds of motion of one stroke: across and down, then in; the first cut point is still arrived at by the entry.
+
+    Parameters
+    ----------
+    before, cutting, after : int
+        Numbers of points: the two of the link and those of the entry, those of the stroke, those of the exit and the
+        one to which the tip is lifted.
+    """
     return np.array([Motion.LINK, Motion.LINK] + [Motion.ENTRY] * (before - 2) + [Motion.ENTRY]
                     + [Motion.CUT] * (cutting - 1) + [Motion.EXIT] * (after - 1) + [Motion.LINK], dtype=np.int8)
 
@@ -153,15 +188,42 @@ def _ramp(end: tuple[Array, Array], normal: Array, axis: Array, run_in: float) -
     return np.empty((0, 3)) if long < 1e-6 else (start + (run_in or ASIDE) * direction / long)[None]
 
 
-def _entry(stroke: Stroke, axis: Array, linking: Linking) -> Array:
-    """Points before the first cut point: above the ramp, at its top."""
+def entry_points(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+    """Points before the first cut point: above the ramp, at its top, (1 or 2, 3) mm.
+
+    Parameters
+    ----------
+    stroke : Stroke
+    axis : (3,) array
+    linking : Linking
+    """
     ramp = _ramp((stroke.tip[0], stroke.tip[1]), stroke.normal[0], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[0]
     return np.concatenate([(low + linking.approach * axis)[None], ramp])
 
 
-def _exit(stroke: Stroke, axis: Array, linking: Linking) -> Array:
-    """Points after the last cut point: the end of the ramp, above it."""
+def exit_points(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+    """Points after the last cut point: the end of the ramp, above it, (1 or 2, 3) mm.
+
+    Parameters
+    ----------
+    stroke : Stroke
+    axis : (3,) array
+    linking : Linking
+    """
     ramp = _ramp((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[-1]
     return np.concatenate([ramp, (low + linking.approach * axis)[None]])
+
+
+def near_end(points: Array, axis: Array, linking: Linking) -> Array:
+    """The far end of a stroke's ramp, or the stroke's own end where there is none, (3,) mm.
+
+    Parameters
+    ----------
+    points : (1 or 2, 3) array
+        From `entry_points`, or from `exit_points` backwards, mm.
+    axis : (3,) array
+    linking : Linking
+    """
+    return np.asarray(points[1] if len(points) > 1 else points[0] - linking.approach * axis)

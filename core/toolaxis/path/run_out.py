@@ -39,8 +39,10 @@ def needed(chart: Chart, cut: Cut, end: Array, step: Array, forward: bool) -> Ar
     target = _targets(chart, cut, np.repeat(end, _ACROSS), places.ravel()).reshape(len(end), _ACROSS, 1, 3)
     span = _span(chart, cut, end, step, a1 - a0) * (1.0 if forward else -1.0)
     tried = end[:, None] + span[:, None] * np.linspace(-1.0, 1.0, _TRIED)
-    _, tips, _ = tip_points(chart, cut, tried.ravel(), np.repeat(step, _TRIED))
-    off = _distances(cut, target - tips.reshape(len(end), 1, _TRIED, 3))
+    steps = np.repeat(step, _TRIED)
+    _, tips, _ = tip_points(chart, cut, tried.ravel(), steps)
+    axes = np.broadcast_to(cut.axes(chart.face, chart.uv(tried.ravel(), steps)), tips.shape)
+    off = _distances(cut, target - tips.reshape(len(end), 1, _TRIED, 3), axes.reshape(len(end), 1, _TRIED, 3))
     return _first_cut(off, cut.scallop) * np.abs(span)
 
 
@@ -58,10 +60,10 @@ def _span(chart: Chart, cut: Cut, end: Array, step: Array, whole: float) -> Arra
     return np.asarray(2 * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9 / whole))
 
 
-def _distances(cut: Cut, relative: Array) -> Array:
-    """Signed distances of points relative to the tip from the cutter, mm."""
+def _distances(cut: Cut, relative: Array, axes: Array) -> Array:
+    """Signed distances of points relative to the tip from the cutter with its axis, mm."""
     rows = relative.reshape(-1, 3)
-    z = rows @ cut.axis
+    z = dot(rows, np.broadcast_to(axes, relative.shape).reshape(-1, 3))
     rho = np.sqrt(np.maximum(dot(rows, rows) - z**2, 0.0))
     local = np.column_stack([rho, np.zeros(len(rows)), z])
     return np.asarray(cut.tool.distance(local, "cutter").value.reshape(relative.shape[:-1]))

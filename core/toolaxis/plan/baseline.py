@@ -5,7 +5,8 @@ from dataclasses import dataclass
 #: What each method of a comparison stands for.
 METHOD_NAMES = {"plan": "this plan", "sphere": "best of the hemisphere", "sectors": "sectors of zhu2016",
                 "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis",
-                "ball": "ball end, mean normal"}
+                "ball": "ball end, mean normal", "sturz": "five axes, constant lead",
+                "two-point": "five axes, two contacts"}
 
 
 @dataclass(frozen=True)

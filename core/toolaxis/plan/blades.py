@@ -1,5 +1,6 @@
 """What a plan says of a part with blades: faces of each, operations that are turned copies, what is near."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -159,6 +160,18 @@ class Blades:
         strangers = {n for k, blade in enumerate(self.blades) if k != own[0] for n in blade.numbers}
         return replace(part, edges=tuple(edge for edge in part.edges
                                          if (edge.faces[0] in strangers) == (edge.faces[1] in strangers)))
+
+    def renumbered(self, numbers: Mapping[int, int]) -> "Blades":
+        """Itself after operations got other numbers.
+
+        Parameters
+        ----------
+        numbers : mapping of int to int
+            From the old number of each operation to the new one.
+        """
+        return replace(self, copies={numbers[copy]: numbers[source] for copy, source in self.copies.items()},
+                       searched=tuple(sorted(numbers[one] for one in self.searched)),
+                       room=tuple(replace(one, operation=numbers.get(one.operation, 0)) for one in self.room))
 
     def checked(self, operations: int) -> "Blades":
         """Itself, when what it says of operations can be.

@@ -16,7 +16,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.schema import NAME, VERSION, check
-from toolaxis.plan.timing import MachiningTime
+from toolaxis.plan.timing import MachiningTime, Order
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -97,7 +97,7 @@ def orientation_document(found: Orientation) -> Document:
         record[name] = float(record[name]) if np.isfinite(record[name]) else None
     return {**record, "passes": int(found.passes), "evaluations": int(found.evaluations), "axis": _rows(found.axis),
             "clearance": {name: float(v) if np.isfinite(v) else None for name, v in found.clearance.items()},
-            "reasons": list(found.reasons),
+            "reasons": list(found.reasons), "lead": found.lead,
             "lobes": [orientation_document(lobe) for lobe in found.lobes], "map": _map_document(found.map)}
 
 
@@ -112,7 +112,7 @@ def orientation_from(document: Mapping[str, Any]) -> Orientation:
     axis = document["axis"]
     return Orientation(axis=None if axis is None else np.array(axis, dtype=float), **scalars,
                        clearance={k: np.inf if v is None else v for k, v in document["clearance"].items()},
-                       reasons=tuple(document["reasons"]), map=_map_from(document["map"]),
+                       reasons=tuple(document["reasons"]), map=_map_from(document["map"]), lead=document.get("lead"),
                        lobes=tuple(orientation_from(lobe) for lobe in document["lobes"]))
 
 
@@ -172,6 +172,9 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "baselines": [asdict(one) for one in plan.baselines],
         "blades": blades_document(plan.blades),
         "machine": machine_document(plan.machine),
+        "order": None if plan.order is None else {
+            **asdict(plan.order), "listed": plan.order.listed if np.isfinite(plan.order.listed) else None},
+        "in_the_way": list(plan.in_the_way),
         "options": [asdict(option) for option in plan.options],
         "operations": [_operation_document(op, plan, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
@@ -188,7 +191,15 @@ def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | No
                   for zone in document.get("zones", ()))
     time = document.get("time")
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
-    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones, known)
+    rotary = document.get("rotary") or [()]
+    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones, known,
+                     tuple(rotary[0]))
+
+
+def _order_from(document: Mapping[str, Any] | None) -> Order | None:
+    if document is None:
+        return None
+    return Order(**{**document, "listed": np.inf if document["listed"] is None else document["listed"]})
 
 
 def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part],
@@ -220,4 +231,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 np.array(document["datum"], dtype=float), document["outcome"],
                 tuple(Option(**option) for option in document.get("options", ())),
                 tuple(Baseline(**one) for one in document.get("baselines", ())),
-                blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")))
+                blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")),
+                _order_from(document.get("order")), tuple(document.get("in_the_way", ())))

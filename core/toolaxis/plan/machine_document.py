@@ -13,6 +13,9 @@ from toolaxis.plan.operation import Operation
 
 Array = NDArray[np.float64]
 
+#: Angle by which rotary axes may differ and still stand at one place, whole turns aside, rad.
+SAME = 1e-6
+
 
 def machine_document(mounting: Mounting | None) -> dict[str, Any] | None:
     """A machine with a part on it, as `json.dump` takes it; None for none.
@@ -58,9 +61,14 @@ def rotary_of(mounting: Mounting | None, op: Operation, tool_length: float | Non
     Returns
     -------
     (s, m) array
-        The one with the least turns from zero first; empty without a machine or passes.
+        The one at which it is carried out first, where that is known, else that with the least turns from zero; empty
+        without a machine or passes, and where the axis moves.
     """
-    if mounting is None or op.path is None or op.orientation.axis is None:
+    if mounting is None or op.path is None or op.orientation.axis is None or op.orientation.lead is not None:
         return np.empty((0, 0))
     known = Mounting(mounting.machine, mounting.table_from_part, tool_length)
-    return known.holding(op.path.cl, op.orientation.axis)
+    rows = known.holding(op.path.cl, op.orientation.axis)
+    if not op.rotary or not len(rows):
+        return rows
+    off = np.mod(rows - np.array(op.rotary) + np.pi, 2 * np.pi) - np.pi
+    return np.vstack([op.rotary, rows[np.abs(off).max(axis=1) > SAME]])

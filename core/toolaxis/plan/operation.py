@@ -31,6 +31,8 @@ class Operation:
         clean-up tool.
     time : MachiningTime or None
         What the plan's machine takes, where it states the limits of its axes.
+    rotary : tuple of float
+        Where the rotary axes of the plan's machine stand, rad; empty without one.
     """
 
     number: int
@@ -40,6 +42,7 @@ class Operation:
     frame: WorkCoordinates | None = None
     zones: tuple[Zone, ...] = ()
     time: MachiningTime | None = None
+    rotary: tuple[float, ...] = ()
 
     @property
     def done(self) -> bool:

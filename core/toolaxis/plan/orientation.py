@@ -72,6 +72,9 @@ class Orientation:
         The best axis of each other lobe of feasible axes, best first.
     unreached : float
         Share of the face's area left to a clean-up tool, 0 to 1.
+    lead : float or None
+        Where the axis moves: its constant angle from the normal towards growing `feed`, or the mean of its angles to
+        the normal, rad; `axis` is the mean one then.  None for a fixed axis.
     """
 
     axis: Array | None
@@ -88,3 +91,4 @@ class Orientation:
     map: AxisMap | None = None
     lobes: "tuple[Orientation, ...]" = ()
     unreached: float = 0.0
+    lead: float | None = None

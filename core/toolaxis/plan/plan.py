@@ -1,7 +1,7 @@
 """The plan: what was asked for, and the operations that answer it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 
 import numpy as np
@@ -12,13 +12,17 @@ from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.operation import Operation
+from toolaxis.plan.timing import Order
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
+#: Fixed axes, or simultaneous five-axis milling: with a constant lead, or with two-point contact of a flat bottom.
+STRATEGIES = ("indexed", "sturz", "two-point")
+#: How the axis of each sub-surface is found; strategies that move it are methods too.
+METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball", *STRATEGIES[1:])
 OBJECTIVES = ("length", "passes", "time")
 DIRECTIONS = ("zigzag", "climb", "conventional")
 #: What a change of the tool axis between operations is reckoned to take, s.
@@ -148,7 +152,8 @@ class Plan:
     tool : Tool
     inputs : Inputs
     operations : tuple of Operation
-        One per sub-surface, in the order of the faces; by axis where sub-surfaces share axes.
+        One per sub-surface, in the order of the faces; by axis where sub-surfaces share axes; on a machine in the order
+        that takes least time between them.
     obstacles : tuple of Part
         Further bodies that were kept clear of.
     datum : (3,) array
@@ -164,6 +169,10 @@ class Plan:
         Where one blade was planned and its operations were turned to the others.
     machine : Mounting, optional
         The machine that holds the axes, with the part on its table.
+    order : Order, optional
+        What the order of operations saves, where it was chosen.
+    in_the_way : tuple of str
+        What bodies of the machine meet between operations, in sentences.
     """
 
     part: Part
@@ -177,6 +186,8 @@ class Plan:
     baselines: tuple[Baseline, ...] = ()
     blades: Blades | None = None
     machine: Mounting | None = None
+    order: Order | None = None
+    in_the_way: tuple[str, ...] = ()
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.
@@ -198,7 +209,13 @@ class Plan:
             return (*missing, "machine")
         if self.machine.table_from_part is None or self.tool.gauge_length is None:
             missing.append("travel of the machine's linear axes")
-        return (*missing, "collision with the machine itself")
+        moving = any(op.orientation.lead is not None for op in self.operations)
+        mounting = replace(self.machine, tool_length=self.tool.gauge_length)
+        if moving or not mounting.judges_bodies:
+            missing.append("collision with the machine itself")
+        elif not mounting.judges_index_moves and self.orientations > 1:
+            missing.append("collision with the machine on index moves")
+        return tuple(missing)
 
     @property
     def length(self) -> float:

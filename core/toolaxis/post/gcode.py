@@ -306,16 +306,33 @@ def program_of(plan: Plan, mounting: Mounting, dialect: Dialect, options: Option
         When the machine's axes are not X, Y, Z with the spindle along Z, an axis cannot be held, or the dialect cannot
         express it.
     """
+    empty = bare_program(plan, mounting, dialect, options, name)
+    found = stations(plan, mounting, dialect.angle_digits, {} if options is None else options.angles)
+    made = replace(empty, stations=tuple(dialect.placed(station, mounting, plan.datum) for station in found))
+    dialect.check(made)
+    return made
+
+
+def bare_program(plan: Plan, mounting: Mounting, dialect: Dialect, options: Options | None = None,
+                 name: str = "toolaxis") -> Program:
+    """What a program says besides its stations.
+
+    Parameters
+    ----------
+    plan, mounting, dialect, options, name
+        As for `program_of`.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine's axes are not X, Y, Z with the spindle along Z.
+    """
     _check_frame(mounting.machine)
     chosen = Options() if options is None else options
     top = mounting.machine.linear[2].high
     retract = chosen.retract if chosen.retract is not None else (top if isfinite(top) else None)
-    found = stations(plan, mounting, dialect.angle_digits, chosen.angles)
-    placed = tuple(dialect.placed(station, mounting, plan.datum) for station in found)
-    made = Program(plan, mounting, placed, _plain(name).replace(" ", "_") or "toolaxis", retract,
+    return Program(plan, mounting, (), _plain(name).replace(" ", "_") or "toolaxis", retract,
                    chosen.clamp or dialect.hold, chosen.unclamp or dialect.release)
-    dialect.check(made)
-    return made
 
 
 def _check_frame(machine: Machine) -> None:

@@ -1,6 +1,7 @@
 """The setup sheet: what the operator must know before the program starts, as Markdown."""
 
 from collections.abc import Sequence
+from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.machine.kinematics import linear_coordinates, placement
 from toolaxis.plan.plan import Plan
 from toolaxis.post.gcode import Dialect, Program, number
+from toolaxis.post.moving import TipControl, courses
 from toolaxis.post.stations import Station
 
 Array = NDArray[np.float64]
@@ -37,6 +39,47 @@ def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "no
              "## Orientations", _orientations(program, dialect), "## Operations", _operations(program, dialect),
              "## What to mind", "\n".join(f"- {note}" for note in _notes(program, dialect)), ""]
     return "\n\n".join(parts)
+
+
+def moving_sheet_text(program: Program, control: TipControl, file: str, verdict: str = "not judged yet") -> str:
+    """The setup sheet of a program whose axis moves.
+
+    Parameters
+    ----------
+    program : Program
+        From `toolaxis.post.gcode.bare_program` with the control's dialect.
+    control : TipControl
+    file : str
+        Name of the program's file.
+    verdict : str
+        What `toolaxis verify` said of the plan.
+
+    Returns
+    -------
+    str
+        Markdown; lengths in mm, angles in degrees.
+    """
+    dialect, notes = control.dialect, [*control.notes, f"Points are rounded to {0.5 * 10 ** -control.dialect.digits:g} "
+                                       "mm in each coordinate."]
+    if program.machine.assumed:
+        notes.append(f"Assumed in the machine's file: {', '.join(program.machine.assumed)}.")
+    general = _general(program, dialect, file, verdict).replace(dialect.title, control.title)
+    parts = [f"# Setup sheet: {program.name}", general, "## Tool", _tool(program.plan), "## Work coordinate system",
+             _work(program, dialect), "## Operations", _courses(program), "## What to mind",
+             "\n".join(f"- {note}" for note in notes), ""]
+    return "\n\n".join(parts)
+
+
+def _courses(program: Program) -> str:
+    inputs, rows = program.plan.inputs, []
+    for course in courses(program.plan, program.mounting):
+        op, turned = course.operation, np.degrees(course.along.rotary)
+        ranges = ["; ".join(f"{axis.name} {low:.3f} to {high:.3f}" for axis, low, high in
+                            zip(program.machine.rotary, turned.min(axis=0), turned.max(axis=0), strict=True))]
+        lead = "-" if op.orientation.lead is None else number(degrees(op.orientation.lead), 3)
+        rows.append([op.name, lead, *ranges, str(op.path.passes if op.path else 0), _vector(course.tips[0], 3),
+                     f"{op.seconds(inputs.feedrate, inputs.rapid) / 60:.1f}"])
+    return _table(["operation", "lead", "rotary axes", "passes", "first point", "min"], rows)
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -156,6 +199,10 @@ def _notes(program: Program, dialect: Dialect) -> list[str]:
     if program.retract is not None and dialect.told_retract:
         notes.append(f"Rotary axes turn with Z at {program.retract:.3f} in machine coordinates: compare with the "
                      "machine's own travel.")
+    top = program.machine.linear[2].high
+    if program.mounting.judges_index_moves and program.retract is not None and program.retract < top:
+        notes.append(f"Index moves were held apart from the machine's bodies with Z at {top:.3f}, not at "
+                     f"{program.retract:.3f}.")
     if any(station.tilt for station in program.stations):
         notes.append("The spindle is tilted: each operation begins with one straight motion from the retracted place "
                      "to its first point. Whether that is free of fixtures is not checked.")

@@ -1,4 +1,4 @@
-"""What several methods come to, as bars: cutting length and links, time beside them."""
+"""What several methods, or numbers of axes, come to: bars of cutting length and links, and a curve."""
 
 from collections.abc import Sequence
 
@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
+from toolaxis.plan.plan import Option
 from toolaxis.report.plots import BLUE, GREY, SKY, VERMILION, figure
 
 
@@ -47,4 +48,33 @@ def baselines_picture(rows: Sequence[Baseline]) -> Figure:
     handles = [Patch(color=VERMILION, label="cutting, this plan"), Patch(color=BLUE, label="cutting"),
                Patch(color=SKY, label="entries, exits, links")]
     made.legend(handles=handles, loc="outside lower center", ncol=3, fontsize=8, frameon=False)
+    return made
+
+
+def options_picture(options: Sequence[Option]) -> Figure:
+    """Cutting length against the number of different axes, the chosen one marked.
+
+    Parameters
+    ----------
+    options : sequence of Option
+    """
+    made = figure(7.5, 4.6)
+    ax = made.subplots()
+    count, length = [one.orientations for one in options], [one.length for one in options]
+    ax.plot(count, length, "o-", color=BLUE, markersize=5)
+    for one in options:
+        ax.annotate(f"{one.sub_surfaces}", (one.orientations, one.length), textcoords="offset points", xytext=(4, 6),
+                    fontsize=8, color=GREY)
+        if one.chosen:
+            ax.plot(one.orientations, one.length, "o", color=VERMILION, markersize=12, fillstyle="none",
+                    markeredgewidth=1.8, label="chosen, at the knee")
+    ax.plot([], [], linestyle="none", marker="$n$", color=GREY, markersize=6, label="number of sub-surfaces")
+    ax.set_xlabel("different tool axes")
+    ax.set_ylabel("reckoned length, mm")
+    ax.set_title("cutting, links and clean-up against the number of orientations", fontsize=10)
+    ax.set_xticks(count)
+    ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))
+    ax.margins(y=0.12)
+    ax.grid(alpha=0.25)
+    ax.legend(frameon=False, fontsize=9)
     return made

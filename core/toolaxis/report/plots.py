@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Option, Plan
+from toolaxis.plan.plan import Plan
 from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
 from toolaxis.report.raster import (
     Camera,
@@ -87,8 +87,9 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
                                  + 0.35 * axis, axis))
     close.set_title(f"{op.name}: {op.orientation.passes} passes along {op.orientation.feed}, "
                     f"cutting length {op.orientation.length:.0f} mm", fontsize=10)
-    shown = ", ".join(f"{value:+.3f}" for value in axis)
-    whole.set_title(f"{plan.tool.name}, axis ({shown})", fontsize=10)
+    lead, shown = op.orientation.lead, ", ".join(f"{value:+.3f}" for value in axis)
+    said = f"axis ({shown})" if lead is None else f"the axis moves, lead {np.degrees(lead):+.2f} deg"
+    whole.set_title(f"{plan.tool.name}, {said}", fontsize=10)
     return made
 
 
@@ -149,7 +150,7 @@ def _over(canvas: Canvas, run: Array, inside: bool) -> list[Array]:
 
 
 def cutting_lines(path: ToolPath) -> list[Array]:
-    """Contact points of every uninterrupted cutting motion, each (m, 3).
+    """Contact points of every uninterrupted cutting motion, each (m, 3), the one at which it begins included.
 
     Parameters
     ----------
@@ -158,12 +159,12 @@ def cutting_lines(path: ToolPath) -> list[Array]:
     cutting = path.kind == Motion.CUT
     starts = np.flatnonzero(cutting & ~np.concatenate([[False], cutting[:-1]]))
     ends = np.flatnonzero(cutting & ~np.concatenate([cutting[1:], [False]]))
-    return [path.cc[max(a, 0):b + 1] for a, b in zip(starts, ends, strict=True) if b > a]
+    return [path.cc[max(a - 1, 0):b + 1] for a, b in zip(starts, ends, strict=True)]
 
 
 def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -> None:
     assert op.path is not None and op.frame is not None
-    tip, axis = _standing(op.path), op.frame.z
+    tip, axis = standing(op.path)
     outlines = tool_outlines(plan.tool, 8 * plan.tool.radius)
     ends = np.array([tip + z * axis + r * side for line in outlines.values() for r, z in line
                      for side in (op.frame.x, -op.frame.x, op.frame.y, -op.frame.y)])
@@ -197,10 +198,16 @@ def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -
     bare(ax)
 
 
-def _standing(path: ToolPath) -> Array:
-    """A tip on a pass to show the tool at: a third along the middle pass."""
+def standing(path: ToolPath) -> tuple[Array, Array]:
+    """A tip on a pass to show the tool at, about a third along the middle pass, and the axis there, (3,) each.
+
+    Parameters
+    ----------
+    path : ToolPath
+    """
     cutting = np.flatnonzero(path.kind == Motion.CUT)
-    return path.cl[cutting[int(0.47 * (len(cutting) - 1))]]
+    k = cutting[int(0.47 * (len(cutting) - 1))]
+    return path.cl[k], path.axis[k]
 
 
 def _legend(ax: Axes, areas: Mapping[str, tuple[float, float, float]], lines: Mapping[str, str],
@@ -333,35 +340,6 @@ def study_picture(study: WidthStudy, name: str) -> Figure:
     below.plot(degrees, 100 * (study.estimate / study.made - 1), "--", color=VERMILION)
     below.set_xlabel("angle between the axis and the mean normal, degrees (dotted: the chosen axis)")
     below.set_ylabel("error, %")
-    return made
-
-
-def options_picture(options: Sequence[Option]) -> Figure:
-    """Cutting length against the number of different axes, the chosen one marked.
-
-    Parameters
-    ----------
-    options : sequence of Option
-    """
-    made = figure(7.5, 4.6)
-    ax = made.subplots()
-    count, length = [one.orientations for one in options], [one.length for one in options]
-    ax.plot(count, length, "o-", color=BLUE, markersize=5)
-    for one in options:
-        ax.annotate(f"{one.sub_surfaces}", (one.orientations, one.length), textcoords="offset points", xytext=(4, 6),
-                    fontsize=8, color=GREY)
-        if one.chosen:
-            ax.plot(one.orientations, one.length, "o", color=VERMILION, markersize=12, fillstyle="none",
-                    markeredgewidth=1.8, label="chosen, at the knee")
-    ax.plot([], [], linestyle="none", marker="$n$", color=GREY, markersize=6, label="number of sub-surfaces")
-    ax.set_xlabel("different tool axes")
-    ax.set_ylabel("reckoned length, mm")
-    ax.set_title("cutting, links and clean-up against the number of orientations", fontsize=10)
-    ax.set_xticks(count)
-    ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))
-    ax.margins(y=0.12)
-    ax.grid(alpha=0.25)
-    ax.legend(frameon=False, fontsize=9)
     return made
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import inf, isfinite
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from rich.table import Table
@@ -20,6 +20,7 @@ _COLUMNS: tuple[Column, ...] = (
     ("sub-\nsurface", "right"), ("axis", "left"), ("feed", "left"), ("passes", "right"), ("strip width\nmm", "right"),
     ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
 _BOUNDS = "gouge: upper bound; clearance: lower bound, looked at up to 20 mm; -: not checked"
+_POINTS = "where the axis moves, the cutter on the machined face is checked at points; clearances are those kept"
 
 
 def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> Table:
@@ -56,7 +57,9 @@ def number(value: float | None, digits: int) -> str:
 
 
 def _axis(op: Operation) -> str:
-    axis = op.orientation.axis
+    axis, lead = op.orientation.axis, op.orientation.lead
+    if lead is not None:
+        return f"moves, lead {np.degrees(lead):+.2f} deg"
     return "-" if axis is None else " ".join(f"{component:+.4f}" for component in np.asarray(axis) + 0.0)
 
 
@@ -88,8 +91,10 @@ def plan_table(plan: Plan) -> Table:
         shown = [op for op in plan.operations if op.number not in blades.copies]
         rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
                 for row, op in zip(rows, shown, strict=True)]
+    moves = any(op.orientation.lead is not None for op in plan.operations)
     title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
-             f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, different axes {plan.orientations}")
+             f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, "
+             + ("moving axes" if moves else f"different axes {plan.orientations}"))
     if plan.machine is not None:
         names = "/".join(axis.name for axis in plan.machine.machine.rotary)
         shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
@@ -99,7 +104,19 @@ def plan_table(plan: Plan) -> Table:
                ("outcome", "left")]
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
-    return table(title, columns, rows, f"{_BOUNDS}\n{_assumed(plan)}")
+    points = _POINTS if plan.inputs.method == "sturz" else ""
+    return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, _assumed(plan), _order(plan)))))
+
+
+def _order(plan: Plan) -> str:
+    """What the order of operations saves."""
+    if plan.order is None:
+        return ""
+    now, listed, least = plan.order.seconds, plan.order.listed, plan.order.bound
+    saved = f"{listed - now:.1f} s less than as planned" if isfinite(listed) else (
+        "as planned the machine would meet something")
+    proven = "no order takes less" if now <= least * (1 + 1e-9) else f"no order takes less than {least:.1f} s"
+    return f"order: {now:.1f} s between operations, {saved}; {proven}"
 
 
 def _angles(plan: Plan, op: Operation) -> str:
@@ -131,6 +148,26 @@ def _assumed(plan: Plan) -> str:
     why = f" ({machine.name} does not state {machine.unstated})" if machine is not None and machine.unstated else ""
     return (f"time: {inputs.feedrate:g} mm/min in the cut and on its ramps, {inputs.rapid:g} mm/min between, without "
             f"accelerations{why}; {INDEX_SECONDS:g} s for each change of axis")
+
+
+def batch_table(records: Sequence[Mapping[str, Any]]) -> Table:
+    """One row per job of a batch: outcome, operations, axes, passes, lengths and machining time.
+
+    Parameters
+    ----------
+    records : sequence of mappings
+        Of `toolaxis.batch.summary.Row`.
+    """
+    rows = []
+    for one in records:
+        figures = ["-"] * 6 if one["operations"] is None else [
+            str(one["operations"]), str(one["orientations"]), str(one["passes"]), number(one["length"], 1),
+            number(one["travel"], 1), clock(one["seconds"])]
+        outcome = " ".join(filter(None, (one["outcome"], one["cause"], one["verdict"] and f"verdict {one['verdict']}")))
+        rows.append([one["job"], outcome, *figures])
+    columns = (("job", "left"), ("outcome", "left"), ("operations", "right"), ("axes", "right"), ("passes", "right"),
+               ("cutting\nlength mm", "right"), ("links mm", "right"), ("time", "right"))
+    return table("jobs", columns, rows)
 
 
 def baselines_table(plan: Plan) -> Table:

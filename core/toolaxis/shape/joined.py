@@ -13,7 +13,7 @@ from toolaxis.numeric.bezier import bezier_nets, bezier_rows
 from toolaxis.numeric.overlay import united
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.kinks import turn_at
+from toolaxis.shape.kinks import beside, turn_at
 from toolaxis.shape.layout import Cell, Grid, laid_out
 from toolaxis.shape.meeting import GAP, Meeting
 from toolaxis.shape.nurbs import NurbsSurface
@@ -285,12 +285,7 @@ def corner_at(face: Face, axis: int, t: float) -> float:
     t : float
         The knot.
     """
-    low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
-    across = low + (high - low) * (np.arange(33) + 0.5) / 33
-    ways = []
-    for at in (np.nextafter(t, -np.inf), t):
-        d = face.evaluate(np.stack([np.full(33, at), across][::1 - 2 * axis], axis=1))
-        ways.append((d.su, d.sv)[axis])
+    ways = [(d.su, d.sv)[axis] for d in map(face.evaluate, beside(face, axis, t))]
     return float(np.max(angle_between(*ways)))
 
 

@@ -50,14 +50,27 @@ def turn_at(face: Face, axis: int, t: float) -> float:
     t : float
         The knot.
     """
-    low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
-    across = low + (high - low) * (np.arange(SAMPLES) + 0.5) / SAMPLES
-    sides = []
-    for value in (np.nextafter(t, -np.inf), t):
-        uv = np.stack([np.full(SAMPLES, value), across] if axis == 0 else [across, np.full(SAMPLES, value)], axis=1)
-        sides.append(face.normal(uv))
+    sides = [face.normal(uv) for uv in beside(face, axis, t)]
     sound = (np.linalg.norm(sides[0], axis=1) > 0.5) & (np.linalg.norm(sides[1], axis=1) > 0.5)
     return float(angle_between(sides[0], sides[1])[sound].max(initial=0.0))
+
+
+def beside(face: Face, axis: int, t: float) -> tuple[Array, Array]:
+    """Parameters of places just before a knot line and on it, (n, 2) each.
+
+    Parameters
+    ----------
+    face : Face
+    axis : int
+        0 for a line of constant u, 1 for one of constant v.
+    t : float
+        The knot.
+    """
+    low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
+    along = low + (high - low) * (np.arange(SAMPLES) + 0.5) / SAMPLES
+    before, on = (np.stack([np.full(SAMPLES, value), along][::1 - 2 * axis], axis=1)
+                  for value in (np.nextafter(t, -np.inf), t))
+    return before, on
 
 
 def with_kinks(face: Face) -> Face:

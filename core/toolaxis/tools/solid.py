@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.convex import Convex
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.tools.profile import Profile
 
@@ -70,6 +71,21 @@ def solid_pieces(profile: Profile, outlines: dict[str, Array]) -> Array:
     """
     bodies = [outline_pieces(outlines[name], COMPONENTS.index(name)) for name in COMPONENTS if name in outlines]
     return np.vstack([cutter_piece(profile)[None], *bodies])
+
+
+def convex_pieces(pieces: Array) -> Convex:
+    """The pieces as hulls of two discs, tip at the origin, axis along +z: what encloses each of them.
+
+    Parameters
+    ----------
+    pieces : (k, 8) array
+        From `solid_pieces`.
+    """
+    count = len(pieces)
+    centre = np.zeros((count, 2, 3))
+    centre[:, 0, 2], centre[:, 1, 2] = pieces[:, 4] + pieces[:, 1], pieces[:, 5]
+    ball = np.stack([pieces[:, 1], np.zeros(count)], axis=1)
+    return Convex(centre, np.tile([0.0, 0.0, 1.0], (count, 2, 1)), pieces[:, [0, 6]], ball, np.zeros((count, 3, 3)))
 
 
 @built_in

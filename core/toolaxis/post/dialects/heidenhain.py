@@ -32,7 +32,7 @@ class Heidenhain(Dialect):
 
     def orient(self, program: Program, station: Station) -> Lines:
         """Index, then the plane."""
-        c, b, a = (_signed(text) for text in self.euler(station))
+        c, b, a = (signed(text) for text in self.euler(station))
         return [*self.index(program, station), f"PLANE SPATIAL SPA{a} SPB{b} SPC{c} TURN FMAX COORD ROT"]
 
     def index(self, program: Program, station: Station) -> Lines:
@@ -43,7 +43,7 @@ class Heidenhain(Dialect):
     def rotary(self, program: Program, station: Station) -> str:
         """The rotary words of a station, with their signs."""
         words = super().rotary(program, station).split()
-        return " ".join(word[0] + _signed(word[1:]) for word in words)
+        return " ".join(word[0] + signed(word[1:]) for word in words)
 
     def approach(self, program: Program, station: Station) -> Lines:
         """Across, then down; in one block where the spindle is tilted."""
@@ -62,7 +62,7 @@ class Heidenhain(Dialect):
 
     def point(self, point: NDArray[np.float64]) -> str:
         """The coordinates of a tip, with their signs."""
-        return " ".join(word[0] + _signed(word[1:]) for word in super().point(point).split())
+        return " ".join(word[0] + signed(word[1:]) for word in super().point(point).split())
 
     def leave(self, program: Program, station: Station) -> Lines:
         """Retract along the tool axis, plane off."""
@@ -82,5 +82,11 @@ class Heidenhain(Dialect):
         return [f"{k} {line}" for k, line in enumerate(whole)]
 
 
-def _signed(text: str) -> str:
+def signed(text: str) -> str:
+    """A number with its sign, as Klartext wants it.
+
+    Parameters
+    ----------
+    text : str
+    """
     return text if text.startswith("-") else f"+{text}"

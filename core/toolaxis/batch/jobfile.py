@@ -1,0 +1,274 @@
+"""The jobs of a batch: read from TOML or given as mappings, checked all before the first one begins."""
+
+import hashlib
+import json
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from math import isfinite
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from toolaxis import __version__
+from toolaxis.batch.task import Source, Task
+from toolaxis.cad.loading import load
+from toolaxis.errors import InvalidInput, ToolAxisError
+from toolaxis.job.spec import Spec, by_strategy
+from toolaxis.machine.catalogue import load_machine, machine_to_toml
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.limits import parse_limits
+from toolaxis.partition.regions import checked_count
+from toolaxis.plan.document import tool_document
+from toolaxis.plan.part_document import part_document
+from toolaxis.plan.plan import Inputs
+from toolaxis.tools.assembly import Tool
+
+_INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
+           "feedrate": float, "spindle": float, "rapid": float}
+_ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
+_OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
+        "strategy": str}
+#: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
+KEYS = ("name", "part", "tool", "machine", "obstacles", *_INPUTS, *_ASKED, *_OWN)
+_NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """A job that was checked.
+
+    Attributes
+    ----------
+    name : str
+        Also that of its folder.
+    spec : Spec
+        Paths are those that were given, from the job file's folder.
+    tool : Tool
+    machine : Machine or None
+    bodies : tuple
+        The part, then the obstacles: paths, or what `toolaxis.load` made of objects.
+    own : dict
+        compare, strategy, verify, pictures, timeout and memory.
+    key : str
+        SHA-256 of all that the plan depends on: the same for the same plan, another one for another.
+    """
+
+    name: str
+    spec: Spec
+    tool: Tool
+    machine: Machine | None
+    bodies: tuple[Any, ...]
+    own: dict[str, Any]
+    key: str
+
+    def task(self) -> Task:
+        """What a process needs to carry it out.
+
+        Raises
+        ------
+        InvalidInput
+            When a file cannot be read any more, or is another one than when the batch began.
+        """
+        part, *obstacles = (_source(body) for body in self.bodies)
+        if _key(self.spec, self.tool, self.machine, self.own, (part, *obstacles)) != self.key:
+            raise InvalidInput(f"{part.name}: a file of the job was changed while the batch ran: run it again")
+        inputs = self.spec.inputs
+        options = {**{name: getattr(inputs, name) for name in _INPUTS if name != "scallop"},
+                   "scallop": inputs.scallop, "faces": self.spec.numbers, "regions": self.spec.regions,
+                   "orientations": self.spec.orientations, "offset": self.spec.place, "compare": self.own["compare"],
+                   "strategy": self.own["strategy"]}
+        return Task(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options, self.own["verify"],
+                    self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
+
+
+def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[Wanted, ...]:
+    """The jobs of a batch, all checked.
+
+    Parameters
+    ----------
+    jobs : path or iterable of mappings
+        A TOML file with [[jobs]] and, if need be, [defaults] for all of them; or the jobs themselves, whose part may be
+        anything that `toolaxis.load` takes and whose tool may be a Tool.  Paths in a file are meant from its folder.
+
+    Returns
+    -------
+    tuple of Wanted
+
+    Raises
+    ------
+    InvalidInput
+        When the file cannot be read, a key is not known, a value is wrong, or two jobs have one name.
+    """
+    if isinstance(jobs, str | PathLike):
+        rows, folder = _table(Path(jobs)), Path(jobs).parent
+    else:
+        rows, folder = [dict(row) for row in jobs], Path()
+    if not rows:
+        raise InvalidInput("the batch has no jobs: give at least one, under [[jobs]]")
+    made = [_wanted(row, number, folder) for number, row in enumerate(rows, 1)]
+    first: dict[str, int] = {}
+    for number, one in enumerate(made, 1):
+        other = first.setdefault(one.name.casefold(), number)
+        if other != number:
+            raise InvalidInput(f"jobs {other} and {number} are both called {one.name!r}: give each a name of its own")
+    return tuple(made)
+
+
+def _table(path: Path) -> list[dict[str, Any]]:
+    """The rows of a job file, each with the defaults."""
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError:
+        raise InvalidInput(f"job file {path} does not exist") from None
+    except (OSError, UnicodeDecodeError) as reason:
+        raise InvalidInput(f"job file {path} cannot be read: {reason}") from reason
+    except tomllib.TOMLDecodeError as reason:
+        raise InvalidInput(f"job file {path.name} is not valid TOML: {reason}") from reason
+    unknown = sorted(set(found) - {"defaults", "jobs"})
+    if unknown:
+        raise InvalidInput(f"job file {path.name} has an unknown {unknown[0]!r}: write [defaults] and [[jobs]]")
+    defaults, rows = found.get("defaults", {}), found.get("jobs", [])
+    if not isinstance(defaults, dict) or not isinstance(rows, list) or not all(isinstance(r, dict) for r in rows):
+        raise InvalidInput(f"job file {path.name}: [defaults] is one table, and each job a table [[jobs]]")
+    for name in ("name", *sorted(set(defaults) - set(KEYS))):
+        if name in defaults:
+            raise InvalidInput(f"job file {path.name}: [defaults] has {name!r}, which "
+                               + ("is each job's own" if name == "name" else f"no job has: use {', '.join(KEYS)}"))
+    return [{**defaults, **row} for row in rows]
+
+
+def _wanted(row: dict[str, Any], number: int, folder: Path) -> Wanted:
+    said = row.get("name")
+    try:
+        return _checked(row, folder)
+    except ToolAxisError as reason:
+        raise InvalidInput(f"job {number}{f' ({said})' if isinstance(said, str) else ''}: {reason}") from reason
+
+
+def _checked(row: dict[str, Any], folder: Path) -> Wanted:
+    unknown = sorted(set(row) - set(KEYS))
+    if unknown:
+        raise InvalidInput(f"unknown {unknown[0]!r}: use {', '.join(KEYS)}")
+    for name in ("part", "tool", "scallop"):
+        if name not in row:
+            raise InvalidInput(f"there is no {name!r}: each job needs a part, a tool and a scallop")
+    obstacles = row.get("obstacles", ())
+    bodies = tuple(_body(body, folder) for body in
+                   (row["part"], *(obstacles if isinstance(obstacles, list | tuple) else (obstacles,))))
+    values = {name: _value(name, row[name], kind) for name, kind in {**_INPUTS, **_ASKED, **_OWN}.items()
+              if name in row}
+    if values.get("limits"):
+        parse_limits(values["limits"])
+    if "holder" in values:
+        values["holder"] = _named(values["holder"], folder)
+    machine = row.get("machine") or None
+    machine = load_machine(_named(machine, folder)) if isinstance(machine, str) else machine
+    tool = row["tool"]
+    spec = Spec(_title(bodies[0]), tool.name if isinstance(tool, Tool) else _named(_value("tool", tool, str), folder),
+                Inputs(**{name: values[name] for name in _INPUTS if name in values}),
+                obstacles=tuple(map(_title, bodies[1:])), machine="" if machine is None else machine.name,
+                **{name: values[name] for name in _ASKED if name in values})
+    tool = _tool(tool, spec)
+    _check_rest(spec, machine)
+    own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "timeout": None, "memory": None,
+           "strategy": "indexed",
+           **{name: values[name] for name in _OWN if name in values}}
+    by_strategy(own["strategy"], spec.inputs.method, spec.inputs.objective)
+    key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
+    return Wanted(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
+
+
+def _check_rest(spec: Spec, machine: Machine | None) -> None:
+    _ = spec.numbers, spec.place
+    checked_count(spec.regions)
+    checked_count(spec.orientations, "orientations")
+    if machine is not None and not isinstance(machine, Machine):
+        raise InvalidInput(f"machine is a {type(machine).__name__}: give a Machine, its name or its file")
+    if machine is None and spec.place is not None:
+        raise InvalidInput("a place of the part on the table is given without a machine: name the machine too")
+
+
+def _tool(tool: Any, spec: Spec) -> Tool:
+    if not isinstance(tool, Tool):
+        return spec.resolved_tool()
+    if spec.holder or spec.stickout is not None:
+        raise InvalidInput("the tool is a Tool, which has its own holder and stick-out: leave them out")
+    spec.inputs.check_tool(tool)
+    return tool
+
+
+def _body(given: Any, folder: Path) -> Any:
+    """A path, from the job file's folder, or the part that an object makes."""
+    if not isinstance(given, str | PathLike):
+        return load(given)
+    path = folder / given
+    if not path.is_file():
+        raise InvalidInput(f"part {str(path)!r} does not exist" if str(given) else "the path of the part is empty")
+    return path
+
+
+def _title(body: Any) -> str:
+    return str(body) if isinstance(body, Path) else str(body.source)
+
+
+def _named(text: str, folder: Path) -> str:
+    """A file beside the job file where there is one of that name, else the text as it is."""
+    path = folder / text
+    return str(path) if path.is_file() else text
+
+
+def _name(row: Mapping[str, Any], body: Any) -> str:
+    name = row.get("name")
+    if name is None:
+        if not isinstance(body, Path):
+            raise InvalidInput("there is no 'name': a job whose part is no file needs one")
+        name = body.stem
+    if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 100 or name.endswith(" "):
+        raise InvalidInput(f"name {name!r} makes no folder: use at most 100 letters, digits and . + - _, not with a "
+                           "dot first")
+    return name
+
+
+def _value(name: str, value: Any, kind: Any) -> Any:
+    """A value of the kind that its key asks for; lists of numbers become the short forms of the command."""
+    if kind is float:
+        number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+        if not number or (name in ("timeout", "memory") and value <= 0):
+            raise InvalidInput(f"{name} is {value!r}: give a finite number{' above zero' if name in _OWN else ''}")
+        return float(value)
+    if kind == "count":
+        return value
+    if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):
+        return _short(name, value)
+    if not isinstance(value, kind):
+        raise InvalidInput(f"{name} is {value!r}: give {'true or false' if kind is bool else 'a text'}")
+    return value
+
+
+def _short(name: str, value: Any) -> str:
+    rows = value if isinstance(value, list | tuple) else [value]
+    inner, outer = {"faces": ("+", ","), "offset": (",", ","), "holder": (",", ";")}[name]
+    return outer.join(inner.join(map(str, row)) if isinstance(row, list | tuple) else str(row) for row in rows)
+
+
+def _source(body: Any) -> Source:
+    """A body as bytes."""
+    if isinstance(body, Path):
+        try:
+            content = body.read_bytes()
+        except OSError as reason:
+            raise InvalidInput(f"part {str(body)!r} cannot be read ({reason.strerror})") from reason
+        return Source(str(body), content, hashlib.sha256(content).hexdigest())
+    content = json.dumps(part_document(body), allow_nan=False).encode()
+    return Source(body.source, content, hashlib.sha256(content).hexdigest(), document=True)
+
+
+def _key(spec: Spec, tool: Tool, machine: Machine | None, own: Mapping[str, Any], sources: tuple[Source, ...]) -> str:
+    asked = {**{name: getattr(spec, name) for name in ("faces", "regions", "orientations", "offset")},
+             "inputs": asdict(spec.inputs), "tool": tool_document(tool),
+             "machine": "" if machine is None else machine_to_toml(machine),
+             "sources": [source.sha256 for source in sources], "version": __version__,
+             **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")}}
+    return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()

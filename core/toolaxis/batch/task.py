@@ -1,0 +1,102 @@
+"""What travels between a batch and the processes that carry out its jobs: a task there, an answer back."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from toolaxis.machine.configurations import Machine
+from toolaxis.tools.assembly import Tool
+
+#: Why a job failed: its input, a fault in planning, its process ended, its time or its memory was used up, or the disk.
+CAUSES = ("input", "error", "crash", "timeout", "memory", "disk")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A part as bytes, so that it can be read where its file is not.
+
+    Attributes
+    ----------
+    name : str
+        The file as it was named, or what the part was made from.
+    content : bytes
+        Of the STEP file, or of the part's JSON document where there is no file.
+    sha256 : str
+        Of the content.
+    document : bool
+        Whether it is a JSON document.
+    """
+
+    name: str
+    content: bytes = field(repr=False)
+    sha256: str
+    document: bool = False
+
+
+@dataclass(frozen=True)
+class Task:
+    """One job, complete: it needs no file beside it.
+
+    Attributes
+    ----------
+    name, key : str
+        Of the job.
+    part : Source
+    obstacles : tuple of Source
+    tool : Tool
+    machine : Machine or None
+    options : dict
+        Keyword arguments of `toolaxis.plan`.
+    verify, pictures : bool
+        Whether the plan is judged, and drawn.
+    timeout : float or None
+        s that the job may take.
+    memory : float or None
+        MB that its process may take.
+    version : str
+        Of the toolaxis that asks.
+    """
+
+    name: str
+    key: str
+    part: Source
+    obstacles: tuple[Source, ...]
+    tool: Tool
+    machine: Machine | None
+    options: dict[str, Any]
+    verify: bool
+    pictures: bool
+    timeout: float | None
+    memory: float | None
+    version: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came of a job.
+
+    Attributes
+    ----------
+    outcome : str
+        "complete", "incomplete" (a face has no axis, or the verdict is fail) or "failed" (there is no plan).
+    cause : str
+        One of `CAUSES` where it failed, else empty.
+    reason : str
+        In a sentence; empty where it is complete.
+    figures : dict
+        Numbers for the summary; empty where it failed.
+    files : dict of str to bytes
+        The plan's folder; empty where it failed.
+    spent : float
+        s
+    compiled : bool
+        Whether kernels had to be compiled on the way: numbers may differ in the last digit from those of a process that
+        finds them on disk.
+    """
+
+    outcome: str
+    cause: str = ""
+    reason: str = ""
+    figures: dict[str, Any] = field(default_factory=dict)
+    files: dict[str, bytes] = field(default_factory=dict, repr=False)
+    spent: float = 0.0
+    compiled: bool = False

@@ -1,0 +1,212 @@
+"""Programs for operations whose axis moves: tool centre point control, in the dialects that have it.
+
+Points are those of the tip in the work coordinate system, which turns with the table; the control moves the linear axes
+so that the tip is there while the rotary axes turn.  All motions are G1: links go at the rapid rate.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import degrees
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import Following, following
+from toolaxis.machine.kinematics import placement
+from toolaxis.machine.mounting import Mounting
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.post.gcode import Dialect, Lines, Options, Program, bare_program, number
+
+Array = NDArray[np.float64]
+
+#: Smallest number of rotary axes that tool centre point control moves.
+_AXES = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """One operation as tool centre point control carries it out.
+
+    Attributes
+    ----------
+    operation : Operation
+    along : Following
+        Rotary axes at all points, those put between the path's own included.
+    tips, axes : (n, 3) array
+        In the work coordinate system, tips from the datum, mm.
+    """
+
+    operation: Operation
+    along: Following
+    tips: Array
+    axes: Array
+
+
+class TipControl(ABC):
+    """What one control calls the things that every program with a moving axis says.
+
+    Attributes
+    ----------
+    dialect : Dialect
+        Says modes, comments and the end.
+    title : str
+    axis_digits : int
+        Digits of rotary angles, degrees, or of components of the axis.
+    notes : tuple of str
+        Sentences for the setup sheet.
+    """
+
+    dialect: ClassVar[Dialect]
+    title: ClassVar[str]
+    axis_digits: ClassVar[int]
+    notes: ClassVar[tuple[str, ...]] = ()
+
+    @abstractmethod
+    def begin(self, program: Program, course: Course) -> Lines:
+        """Blocks from a retracted tool to tool centre point control with the first axis."""
+
+    @abstractmethod
+    def leave(self, program: Program, course: Course) -> Lines:
+        """Blocks that end it and retract."""
+
+    @abstractmethod
+    def orientation(self, program: Program, course: Course, k: int) -> str:
+        """The words that turn the axis to that of a point."""
+
+    def start(self, program: Program) -> Lines:
+        """Blocks of the safe start."""
+        return self.dialect.start(program)
+
+    def end(self, program: Program) -> Lines:
+        """Blocks of the end."""
+        return self.dialect.end(program)
+
+    def block(self, program: Program, course: Course, k: int, rate: float | None) -> str:
+        """The motion to a point, at a feed rate where it does not hold any more."""
+        word, *rate_word = self.dialect.feed(course.tips[k], rate).rsplit(" F", 1)
+        return " ".join([word, self.orientation(program, course, k), *(f"F{text}" for text in rate_word)])
+
+    def check(self, program: Program) -> None:
+        """Refuse what the control cannot do.
+
+        Raises
+        ------
+        InvalidInput
+        """
+        driven = sum(not axis.by_hand for axis in program.machine.rotary)
+        if driven < _AXES:
+            raise InvalidInput(f"the tool axis of the plan moves and {program.machine.name} drives {driven} rotary "
+                               f"axes: {self.title} needs two")
+
+
+def moves(plan: Plan) -> bool:
+    """Whether the axis of an operation moves.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    return any(op.orientation.lead is not None for op in plan.operations if op.path is not None)
+
+
+def courses(plan: Plan, mounting: Mounting) -> tuple[Course, ...]:
+    """All operations of a plan that have a path, the rotary axes going on from one to the next.
+
+    Parameters
+    ----------
+    plan : Plan
+    mounting : Mounting
+
+    Raises
+    ------
+    InvalidInput
+        When the machine cannot follow a path, or there is none.
+    """
+    turn, found = placement(mounting.table_from_part)[:3, :3], []
+    stand = np.zeros(len(mounting.machine.rotary))
+    for op in plan.operations:
+        if op.path is None:
+            continue
+        try:
+            along = following(mounting.machine, op.path, mounting.table_from_part, float(mounting.tool_length or 0.0),
+                              near=stand, travel=mounting.judges_travel)
+        except InvalidInput as reason:
+            raise InvalidInput(f"{op.name}: {reason}") from None
+        stand = along.rotary[-1]
+        found.append(Course(op, along, (along.tips - plan.datum) @ turn.T, along.axes @ turn.T))
+    if not found:
+        raise InvalidInput("the plan has no operation with an axis: there is nothing to post")
+    return tuple(found)
+
+
+def moving_text(plan: Plan, mounting: Mounting, control: TipControl, options: Options | None = None,
+                name: str = "toolaxis") -> str:
+    """The text of a program with tool centre point control.
+
+    Parameters
+    ----------
+    plan : Plan
+    mounting : Mounting
+        The machine, and where the part stands on its table.
+    control : TipControl
+    options : Options, optional
+    name : str
+        Of the program.
+
+    Returns
+    -------
+    str
+        ASCII, a line for each block.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine cannot follow a path, or the control cannot move its axes.
+    """
+    program = bare_program(plan, mounting, control.dialect, options, name)
+    control.check(program)
+    lines = control.start(program)
+    for course in courses(plan, mounting):
+        lines += [control.dialect.comment(course.operation.name.upper()), *control.begin(program, course)]
+        lines += _motions(program, course, control)
+        lines += control.leave(program, course)
+    return "\n".join([*control.dialect.framed([*lines, *control.end(program)]), ""])
+
+
+def _motions(program: Program, course: Course, control: TipControl) -> Lines:
+    path, inputs, lines = course.operation.path, program.plan.inputs, []
+    assert path is not None
+    starts, begun, passes, held = set(path.breaks[1:-1].tolist()), 0, 1, -1.0
+    for k, point in enumerate(course.along.arrival.tolist()):
+        if point in starts and point != begun:
+            passes += 1
+            lines.append(control.dialect.comment(f"PASS {passes}"))
+        begun = point
+        rate = inputs.rapid if k == 0 or path.kind[point] == Motion.LINK else inputs.feedrate
+        lines.append(control.block(program, course, k, None if rate == held else rate))
+        held = rate
+    return lines
+
+
+def rotary_words(program: Program, course: Course, k: int, digits: int, rolls_over: bool) -> Lines:
+    """Rotary angles of a point as words; from 0 to below 360 degrees for axes without end that roll over.
+
+    Parameters
+    ----------
+    program : Program
+    course : Course
+    k : int
+    digits : int
+    rolls_over : bool
+    """
+    words = []
+    for axis, angle in zip(program.machine.rotary, course.along.rotary[k], strict=True):
+        value = degrees(angle)
+        if rolls_over and not (np.isfinite(axis.low) or np.isfinite(axis.high)):
+            value = round(value % 360.0, digits) % 360.0
+        words.append(f"{axis.name}{number(value, digits)}")
+    return words

@@ -1,0 +1,110 @@
+"""Strategies: a moving axis through plan, folder and judge, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.job.baselines import compared
+from toolaxis.job.folder import read_json, read_plan, write_plan
+from toolaxis.job.spec import by_strategy, check_five_axes
+from toolaxis.job.timing import timed
+from toolaxis.machine.mounting import Mounting
+from toolaxis.plan.plan import Plan
+from toolaxis.report.plots import standing
+from toolaxis.report.tables import plan_table
+
+TOOL = "torus:12x1"
+
+
+def _face() -> ta.Face:
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 24, 5), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 0.006 * (x - 20) ** 2 - 0.004 * (y - 12) ** 2], axis=-1))
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return ta.plan(_face(), TOOL, 0.05, strategy="sturz", workers=1)
+
+
+def test_the_judge_passes_a_constant_lead(plan) -> None:
+    op = plan.operations[0]
+    assert plan.outcome == "complete" and op.orientation.lead is not None
+    assert np.ptp(op.path.axis, axis=0).max() > 0.05
+    verdict = ta.verify(plan)
+    assert verdict.passed, verdict.reasons
+    assert 0.8 * 0.05 < verdict.operations[0].scallop_max <= 1.02 * 0.05
+
+
+def test_the_judge_refuses_a_smaller_lead_on_the_same_passes(plan) -> None:
+    """What the passes were spaced for is seen: with upright axes the same tips gouge."""
+    op = plan.operations[0]
+    wrong = replace(op, path=replace(op.path, axis=op.path.normal))
+    assert not ta.verify(replace(plan, operations=(wrong,))).passed
+
+
+def test_the_lead_goes_through_the_folder(plan, tmp_path) -> None:
+    write_plan(plan, tmp_path)
+    again = read_plan(tmp_path)
+    lead = plan.operations[0].orientation.lead
+    assert again.inputs.method == "sturz" and again.operations[0].orientation.lead == lead
+    assert np.allclose(again.operations[0].path.axis, plan.operations[0].path.axis, atol=1e-8)
+    assert read_json(tmp_path / "plan.json")["operations"][0]["orientation"]["lead"] == lead
+
+
+def test_a_plan_for_least_time_can_be_written(plan, tmp_path) -> None:
+    write_plan(replace(plan, inputs=replace(plan.inputs, objective="time")), tmp_path)
+    assert read_plan(tmp_path).inputs.objective == "time"
+
+
+def test_the_table_tells_the_lead_and_that_gouges_are_checked_at_points(plan) -> None:
+    shown = plan_table(plan)
+    assert "moves, lead" in "".join(map(str, shown.columns[1].cells)) and "checked at points" in str(shown.caption)
+    assert "moving axes" in str(shown.title)
+
+
+def test_the_picture_s_tool_stands_as_it_does_on_the_pass(plan) -> None:
+    path = plan.operations[0].path
+    tip, axis = standing(path)
+    k = int(np.argmin(np.linalg.norm(path.cl - tip, axis=1)))
+    assert np.array_equal(path.axis[k], axis) and np.linalg.norm(axis - plan.operations[0].frame.z) > 0.01
+
+
+def test_a_machine_times_the_path_and_not_below_what_its_feed_takes(plan) -> None:
+    machine = Mounting(ta.load_machine("mikron-ucp-710"))
+    made = timed(replace(plan, machine=machine))
+    time = made.operations[0].time
+    assert made.timed and time is not None and time.cut > plan.length / (plan.inputs.feedrate / 60)
+    assert time.cut < 1.5 * plan.length / (plan.inputs.feedrate / 60) and len(time.rotary) == 2
+    assert "collision with the machine itself" in made.not_checked
+    short = replace(machine.machine, table=tuple(replace(axis, low=0.3, high=0.4) for axis in machine.machine.table))
+    assert not timed(replace(plan, machine=Mounting(short))).timed
+
+
+def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
+    def methods(machine: Mounting | None) -> list[str]:
+        asked = []
+        made = replace(plan, machine=machine, inputs=replace(plan.inputs, method="sphere"))
+        compared(made, [plan.operations[0].face], lambda name, some: (asked.append(name), plan)[1])
+        return asked
+
+    assert "sturz" in methods(Mounting(ta.load_machine("mikron-ucp-710")))
+    assert "sturz" not in methods(None) and "sturz" not in methods(Mounting(ta.load_machine("three-axes-fixture")))
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    ({"strategy": "six-axis"}, "strategy is 'six-axis': use indexed, sturz or two-point"),
+    ({"strategy": "sturz", "method": "roman"}, "method 'roman' finds fixed axes"),
+    ({"method": "sturz"}, "ask for the strategy 'sturz' instead"),
+    ({"strategy": "sturz", "objective": "time"}, "by length or passes"),
+    ({"strategy": "sturz", "orientations": 3}, "leave out either the method"),
+    ({"strategy": "sturz", "machine": "three-axes-fixture"}, "moves two rotary axes while it cuts")])
+def test_what_does_not_go_with_a_moving_axis_is_refused(words, message) -> None:
+    with pytest.raises(ta.InvalidInput, match=message):
+        ta.plan(_face(), TOOL, 0.05, **words)
+
+
+def test_names_of_strategies() -> None:
+    assert by_strategy("indexed", "roman") == "roman" and by_strategy("sturz") == "sturz"
+    check_five_axes(ta.load_machine("mikron-ucp-710"), "sturz")

@@ -1,0 +1,120 @@
+"""Passes of a flat end: strips on a trough against the formula, no gouge between points, and the judge's word."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.contact.two_point import circle_strip_width, matched_lead, two_point_lead
+from toolaxis.errors import InvalidInput
+from toolaxis.orient.flat_plan import gouging, told, two_point
+from toolaxis.orient.flat_strips import lane, lay_strips, next_strip, places, strip
+from toolaxis.orient.flat_tilt import BEHIND, CONVEX, REASONS, TWO, Work, field_of, postures
+from toolaxis.orient.indexed import task
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+from toolaxis.verify.verdict import Task, judge
+
+TOOL, H, RHO = Tool.flat(20), 0.03, 40.0
+
+
+def trough(hollow=True, half=0.45, trims=()):
+    """Part of a cylinder along v, 36 mm wide, seen from inside or from outside."""
+    return Face(Cylinder(RHO, (-half, half), (0.0, 30.0)).nurbs(), trims, flip=hollow)
+
+
+@pytest.mark.parametrize("posture, lean, lift", [("two-point", two_point_lead, H), ("one-point", matched_lead, 0.0)])
+def test_strips_on_a_trough_are_the_formulas(posture, lean, lift):
+    work = Work(trough(), TOOL, H, "v", posture)
+    found = strip(work, 0.0)
+    lead = lean(10.0, RHO, H) if posture == "two-point" else lean(10.0, RHO)
+    chord = float(circle_strip_width(10.0, RHO, H, lead, lift))
+    # Heights are counted along the normal here and along x in the formula, and widths along the arc.
+    arc = 2 * RHO * np.arcsin(chord / (2 * RHO))
+    point = work.face.evaluate(work.uv(np.full(2, 15.0), 0.0)).point[0]
+    ends = [work.face.evaluate(work.uv(np.array([15.0]), float(found.step + s * h))).point[0]
+            for s, h in zip((-1, 1), found.halves[36], strict=True)]
+    angles = [2 * np.arcsin(np.linalg.norm(end - point) / (2 * RHO)) for end in ends]
+    assert RHO * sum(angles) == pytest.approx(arc, rel=0.03)
+    np.testing.assert_allclose(found.halves[:, 0], found.halves[:, 1], rtol=2e-3)
+
+
+def test_reasons_for_one_contact():
+    along = np.array([15.0])
+    assert postures(Work(trough(), TOOL, H, "v"), along, 0.0, 1).reason[0] == TWO
+    ridge = postures(Work(trough(hollow=False), TOOL, H, "v"), along, 0.0, 1)
+    assert ridge.reason[0] == CONVEX and ridge.contacts[0] == 1
+    crosswise = postures(Work(trough(half=0.8), TOOL, H, "u", "one-point"), np.array([0.0]), 15.0, 1)
+    assert crosswise.reason[0] == CONVEX and REASONS[CONVEX].endswith("not hollow across the feed")
+    assert np.degrees(crosswise.stand.lean[0]) == pytest.approx(np.degrees(np.arcsin(10 / RHO)), abs=0.05)
+
+
+def test_next_strip_meets_what_is_covered():
+    work = Work(trough(), TOOL, H, "v", "one-point")
+    first = strip(work, -0.3)
+    covered = first.step + first.halves[:, 1]
+    beside = next_strip(work, covered, 0.05, "ahead")
+    gap = beside.step - beside.halves[:, 0] - covered
+    assert gap.max() <= 0 and gap.max() > -0.01
+    strips = lay_strips(work)
+    assert strips[0].step - strips[0].halves[:, 0].min() <= work.span[2] + 1e-9
+    assert (strips[-1].step + strips[-1].halves[:, 1]).min() >= work.span[3] - 1e-9
+    wide = strips[1].halves.sum(axis=1).min()
+    assert len(strips) == np.ceil((work.span[3] - work.span[2]) / wide)
+
+
+def test_ways_to_lean_and_their_mirror():
+    work = Work(trough(), TOOL, H, "v")
+    ahead, back = lane(work, 0.1, 1), lane(work, 0.1, -1)
+    np.testing.assert_allclose(ahead.halves[10:-10], back.halves[10:-10], rtol=0.02)
+    assert (ahead.reach[5:-5, 1] > places(work)[5:-5]).all() and (back.reach[5:-5, 0] < places(work)[5:-5]).all()
+    np.testing.assert_allclose(field_of(work, 1).direction, 0.0)
+    assert strip(work, 0.1, "inward").halves.sum(axis=1).min() >= 0.99 * ahead.halves.sum(axis=1).min()
+
+
+@pytest.fixture(scope="module")
+def planned():
+    hole = np.array([[-0.1, 10.0], [0.1, 10.0], [0.1, 20.0], [-0.1, 20.0]])[::-1]
+    rim = np.array([[-0.45, 0.0], [0.45, 0.0], [0.45, 30.0], [-0.45, 30.0]])
+    face = trough(trims=(rim, hole))
+    job = task(face, TOOL, H, allowance=0.1)
+    return face, job, *two_point(job)
+
+
+def test_the_judge_passes_two_point_contact(planned):
+    face, job, found, path = planned
+    assert found.outcome == "feasible" and path is not None, found.reasons
+    assert found.passes == path.passes and any("two contacts" in why for why in found.reasons)
+    verdict = judge(Task("trough", path.cl, path.axis, path.kind, TOOL.profile, (face,), H, 0.1))
+    assert verdict.passed and verdict.gouge_max < 0.002 and verdict.scallop_max < 1.03 * H, verdict.reasons
+    assert len(gouging(job, path)) == 0
+
+
+def test_lower_tips_are_not_proven(planned):
+    """The proof between points can fail: 0.003 mm deeper it does."""
+    _, job, _, path = planned
+    cut = path.kind == Motion.CUT
+    low = replace(path, cl=path.cl - np.where(cut[:, None], 0.003 * path.normal, 0.0))
+    assert len(gouging(job, low)) > 0.5 * cut.sum()
+
+
+def test_two_contacts_take_fewer_passes_than_one(planned):
+    _, _, found, _ = planned
+    work = Work(trough(), TOOL, H, "v", "one-point", allowance=0.1)
+    assert found.feed == "v" and found.passes < len(lay_strips(work))
+    assert told(work, (strip(work, 0.0),)) == (f"{REASONS[BEHIND]} on 100.0 % of the passes",)
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(InvalidInput, match="posture is 'three'"):
+        Work(trough(), TOOL, H, "v", "three")
+    with pytest.raises(InvalidInput, match="feed is 'w'"):
+        Work(trough(), TOOL, H, "w")
+    with pytest.raises(InvalidInput, match="lead is 90"):
+        Work(trough(), TOOL, H, "v", "sturz", np.pi / 2)
+    with pytest.raises(InvalidInput, match="flat bottom"):
+        Work(trough(), Tool.ball(8), H)
+    with pytest.raises(InvalidInput, match=r"comes within|too narrow"):
+        lay_strips(Work(Face(Cylinder(8.0, (-0.8, 0.8), (0.0, 30.0)).nurbs(), flip=True), TOOL, H, "v", "one-point"))
