@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from toolaxis.errors import ToolAxisError as ToolAxisError
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
     from toolaxis.job.judge import verify as verify
+    from toolaxis.job.reading import read_cl as read_cl
     from toolaxis.job.run import plan as plan
     from toolaxis.machine.mounting import Mounting as Mounting
     from toolaxis.orient.indexed import best_axis as best_axis
@@ -48,7 +49,7 @@ _HOME = {
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
     "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",
-    "batch": "batch.run",
+    "batch": "batch.run", "read_cl": "job.reading",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.post.apt import apt_text, cutter_statement, read_apt
+from toolaxis.post.apt import apt_text, cutter_statement, locations_text
+from toolaxis.post.apt_reading import read_apt
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.torus(diameter=12, corner_radius=1)
@@ -81,6 +82,40 @@ def test_words_of_other_writers() -> None:
     assert found.feedrate.tolist() == [np.inf, 254.0, 254.0]
 
 
+def test_words_of_systems_that_end_each_path() -> None:
+    text = ("TOOL PATH/CONTOUR_1,TOOL,BULL_12\nTLDATA/MILL,12.0,1.0,60.0,0.0,0.0\nMSYS/0.0,0.0,0.0,1.0,0.0,0.0\n"
+            "$$ centerline data\nPAINT/PATH\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/0.0,0.0,50.0,0.0,0.6,0.8\n"
+            "PPRINT DOWN\nFEDRAT/MMPR,0.1\nGODLTA/-10.0\nGODLTA/1.0,2.0,0.0\nEND-OF-PATH\n"
+            "TOOL PATH/CONTOUR_2,TOOL,BULL_12\nMSYS/0.0,0.0,0.0,1.0,0.0,0.0\nFEDRAT/10,IPM\n"
+            "GOTO/2.0,3.0,40.0\nEND-OF-PATH\n")
+    found = read_apt(text)
+    assert np.allclose(found.tip, [[0, 0, 50], [0, -6, 42], [1, -4, 42], [2, 3, 40]], atol=1e-12)
+    assert np.allclose(found.axis, [0.0, 0.6, 0.8], atol=1e-15) and found.told and found.spindle == 2000.0
+    assert np.allclose(found.feedrate, [np.inf, 200.0, 200.0, 254.0])
+
+
+def test_a_file_without_axes_says_so() -> None:
+    found = read_apt("GOTO/0,0,0\nGOTO/1,0,0\nFINI")
+    assert not found.told and np.array_equal(found.axis, [[0.0, 0.0, 1.0]] * 2)
+
+
+@settings(deadline=None, max_examples=25)
+@given(seed=st.integers(0, 2**32 - 1), rapid_first=st.booleans())
+def test_what_was_read_is_written_again(seed: int, rapid_first: bool) -> None:
+    rng = np.random.default_rng(seed)
+    lines = ["UNITS/MM", "MULTAX/ON", "SPINDL/RPM,8000,CLW", *(["RAPID"] if rapid_first else [])]
+    for _ in range(12):
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        lines += ["GOTO/" + ",".join(f"{x:.8f}" for x in [*rng.uniform(-99, 99, 3), *axis])]
+        lines += [["RAPID"], [f"FEDRAT/MMPM,{rng.integers(1, 9999)}"], []][rng.integers(3)]
+    found = read_apt("\n".join([*lines, "FINI"]))
+    again = read_apt(locations_text(found, "again", TOOL))
+    assert np.abs(again.tip - found.tip).max() <= 0.5001e-6 and np.abs(again.axis - found.axis).max() <= 2e-9
+    assert again.kind.tolist() == found.kind.tolist() and again.feedrate.tolist() == found.feedrate.tolist()
+    assert again.spindle == found.spindle == 8000.0 and again.breaks.tolist() == found.breaks.tolist()
+
+
 def test_a_printed_link_is_no_rapid() -> None:
     found = read_apt("PPRINT/LINK\nGOTO/0,0,0,0,0,1\nGOTO/1,0,0,0,0,1\nFINI")
     assert found.kind.tolist() == [Motion.CUT, Motion.CUT]
@@ -100,6 +135,13 @@ HEAD = "UNITS/MM\nMULTAX/ON\nGOTO/0,0,0,0,0,1\n"
     (HEAD + "CIRCLE/1,0,0,0,0,1,5\nFINI", "line 4: CIRCLE is not understood"),
     (HEAD + "FEDRAT/MMPM,0\nFINI", "feed rate 0"),
     (HEAD + "FEDRAT/MMPM\nFINI", "line 4: FEDRAT/MMPM has no feed rate"),
+    (HEAD + "GOTO/1,0,0,inf,0,1\nFINI", "line 4"),
+    (HEAD + "GODLTA/1,2\nFINI", "line 4: GODLTA/1,2 must follow"),
+    ("GODLTA/1,2,3\nFINI", "line 1: GODLTA/1,2,3 must follow"),
+    (HEAD + "$$ 50 x\nFEDRAT/0.1,MMPR\nFINI", "line 5: .* no SPINDL"),
+    (HEAD + "MSYS/0,0,0\nMSYS/0,0,1\nFINI", "line 5: .* another coordinate system"),
+    (HEAD + "END-OF-PATH\nGOTO/1,0,0", "without FINI after 2 points, at line 5"),
+    (HEAD + "TRANS/1,0,0\nFINI", "line 4: TRANS is not understood"),
     ("UNITS/FEET\nFINI", "UNITS/FEET"),
     ("MULTAX/ON\nGOTO/0,0,0\nFINI", "has 3 numbers"),
 ])

@@ -17,7 +17,8 @@ from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
-from toolaxis.post.apt import apt_text, read_apt
+from toolaxis.post.apt import apt_text
+from toolaxis.post.apt_reading import read_apt
 from toolaxis.shape.part import Part
 
 PLAN = "plan.json"
