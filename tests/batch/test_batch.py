@@ -59,7 +59,8 @@ def test_each_job_has_the_folder_that_plan_writes(four: tuple[Jobs, Batch, list[
         wanted = {path.name: path.read_bytes() for path in (tmp_path / job["name"]).iterdir()}
         found = {path.name: path.read_bytes() for path in (made.folder / job["name"]).iterdir()}
         assert wanted.items() <= found.items()
-        assert set(found) - set(wanted) == {"job.json"} | ({"verdict.json"} if "verify" in job else set())
+        judged = {"verdict.json", "verdict-maps.npz"} if "verify" in job else set()
+        assert set(found) - set(wanted) == {"job.json"} | judged
     assert sorted(told) == [f"job {job['name']}: complete" for job in jobs]
 
 

@@ -84,6 +84,7 @@ def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) ->
     from toolaxis.job.folder import PLAN, read_json, read_plan, write_json, write_plan
     from toolaxis.job.judge import passes, verdict_document, verify_plan
     from toolaxis.job.run import plan
+    from toolaxis.job.views import write_views
 
     part, *obstacles = (_part(source, scratch, known) for source in (task.part, *task.obstacles))
     if task.memory is not None:  # once the parts are read: what their kernel takes is looked at from outside
@@ -99,6 +100,7 @@ def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) ->
         found = verify_plan(judged, threads=1)
         written = verdict_document(judged, found)
         write_json(written, folder / "verdict.json")
+        write_views(judged, found, folder)
         verdict = "passed" if passes(judged, found) else "failed"
         reasons += written["reasons"]
     if task.pictures:

@@ -8,6 +8,7 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.job.folder import read_plan, staged, write_json
 from toolaxis.job.judge import not_judged, passes, verdict_document, verify_plan
+from toolaxis.job.views import write_views
 from toolaxis.report.tables import verdict_table
 
 
@@ -32,6 +33,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             verdict = verify_plan(plan, progress=progress)
             document = verdict_document(plan, verdict)
             write_json(document, stage.folder / "verdict.json")
+            write_views(plan, verdict, stage.folder)
             if not given.no_pictures:
                 from toolaxis.job.pictures import draw_verdict
 
