@@ -43,8 +43,15 @@ def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes:
     return _least_numpy(cutter, rows, at, turn)
 
 
-def _distances(cutter: Array, apart: Array, axes: Array) -> Array:
-    """Signed distances of points relative to the tip, (..., 3), with axes of any length."""
+def cutter_distances(cutter: Array, apart: Array, axes: Array) -> Array:
+    """Signed distances of points relative to the tip, (..., 3), to the cutter, with axes of any length; mm.
+
+    Parameters
+    ----------
+    cutter : (6,) array
+        As of `toolaxis.contact.sizes.cutter_numbers`.
+    apart, axes : (..., 3) array
+    """
     z = (apart * axes).sum(axis=-1) / np.linalg.norm(axes, axis=-1)
     rho = np.sqrt(np.maximum((apart**2).sum(axis=-1) - z**2, 0.0))
     a, r, cos_side, sin_side, top = cutter[:5]
@@ -56,7 +63,7 @@ def _distances(cutter: Array, apart: Array, axes: Array) -> Array:
 
 def _least_numpy(cutter: Array, points: Array, tips: Array, axes: Array) -> Array:
     """The plain twin."""
-    off = _distances(cutter, points[:, :, None] - tips[:, None], axes[:, None])
+    off = cutter_distances(cutter, points[:, :, None] - tips[:, None], axes[:, None])
     middle = np.clip(np.argmin(off, axis=2), 1, off.shape[2] - 2)
     row = np.arange(len(points))[:, None]
     near = [[each[row, middle + k] for k in (-1, 0, 1)] for each in (tips, axes)]
@@ -64,7 +71,7 @@ def _least_numpy(cutter: Array, points: Array, tips: Array, axes: Array) -> Arra
     def _at(t: Array) -> Array:
         weights = (t * (t - 1) / 2)[..., None], ((1 - t) * (1 + t))[..., None], (t * (t + 1) / 2)[..., None]
         tip, axis = (sum(w * one for w, one in zip(weights, three, strict=True)) for three in near)
-        return _distances(cutter, points - tip, axis)
+        return cutter_distances(cutter, points - tip, axis)
 
     low, high = np.full(middle.shape, -1.0), np.full(middle.shape, 1.0)
     best = off.min(axis=2)

@@ -22,6 +22,8 @@ Form: TypeAlias = tuple[float, float, float]
 """Entries (ff, fk, kk) of a symmetric form in the frame of feed and left."""
 
 SHARPEST = 1e-9
+#: Contacts with an axis each that are screened at once, every axis at every one of them.
+_TOGETHER = 64
 """Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
 
 
@@ -129,22 +131,62 @@ def _screen(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array
 
 def screen_numpy(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
     """The plain twin of the screening kernel, written on whole arrays; parameters as there."""
-    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
     tf, tk, tn = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
+    ff, fk, kk = relative_forms(forms, (tf, tk), cutter)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rest = kk - fk * (fk / ff)
+        free = (tn >= cutter[3] - 1e-9) & (ff > 0) & (rest > 0)
+        width = np.minimum(np.sqrt(2 * scallop / rest), CAP * (cutter[0] + cutter[1])) / forms[:, 12]
+    out[:] = np.where(free, width, 0.0)
+
+
+def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tuple[Array, Array, Array]:
+    """Curvature of the cutter less that of the surface, entries (ff, fk, kk) in the frame of feed and left, 1/mm.
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As `contact_forms` gives.
+    axis : two (..., n) arrays
+        Components of unit axes along feed and left.
+    cutter : array
+        As of `toolaxis.contact.sizes.cutter_numbers`.
+    """
+    tf, tk = axis
+    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
     lean = np.hypot(tf, tk)
     bottom = (lean <= 1e-12) & (a > 0)
     size = np.where(lean > 0, lean, 1.0)
     x, y = np.where(lean > 0, tf / size, 1.0), tk / size
     along = np.where(bottom, 0.0, 1 / r)
     across = np.where(bottom, 0.0, lean / (a + r * lean) if a > 0 else 1 / r)
-    ff = along * x * x + across * y * y - forms[:, 9]
-    fk = (along - across) * x * y - forms[:, 10]
-    kk = along * y * y + across * x * x - forms[:, 11]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rest = kk - fk * (fk / ff)
-        free = (tn >= cutter[3] - 1e-9) & (ff > 0) & (rest > 0)
-        width = np.minimum(np.sqrt(2 * scallop / rest), CAP * (cutter[0] + cutter[1])) / forms[:, 12]
-    out[:] = np.where(free, width, 0.0)
+    return (np.asarray(along * x * x + across * y * y - forms[:, 9]),
+            np.asarray((along - across) * x * y - forms[:, 10]),
+            np.asarray(along * y * y + across * x * x - forms[:, 11]))
+
+
+def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+    """Second-order half widths of contacts with an axis each, (n,).
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As of `contact_forms`.
+    axes : (n, 3) array
+        Unit vectors.
+    cutter : (6,) array
+        As of `toolaxis.contact.sizes.cutter_numbers`.
+    scallop : float
+        mm
+    """
+    screen = _screen if _compiled.available else screen_numpy
+    out = np.empty(len(forms))
+    for begin in range(0, len(forms), _TOGETHER):
+        part = slice(begin, begin + _TOGETHER)
+        square = np.empty((len(forms[part]),) * 2)
+        screen(forms[part], np.ascontiguousarray(axes[part]), cutter, float(scallop), square)
+        out[part] = np.diagonal(square)
+    return out
 
 
 def contact_forms(face: Face, uv: ArrayLike, feed: Feed, steps: bool) -> Array:
