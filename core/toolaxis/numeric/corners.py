@@ -69,7 +69,7 @@ def corner(before: ArrayLike, vertex: ArrayLike, after: ArrayLike, height: Array
 
 
 def greatest_height(points: Array, shares: tuple[float, float] = (0.5, 0.5)) -> Array:
-    """The height of each inner vertex of a polyline at which its corner just takes its share of both segments, (n - 2,).
+    """Heights of the inner vertices of a polyline at which corners just take their shares of both segments, (n - 2,).
 
     Parameters
     ----------
