@@ -20,6 +20,7 @@ MACHINE, FEED = "mikron-ucp-710", 3000.0
 ROWS: tuple[tuple[str, Mapping[str, Any]], ...] = (
     ("5-axis, best constant lead", {"strategy": "sturz"}),
     ("3+2-axis, divided, length", {"orientations": 6}),
+    ("3+2-axis, divided, time", {"orientations": 6, "objective": "time"}),
     ("3+2-axis, one axis, length", {"method": "one"}),
     ("3+2-axis, one axis, time", {"objective": "time"}),
     ("3-axis, ball end, mean normal", {"method": "ball"}))

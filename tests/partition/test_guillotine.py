@@ -70,40 +70,45 @@ def test_compiled_and_plain_costs_agree_to_the_last_bit(seed: int) -> None:
     assert np.array_equal(least, plain) and np.isfinite(least[0, -1, 0, -1]).sum() > 2
 
 
-def test_offers_are_integrals_over_the_narrowest_places() -> None:
+@pytest.mark.parametrize("own", [False, True], ids=["lengths", "times of each axis"])
+def test_offers_are_integrals_over_the_narrowest_places(own: bool) -> None:
     rng = np.random.default_rng(3)
     nu, nv, k = 4, 5, 40
     rates = rng.uniform(0.5, 2.0, (k, 2, nu + 1, nv + 1))
     rates[rng.random(rates.shape) < 0.02] = 1e12
-    gaps = rng.uniform(1, 3, (nu, nv + 1)), rng.uniform(1, 3, (nu + 1, nv))
+    rows = k if own else 1
+    gaps = rng.uniform(1, 3, (rows, nu, nv + 1)), rng.uniform(1, 3, (rows, nu + 1, nv))
     pitch = rng.uniform(0.1, 0.2, nu), rng.uniform(0.1, 0.2, nv)
     found = offers(rates, gaps, pitch, ends=0.7)
     for u0, u1, v0, v1 in np.argwhere(proper(nu, nv)):
         best = np.inf
         for axis, feed in itertools.product(range(k), (0, 1)):
             rate = rates[axis, feed, u0:u1 + 1, v0:v1 + 1].max(axis=feed)
-            row = (gaps[0][u0:u1, v0:v1 + 1].sum(axis=0) if feed == 0 else gaps[1][u0:u1 + 1, v0:v1].sum(axis=1)) + 0.7
+            of = axis if own else 0
+            row = 0.7 + (gaps[0][of, u0:u1, v0:v1 + 1].sum(axis=0) if feed == 0
+                         else gaps[1][of, u0:u1 + 1, v0:v1].sum(axis=1))
             step = pitch[1][v0:v1] if feed == 0 else pitch[0][u0:u1]
             if rate.max() < 1e9:
                 best = min(best, np.trapezoid(rate * row, np.concatenate([[0], np.cumsum(step)])) + row.mean() / 2)
         assert found.cost[u0, u1, v0, v1] == pytest.approx(best, rel=1e-6)
-        one = each_axis(rates[:, :, u0:u1 + 1, v0:v1 + 1], (gaps[0][u0:u1, v0:v1 + 1], gaps[1][u0:u1 + 1, v0:v1]),
+        one = each_axis(rates[:, :, u0:u1 + 1, v0:v1 + 1],
+                        (gaps[0][:, u0:u1, v0:v1 + 1], gaps[1][:, u0:u1 + 1, v0:v1]),
                         (pitch[0][u0:u1], pitch[1][v0:v1]), 0.7)
-        assert one.min() == pytest.approx(best, rel=1e-9) and len(one) == k
+        assert one.min() == pytest.approx(best, rel=1e-9) and one.shape == (k, 2)
 
 
 def test_what_cells_cost_besides_is_added_up_over_every_rectangle() -> None:
     rng = np.random.default_rng(3)
     rates = rng.uniform(0.5, 2, (3, 2, 5, 4))
-    gaps, pitch = (np.ones((4, 4)), np.ones((5, 3))), (np.ones(4), np.ones(3))
+    gaps, pitch = (np.ones((1, 4, 4)), np.ones((1, 5, 3))), (np.ones(4), np.ones(3))
     extra = rng.uniform(0, 5, (3, 4, 3))
     found = offers(rates, gaps, pitch, 0.7, extra)
     for u0, u1, v0, v1 in np.argwhere(proper(4, 3)):
         box = slice(u0, u1 + 1), slice(v0, v1 + 1)
-        one = each_axis(rates[:, :, *box], (gaps[0][u0:u1, box[1]], gaps[1][box[0], v0:v1]),
+        one = each_axis(rates[:, :, *box], (gaps[0][:, u0:u1, box[1]], gaps[1][:, box[0], v0:v1]),
                         (pitch[0][u0:u1], pitch[1][v0:v1]), 0.7, extra[:, u0:u1, v0:v1])
         assert found.cost[u0, u1, v0, v1] == pytest.approx(one.min())
-        assert found.axis[u0, u1, v0, v1] == one.argmin()
+        assert found.axis[u0, u1, v0, v1] == one.min(axis=1).argmin()
     whole = offers(rates, gaps, pitch, 0.7).cost[0, 4, 0, 3]
     flat = offers(rates, gaps, pitch, 0.7, np.full((3, 4, 3), 2.5)).cost[0, 4, 0, 3]
     assert flat - whole == pytest.approx(12 * 2.5)

@@ -206,6 +206,26 @@ def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int
     return make_interp_spline(along, joints, _DEGREE), len(along)
 
 
+def greatest_speeds(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
+    """Speed along k curves that their bends allow at even places of the parameter, (k, n) mm/s.
+
+    Parameters
+    ----------
+    bend, joint_from_path, feed, bounds
+        As for `durations`.
+    """
+    matrices = np.asarray(joint_from_path, dtype=float).swapaxes(1, 2)
+    first, second, third = (np.abs(rows @ matrices) + _NOTHING for rows in bend.derivatives)
+    return _tops(first, second, third, feed, bounds)
+
+
+def _tops(first: Array, second: Array, third: Array, feed: float, bounds: AxisBounds) -> Array:
+    """Greatest speeds at which a curve takes no more than its shares of the axes' limits; its derivatives above 0."""
+    top = np.minimum(feed, (bounds.velocity / first).min(axis=2))
+    top = np.minimum(top, np.sqrt((_BEND * bounds.acceleration / second).min(axis=2)))
+    return np.asarray(np.minimum(top, np.cbrt((_CURVE * bounds.jerk / third).min(axis=2))))
+
+
 class _Windows(NamedTuple):
     """Ramps of k set-ups: lengths of windows (k, w), speeds (k, w + 1) and limits (k, w)."""
 
@@ -225,9 +245,7 @@ def _windowed(matrices: Array, bend: Bend, number: int, feed: float, bounds: Axi
     starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
     first, second, third = (np.maximum.reduceat(np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING, starts, axis=1)
                             for rows in bend.derivatives)
-    top = np.minimum(feed, (bounds.velocity / first).min(axis=2))
-    top = np.minimum(top, np.sqrt((_BEND * bounds.acceleration / second).min(axis=2)))
-    top = np.minimum(top, np.cbrt((_CURVE * bounds.jerk / third).min(axis=2)))
+    top = _tops(first, second, third, feed, bounds)
     speed = top[..., None]
     a = np.minimum((bounds.acceleration - second * speed**2) / first, _CROSS * bounds.jerk / (3 * second * speed))
     a = a.min(axis=2)

@@ -15,7 +15,7 @@ from toolaxis.job.axes import Remembering, frame_of, judged
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import Pattern, shared_out
 from toolaxis.job.rooms import with_rooms
-from toolaxis.job.timing import feeds_of
+from toolaxis.job.timing import feeds_of, timed
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
@@ -26,6 +26,7 @@ from toolaxis.orient.indexed import task as search_task
 from toolaxis.orient.mounted import combined
 from toolaxis.orient.sturz import sturz
 from toolaxis.orient.together import together
+from toolaxis.orient.worth import FEEDS
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider, Regions
@@ -71,6 +72,23 @@ def by_axis(targets: list[Target]) -> list[Target]:
     """
     names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
     return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
+
+
+def quicker(divided: Plan, whole: Plan) -> Plan:
+    """Of a plan with faces divided and one with the same faces whole the one that takes less time.
+
+    What a division comes to is reckoned to some percent, which may be more than it gains.
+
+    Parameters
+    ----------
+    divided, whole : Plan
+        The first one's options are kept; that with as many axes is marked where faces stay whole.
+    """
+    times = [timed(one, reorder=True).seconds if one.outcome == "complete" else np.inf for one in (divided, whole)]
+    if whole.outcome == "cancelled" or times[0] <= times[1]:
+        return divided
+    marked = tuple(replace(one, chosen=one.orientations == whole.orientations) for one in divided.options)
+    return replace(whole, options=marked)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +157,15 @@ class Job:
         return found if found.outcome == "cancelled" else with_rooms(found, progress)
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
+        """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
+        made = self._as_asked(faces, progress)
+        if self.inputs.objective != "time" or "auto" not in (self.regions, self.orientations) \
+                or made.outcome == "cancelled" or len(made.operations) == len(faces) + len(self.whole):
+            return made
+        whole = replace(self, regions=None, orientations=None)._as_asked(faces, progress.within("undivided"))
+        return quicker(made, whole)
+
+    def _as_asked(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
         try:
@@ -211,7 +238,8 @@ class Job:
         count = checked_count(self.orientations, "orientations")
         if count is None:
             found, knee = trade(dividers, progress=progress)
-            options = tuple(Option(one.orientations, one.pieces, one.length, k == knee) for k, one in enumerate(found))
+            options = tuple(Option(one.orientations, one.pieces, one.length, k == knee, one.seconds)
+                            for k, one in enumerate(found))
             chosen = found[knee]
         else:
             chosen = shared(dividers, count, progress=progress)
@@ -254,7 +282,7 @@ class Job:
         rest = [one for one in (judged(job, other) for other in target.others) if one[0].axis is not None]
         if not rest:
             return found, path
-        other, path = min(rest, key=lambda one: one[0].length * job.worth.charge(one[0].length, one[0].unreached))
+        other, path = min(rest, key=lambda one: _price(job, one[0]))
         refused = tuple(f"{REFUSED}{why}; another shared axis serves" for why in found.reasons)
         return replace(other, reasons=(*other.reasons, *refused)), path
 
@@ -282,6 +310,13 @@ class Job:
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
                            allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, progress=progress)
+
+
+def _price(job: Task, found: Orientation) -> float:
+    """What an axis that serves costs by the objective, what it leaves charged."""
+    assert found.axis is not None
+    value = job.worth.value(found.axis, FEEDS.index(found.feed), found.passes, found.length)
+    return value * job.worth.charge(found.length, found.unreached)
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,7 +73,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         flat end or torus touches hollow faces at two points.
     objective : str
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
-        limits of its axes. Faces are divided by cutting length.
+        limits of its axes. Faces are divided by time too where that is asked for, else by cutting length.
     allowance : float
         Stock left on the faces, mm.
     direction : str

@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.constraints import linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
-from toolaxis.feed.ramps import bends_of, durations
-from toolaxis.feed.schedule import Feeds
+from toolaxis.feed.profile import travel_time
+from toolaxis.feed.ramps import bends_of, durations, greatest_speeds
+from toolaxis.feed.schedule import Feeds, index_time
 from toolaxis.machine.kinematics import part_from_machine, rotary_angles
 from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.spiral import ring
 from toolaxis.path.linking import Linking
+from toolaxis.plan.plan import INDEX_SECONDS
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
@@ -33,6 +36,10 @@ _LEAST = 8
 _RUN = 6
 #: Steps that count as none, mm, and the least sine of an angle between axis and normal.
 _STILL, _UPRIGHT = 1e-6, 1e-3
+#: Length of a pass on which starting and stopping are told apart from the rest, mm.
+_LONG = 1e4
+#: How far a typical turn from one tool axis to the next goes, rad.
+_ASIDE = np.radians(30.0)
 #: How far the next pass begins from the end of one in the estimate, mm.
 _STEP = 1.0
 
@@ -128,17 +135,74 @@ class Pace:
         axes : (k, 3) array
             Unit vectors.
         """
-        machine, place = self.mounting.machine, self.mounting.table_from_part
-        turned = rotary_angles(machine, axes, table_from_part=place)
-        rotary = turned.joints[np.arange(len(axes)), np.argmax(turned.within, axis=1)]
-        joint_from_part = np.linalg.inv(part_from_machine(machine, rotary, place))
-        bounds, found = linear_bounds(machine), np.full((len(axes), 2), self.feeds.cut)
+        joint_from_part, bounds = self._joint_from_part(axes), linear_bounds(self.mounting.machine)
+        found = np.full((len(axes), 2), self.feeds.cut)
         for feed, lines in enumerate(self.lines):
             times = [durations(bends_of(self._tips(line, axes), line.along), joint_from_part, self.feeds.cut, bounds)
                      for line in lines]
             if times:
                 found[:, feed] = sum(line.length for line in lines) / np.sum(times, axis=0)
         return found
+
+    def _turned(self, axes: Array) -> Array:
+        """Rotary angles that give axes, (k, m) rad."""
+        turned = rotary_angles(self.mounting.machine, axes, table_from_part=self.mounting.table_from_part)
+        return np.asarray(turned.joints[np.arange(len(axes)), np.argmax(turned.within, axis=1)])
+
+    def _joint_from_part(self, axes: Array) -> Array:
+        """What the linear axes move for a motion on the part, with the rotary axes turned to axes, (k, 3, 3)."""
+        return np.asarray(np.linalg.inv(part_from_machine(self.mounting.machine, self._turned(axes),
+                                                          self.mounting.table_from_part)))
+
+    def line_seconds(self, uv: Array, axes: Array) -> Array:
+        """Time along a line of the face between points at the speed that its bends allow, (k, n - 1) s.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+            Parameters on one iso-curve, ascending, n of at least 64 for the sake of the third derivative.
+        axes : (k, 3) array
+            Unit vectors.
+        """
+        points, normals = self.face.evaluate(uv).point, self.face.normal(uv)
+        middles = points + self.tool.corner_radius * normals
+        steps = np.linalg.norm(np.diff(middles, axis=0), axis=1)
+        way = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        moving = np.concatenate([[True], steps > _STILL])
+        if moving.sum() < _LEAST:  # a pole: what is no way takes no time
+            return np.broadcast_to(way / self.feeds.cut, (len(axes), len(way)))
+        along_middles = np.concatenate([[0.0], np.cumsum(steps)])
+        line = _Line(middles[moving], normals[moving], along_middles[moving], float(way.sum()))
+        bend = bends_of(self._tips(line, axes), line.along)
+        bounds = linear_bounds(self.mounting.machine)
+        speeds = greatest_speeds(bend, self._joint_from_part(axes), self.feeds.cut, bounds)
+        count = speeds.shape[1]
+        assert bend.stretch is not None
+        slowness = bend.stretch / speeds
+        total = np.concatenate([np.zeros((len(axes), 1)), np.cumsum(slowness, axis=1)], axis=1) * (bend.length / count)
+        places = np.linspace(0.0, bend.length, count + 1)
+        return np.diff(np.array([np.interp(along_middles, places, row) for row in total]), axis=1)
+
+    @cached_property
+    def start_and_stop(self) -> float:
+        """What a straight pass takes longer for starting and ending at rest, s."""
+        bounds = linear_bounds(self.mounting.machine)
+        speed = min(self.feeds.cut, float(bounds.velocity.min()))
+        return float(travel_time(_LONG, speed, bounds.acceleration.min(), bounds.jerk.min())) - _LONG / speed
+
+    def turning(self, axis: Array) -> float:
+        """Time to turn to another tool axis, s: the mean over axes `_ASIDE` away that the machine holds.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        machine, place = self.mounting.machine, self.mounting.table_from_part
+        start = self._turned(axis[None])[0]
+        turned = rotary_angles(machine, ring(axis, _ASIDE), start, place)
+        times = [min(index_time(machine, start, end, INDEX_SECONDS) for end in ends[within])
+                 for ends, within in zip(turned.joints, turned.within, strict=True) if within.any()]
+        return float(np.mean(times)) if times else INDEX_SECONDS
 
     def seconds(self, axes: Array, passes: Array, length: Array) -> Array:
         """Time that passes take, (k, 2) s.

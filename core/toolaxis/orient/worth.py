@@ -63,6 +63,11 @@ class Worth:
             raise InvalidInput(f"objective is {self.objective!r}: it must be one of {', '.join(OBJECTIVES)}")
         Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance)
 
+    @property
+    def timed(self) -> Pace | None:
+        """The pace where the least time is asked for; None for other objectives."""
+        return self.pace if self.objective == "time" else None
+
     @cached_property
     def estimator(self) -> Estimator:
         """The face made ready for estimates with many axes."""

@@ -12,7 +12,7 @@ from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.overlay import divided
 from toolaxis.orient.spiral import ring
-from toolaxis.partition.divider import Divider, Regions, Solution, named_pieces
+from toolaxis.partition.divider import Divider, Regions, Row, Solution, named_pieces
 from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.lattice import Lattice
 from toolaxis.partition.prices import Prices
@@ -59,7 +59,7 @@ class Around:
 
     @cached_property
     def shares(self) -> Array:
-        """Least cost of the first 1, 2, … parts together with 0, 1, … sub-surfaces, (parts, most + 1) mm."""
+        """Least cost of the first 1, 2, … parts together with 0, 1, … sub-surfaces, (parts, most + 1) mm or s."""
         rows = [self.solutions[0].division.curve]
         for one in self.solutions[1:]:
             rows.append(_together(rows[-1], one.division.curve))
@@ -67,7 +67,7 @@ class Around:
 
     @property
     def curve(self) -> Array:
-        """Least reckoned length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
+        """Least cost reckoned with 0, 1, … sub-surfaces, mm or s; inf where there is no such division."""
         return np.asarray(self.shares[-1])
 
     def boxes(self, count: int) -> list[list[Corners]]:
@@ -111,7 +111,7 @@ class Around:
         ----------
         count : int
         """
-        rows = [(part.job.worth.face.trimmed(loops), one, box)
+        rows = [Row(part.job.worth.face.trimmed(loops), part, one, box)
                 for part, one, boxes in zip(self.parts, self.solutions, self.boxes(count), strict=True)
                 for box in boxes for loops in part.lattice.rectangle(box)]
         known = np.flatnonzero(np.isfinite(self.curve))

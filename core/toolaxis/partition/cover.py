@@ -12,15 +12,12 @@ from toolaxis.errors import InvalidInput
 from toolaxis.partition.divider import MOST, Divider, Regions, Solution
 from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.prices import Prices
-from toolaxis.partition.regions import INDEX_COST
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Boxes: TypeAlias = list[list[Corners]]
 
-#: What one more sub-surface costs where its axis is there already, mm: retract, approach and a mark on the border.
-PIECE_COST = 20.0
 _ROUNDS = 6
 #: Time for one choice of axes, s, and what the solver says where it proved that there is none.
 _SECONDS, _IMPOSSIBLE = 30.0, 2
@@ -115,12 +112,19 @@ def _greedy(table: Array, most: int | None) -> Index | None:
 class Shared(NamedTuple):
     """Sub-surfaces of several faces that share a few axes.
 
-    regions : one Regions a face;  length : reckoned length of all, mm;  orientations : different axes.
+    regions : one Regions a face;  length : reckoned length of all, mm;  orientations : different axes;  seconds :
+    reckoned time of all where the division goes by time.
     """
 
     regions: tuple[Regions, ...]
     length: float
     orientations: int
+    seconds: float | None = None
+
+    @property
+    def cost(self) -> float:
+        """What the division went by: mm or s."""
+        return self.length if self.seconds is None else self.seconds
 
     @property
     def pieces(self) -> int:
@@ -129,19 +133,19 @@ class Shared(NamedTuple):
 
 
 class Trade(NamedTuple):
-    """Reckoned length against the number of different axes.
+    """Reckoned length, or time, against the number of different axes.
 
-    options : one Shared for each number of axes for which more of them cut less;  knee : index of the one from which on
-    further axes gain little.
+    options : one Shared for each number of axes for which more of them cost less;  knee : index of the one from which
+    on further axes gain little.
     """
 
     options: tuple[Shared, ...]
     knee: int
 
 
-def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COST,
+def shared(dividers: Sequence[Divider], most: int, index_cost: float | None = None,
            progress: Progress = NO_PROGRESS) -> Shared:
-    """Divide faces so that at most so many axes serve all sub-surfaces in the least cutting length.
+    """Divide faces so that at most so many axes serve all sub-surfaces in the least cutting length or time.
 
     Parameters
     ----------
@@ -149,8 +153,8 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
         One a face.
     most : int
         Greatest number of different axes.
-    index_cost : float
-        What one more axis costs, mm of cutting length.
+    index_cost : float, optional
+        What one more axis costs, mm of cutting length, or s; `Divider.index_cost` unless given.
     progress : Progress
 
     Raises
@@ -169,6 +173,7 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
     they would take 3 % less with one axis and 1 to 2 % less with two to four, for more pieces (`benchmarks/bosses.py`).
     """
     prices = _priced(dividers)
+    each = dividers[0].index_cost if index_cost is None else index_cost
     best: _Try | None = None
     seen: list[Boxes] = []
     for count in range(1, MOST + 1):
@@ -176,7 +181,7 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
         boxes = [_division(divider, count) for divider in dividers]
         if boxes not in seen:
             seen.append(boxes)
-            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), most, index_cost))
+            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), most, each))
     if best is None:
         raise InvalidInput(f"no division was found that {most} {'axis' if most == 1 else 'axes'} can machine: allow "
                            "more orientations, or take a smaller tool")
@@ -184,7 +189,7 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float = INDEX_COS
 
 
 def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO_PROGRESS) -> Trade:
-    """Cutting length against the number of different axes, each as `shared` with no cost of an axis.
+    """Cutting length, or time, against the number of different axes, each as `shared` with no cost of an axis.
 
     Parameters
     ----------
@@ -222,7 +227,7 @@ def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO
         options.append(_told(dividers, best))
     if not options:
         raise InvalidInput(f"no division was found that {most} axes can machine: take a smaller tool")
-    return Trade(tuple(options), knee([one.orientations for one in options], [one.length for one in options]))
+    return Trade(tuple(options), knee([one.orientations for one in options], [one.cost for one in options]))
 
 
 def knee(count: ArrayLike, length: ArrayLike) -> int:
@@ -249,7 +254,8 @@ def _told(dividers: Sequence[Divider], best: "_Try") -> Shared:
     regions = tuple(divider.named(found, boxes)
                     for divider, found, boxes in zip(dividers, best.solutions, best.boxes, strict=True))
     used = np.unique(np.concatenate([one.axes for one in regions]), axis=0)
-    return Shared(regions, sum(sum(one.lengths) for one in regions), len(used))
+    times = [sum(one.seconds) for one in regions if one.seconds]
+    return Shared(regions, sum(sum(one.lengths) for one in regions), len(used), sum(times) if times else None)
 
 
 class _Try(NamedTuple):
@@ -282,7 +288,7 @@ def _settled(faces: list[tuple[Divider, Prices, list[Corners]]], most: int, inde
             axes = np.unique(cover(costs, most, index_cost).axis)
         except InvalidInput:
             return best
-        solutions = [divider.solved(prices.of(axes), PIECE_COST) for divider, prices, _ in faces]
+        solutions = [divider.solved(prices.of(axes), divider.piece_cost) for divider, prices, _ in faces]
         curves = [found.division.curve for found in solutions]
         cost = float(sum(curve.min() for curve in curves)) + index_cost * len(axes)
         if not np.isfinite(cost) or (best is not None and cost >= best.cost - 1e-6):

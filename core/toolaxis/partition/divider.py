@@ -31,6 +31,10 @@ _NOTHING = 1e-12
 #: What the way from a pass over to the next one is worth, mm of cutting: a step aside and two stops.  Without it the
 #: waved example was cut into as many small pieces as allowed: 2 % less cutting, but half as many passes more.
 LINK = 3.0
+#: What one more sub-surface costs unless told, in mm of cutting length: about 6 s at 1000 mm/min.
+INDEX_COST = 100.0
+#: What it costs where its axis is there already, mm: retract, approach and a mark on the border.
+PIECE_COST = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +51,10 @@ class Regions(Sequence[Face]):
         Its feed direction.
     lengths : tuple of float
         Its reckoned length, mm: cutting, `LINK` for each pass, and what clean-up is charged.
+    seconds : tuple of float
+        Its reckoned time where the division goes by time; else empty.
     curve : (m, 2) array
-        Number of sub-surfaces and the least length reckoned for it, mm; inf where there is no division.
+        Number of sub-surfaces and the least cost reckoned for it, mm or s; inf where there is no division.
     radius : float
         Outer distance of the rings where the face is divided around bosses, inf where by the nearest boss alone, mm; 0
         where by iso-parametric cuts alone.
@@ -59,7 +65,13 @@ class Regions(Sequence[Face]):
     feeds: tuple[str, ...]
     lengths: tuple[float, ...]
     curve: Array
+    seconds: tuple[float, ...] = ()
     radius: float = 0.0
+
+    @property
+    def costs(self) -> tuple[float, ...]:
+        """What the division went by: times where there are some, else lengths."""
+        return self.seconds or self.lengths
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -99,23 +111,33 @@ class Solution(NamedTuple):
         return self.division.pieces(count)
 
 
-def named_pieces(label: str, rows: list[tuple[Face, Solution, Corners]], curve: Array) -> Regions:
+class Row(NamedTuple):
+    """A piece of a face with the rectangle that it comes from, in a solution of its divider."""
+
+    piece: Face
+    divider: "Divider"
+    found: Solution
+    box: Corners
+
+
+def named_pieces(label: str, rows: list[Row], curve: Array) -> Regions:
     """Pieces with their names and what the division reckons of each.
 
     Parameters
     ----------
     label : str
         Of the whole face.
-    rows : list of (Face, Solution, corners)
-        Each piece with the rectangle that it comes from.
+    rows : list of Row
     curve : (m, 2) array
         As in `Regions`.
     """
     labels = [label + letters(k) if len(rows) > 1 else label for k in range(len(rows))]
-    return Regions(tuple(piece.trimmed(piece.trims, name) for (piece, _, _), name in zip(rows, labels, strict=True)),
-                   np.array([one.prices.axes[one.offers.axis[box]] for _, one, box in rows]).reshape(-1, 3),
-                   tuple("uv"[one.offers.feed[box]] for _, one, box in rows),
-                   tuple(float(one.offers.cost[box]) for _, one, box in rows), curve)
+    timed = any(row.divider.job.worth.timed is not None for row in rows)
+    return Regions(tuple(row.piece.trimmed(row.piece.trims, name) for row, name in zip(rows, labels, strict=True)),
+                   np.array([row.found.prices.axes[row.found.offers.axis[row.box]] for row in rows]).reshape(-1, 3),
+                   tuple("uv"[row.found.offers.feed[row.box]] for row in rows),
+                   tuple(row.divider.length(row.found, row.box) for row in rows), curve,
+                   tuple(float(row.found.offers.cost[row.box]) for row in rows) if timed else ())
 
 
 class Divider:
@@ -150,7 +172,7 @@ class Divider:
 
     @property
     def curve(self) -> Array:
-        """Least reckoned length with 0, 1, … sub-surfaces, mm; inf where there is no such division."""
+        """Least cost reckoned with 0, 1, … sub-surfaces, mm or s; inf where there is no such division."""
         return self.best.division.curve
 
     def used(self, found: Solution) -> Array:
@@ -187,26 +209,56 @@ class Divider:
         ----------
         prices : Prices
         piece_cost : float
-            What each sub-surface costs besides, mm.
+            What each sub-surface costs besides, mm or s.
         """
-        found = offers(prices.rates, self._gaps, self._pitch, self._ends, prices.extra)
+        found = offers(prices.rates, self._on_the_face(prices.lines), self._pitch, self._ends, prices.extra)
         cost = np.where(self._narrow | self._torn, np.inf, found.cost + piece_cost)
         empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
         return Solution(prices, found, Division(cost, empty, self.most))
 
     def costs(self, prices: Prices, box: Corners) -> Array:
-        """What a rectangle costs with each axis and its better feed, (k,) mm; inf where an axis may not be used.
+        """What a rectangle costs with each axis and its better feed, (k,) mm or s; inf where an axis may not be used.
 
         Parameters
         ----------
         prices : Prices
         box : (int, int, int, int)
         """
+        return self._each(prices, self._on_the_face(prices.lines), box, self._ends, prices.extra).min(axis=1)
+
+    def length(self, found: Solution, box: Corners) -> float:
+        """Reckoned length of a rectangle with its cheapest axis and feed, mm.
+
+        Parameters
+        ----------
+        found : Solution
+        box : (int, int, int, int)
+        """
+        if self.job.worth.timed is None:
+            return float(found.offers.cost[box])
+        one = found.prices.of(found.offers.axis[[box[0]], [box[1]], [box[2]], [box[3]]])
+        lines = self.lattice.lengths[0][None], self.lattice.lengths[1][None]
+        extra = one.extra * self.job.worth.timed.feeds.cut
+        costs = self._each(one, self._on_the_face(lines), box, self._strip + LINK, extra)
+        return float(costs[0, found.offers.feed[box]])
+
+    def _each(self, prices: Prices, gaps: tuple[Array, Array], box: Corners, ends: float, extra: Array) -> Array:
         u0, u1, v0, v1 = box
         rates = prices.rates[:, :, u0:u1 + 1, v0:v1 + 1]
-        gaps = self._gaps[0][u0:u1, v0:v1 + 1], self._gaps[1][u0:u1 + 1, v0:v1]
-        pitch = self._pitch[0][u0:u1], self._pitch[1][v0:v1]
-        return each_axis(rates, gaps, pitch, self._ends, prices.extra[:, u0:u1, v0:v1])
+        inside = gaps[0][:, u0:u1, v0:v1 + 1], gaps[1][:, u0:u1 + 1, v0:v1]
+        return each_axis(rates, inside, (self._pitch[0][u0:u1], self._pitch[1][v0:v1]), ends, extra[:, u0:u1, v0:v1])
+
+    @cached_property
+    def index_cost(self) -> float:
+        """What one more sub-surface with an axis of its own costs, mm or s."""
+        pace = self.job.worth.timed
+        return INDEX_COST if pace is None else self.piece_cost + pace.turning(self._middle)
+
+    @cached_property
+    def piece_cost(self) -> float:
+        """What one more sub-surface costs where its axis is there already, mm or s."""
+        pace = self.job.worth.timed
+        return PIECE_COST if pace is None else PIECE_COST / pace.feeds.cut + pace.ends
 
     def regions(self, count: int) -> Regions:
         """The cheapest division into a number of sub-surfaces, with an axis each.
@@ -226,44 +278,44 @@ class Divider:
         boxes : list of (int, int, int, int)
         """
         face = self.job.worth.face
-        rows = [(face.trimmed(loops), found, box) for box in boxes for loops in self.lattice.rectangle(box)]
+        rows = [Row(face.trimmed(loops), self, found, box) for box in boxes for loops in self.lattice.rectangle(box)]
         return named_pieces(face.label, rows, np.stack([found.known, found.division.curve[found.known]], axis=1))
 
     def _first_axes(self) -> Array:
         normals = self.lattice.normals[self.lattice.material]
         if not len(normals):
             raise InvalidInput(f"face {self.job.worth.face.label} has no place with a normal: it cannot be divided")
+        widest = np.pi if np.linalg.norm(normals.mean(axis=0)) < 0.3 else np.pi / 2
+        return spiral(own_frame(normals, self._middle), float(_SPACING), float(widest))
+
+    @property
+    def _middle(self) -> Array:
+        """The mean normal of the face; any where there is none."""
+        normals = self.lattice.normals[self.lattice.material]
         middle = normals.mean(axis=0)
         norm = float(np.linalg.norm(middle))
-        middle = middle / norm if norm > 1e-6 else normals[0]
-        return spiral(own_frame(normals, middle), float(_SPACING), float(np.pi) if norm < 0.3 else float(np.pi) / 2)
+        return np.asarray(middle / norm if norm > 1e-6 else normals[0])
 
     @property
     def _pitch(self) -> tuple[Array, Array]:
         return np.diff(self.lattice.lines[0]), np.diff(self.lattice.lines[1])
 
     @property
-    def _ends(self) -> float:
-        """By how much a pass is dearer than its line on the face, mm: what it is longer, the strip of a ball of the
-        cutter's radius, and its link."""
+    def _strip(self) -> float:
+        """By how much a pass is longer than its line on the face, mm: the strip of a ball of the cutter's radius."""
         worth = self.job.worth
-        return float(2 * np.sqrt(2 * worth.tool.radius * worth.scallop - worth.scallop**2)) + LINK
+        return float(2 * np.sqrt(2 * worth.tool.radius * worth.scallop - worth.scallop**2))
 
     @cached_property
-    def _gaps(self) -> tuple[Array, Array]:
-        """Length of the face's lines between nodes, mm."""
-        points, filled = self.lattice.points, self.lattice.filled
-        found = []
-        for axis in (0, 1):
-            length = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
-            sides = np.zeros(length.shape)
-            cells = np.moveaxis(filled, 1 - axis, 0)
-            view = np.moveaxis(sides, 1 - axis, 0)
-            view[:-1] += cells
-            view[1:] += cells
-            view[1:-1] /= 2
-            found.append(length * sides)
-        return found[0], found[1]
+    def _ends(self) -> float:
+        """By how much a pass is dearer than its line on the face, mm or s: what it is longer, and its link."""
+        pace = self.job.worth.timed
+        return self._strip + LINK if pace is None else self._strip / pace.feeds.cut + pace.start_and_stop + pace.ends
+
+    def _on_the_face(self, lines: tuple[Array, Array]) -> tuple[Array, Array]:
+        """What lies on the face of lines between nodes."""
+        sides = self.lattice.sides
+        return lines[0] * sides[0], lines[1] * sides[1]
 
     @cached_property
     def _filled(self) -> Array:
@@ -291,7 +343,7 @@ class Divider:
     def _narrow(self) -> NDArray[np.bool_]:
         """Rectangles that are narrower than the cutter, though the face is not: marks without use."""
         found = np.zeros(self._filled.shape, dtype=bool)
-        for axis, gaps in enumerate(self._gaps):
+        for axis, gaps in enumerate(self._on_the_face(self.lattice.lengths)):
             lines = np.maximum((gaps > 0).sum(axis=1 - axis), 1)
             line = np.concatenate([[0.0], np.cumsum(gaps.sum(axis=1 - axis) / lines)])
             apart = line[None] - line[:, None]

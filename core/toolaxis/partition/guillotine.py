@@ -14,7 +14,7 @@ Index = NDArray[np.intp]
 Corners = tuple[int, int, int, int]
 #: Sums of rates above this hold a forbidden node.
 _TOO_MUCH = 1e9
-#: Cutting length, mm, below which a rectangle is left to a clean-up tool as a whole: it is no sub-surface.
+#: Cost, mm or s, below which a rectangle is left to a clean-up tool as a whole: it is no sub-surface.
 _NONE = 1e-6
 _CHUNK = 32
 
@@ -22,7 +22,7 @@ _CHUNK = 32
 class Offers(NamedTuple):
     """The cheapest axis and feed of every rectangle, each array indexed by first and last line along u, then along v.
 
-    cost : mm of cutting length, inf where no axis serves;  axis, feed : indices of the cheapest.
+    cost : of what the gaps are in, mm or s; inf where no axis serves;  axis, feed : indices of the cheapest.
     """
 
     cost: Array
@@ -42,21 +42,23 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
     ----------
     rates : (k, 2, nu + 1, nv + 1) array
         Passes for a unit of the step, with feed u and v.
-    gaps : pair of (nu, nv + 1) and (nu + 1, nv) arrays
-        Length of the lines between neighbouring nodes along u and along v, mm; 0 off the face.
+    gaps : pair of (1 or k, nu, nv + 1) and (1 or k, nu + 1, nv) arrays
+        What a pass costs between neighbouring nodes along u and along v, mm or s; 0 off the face. One row where it is
+        the same with all axes.
     pitch : pair of (nu,) and (nv,) arrays
         Distances of neighbouring lines in u and in v.
     ends : float
-        By how much a pass is longer than its line on the face, mm.
+        By how much a pass is dearer than its line on the face.
     extra : (k, nu, nv) array, optional
-        What each cell costs besides, mm: what is left to a clean-up tool.
+        What each cell costs besides: what is left to a clean-up tool.
     """
     nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
     cost = np.full((nu + 1, nu + 1, nv + 1, nv + 1), np.inf)
     axis, feed = np.zeros(cost.shape, dtype=np.intp), np.zeros(cost.shape, dtype=np.intp)
-    rows = _rows(gaps[0], ends), _rows(gaps[1].T, ends)
+    across = gaps[0], gaps[1].swapaxes(1, 2)
     for first in range(0, len(rates), _CHUNK):
         part = slice(first, first + _CHUNK)
+        rows = [_rows(one if len(one) == 1 else one[part], ends) for one in across]
         for number in (0, 1):
             if number == 0:
                 table = _lengths(rates[part, 0], rows[0], pitch[1])
@@ -82,7 +84,7 @@ def _boxes(cells: Array) -> Array:
 
 def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0,
               extra: Array | None = None) -> Array:
-    """What a whole lattice costs as one piece with each axis and its better feed, (k,) mm; inf where one is forbidden.
+    """What a whole lattice costs as one piece with each axis and both feeds, (k, 2); inf where one is forbidden.
 
     Parameters
     ----------
@@ -92,13 +94,13 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
     both = []
     for along, step in ((0, 1), (1, 0)):
         most = rates[:, along].max(axis=1 + along)
-        row = _ended(gaps[along].sum(axis=along), ends)
-        middle = (most[:, 1:] * row[1:] + most[:, :-1] * row[:-1]) / 2
-        cost = (middle * pitch[step]).sum(axis=1) + row.mean() / 2
+        row = _ended(gaps[along].sum(axis=1 + along), ends)
+        middle = (most[:, 1:] * row[:, 1:] + most[:, :-1] * row[:, :-1]) / 2
+        cost = (middle * pitch[step]).sum(axis=1) + row.mean(axis=1) / 2
         cost += 0.0 if extra is None else extra.sum(axis=(1, 2))
         usable = (most.max(axis=1) < _TOO_MUCH) & ((middle * pitch[step]).sum(axis=1) > _NONE)
         both.append(np.where(usable, cost, np.inf))
-    return np.minimum(*both)
+    return np.stack(both, axis=1)
 
 
 def proper(nu: int, nv: int) -> NDArray[np.bool_]:
@@ -114,9 +116,9 @@ def proper(nu: int, nv: int) -> NDArray[np.bool_]:
 
 
 def _rows(gaps: Array, ends: float) -> Array:
-    """Length of passes over all ranges along, (first, last, step), mm; 0 off the face."""
-    length = np.concatenate([np.zeros((1, gaps.shape[1])), np.cumsum(gaps, axis=0)])
-    return _ended(length[None] - length[:, None], ends)
+    """What passes over all ranges along cost, (1 or k, first, last, step); 0 off the face."""
+    total = np.concatenate([np.zeros((len(gaps), 1, gaps.shape[2])), np.cumsum(gaps, axis=1)], axis=1)
+    return _ended(total[:, None] - total[:, :, None], ends)
 
 
 def _ended(rows: Array, ends: float) -> Array:
@@ -124,15 +126,15 @@ def _ended(rows: Array, ends: float) -> Array:
 
 
 def _lengths(rates: Array, rows: Array, pitch: Array) -> Array:
-    """Cutting length of all ranges along (first, last) and across (first, last), (k, na, na, ns, ns).
+    """What all ranges along (first, last) and across (first, last) cost, (k, na, na, ns, ns).
 
-    rates (k, along, step);  rows (first, last, step);  pitch (step - 1).
+    rates (k, along, step);  rows (1 or k, first, last, step);  pitch (step - 1).
     """
     k, na, ns = rates.shape
     table = np.full((k, na, na, ns), _TOO_MUCH)
     for a in range(na):
         most = np.maximum.accumulate(rates[:, a:], axis=1)
-        table[:, a, a:] = np.where(most < _TOO_MUCH, most * rows[a, a:], _TOO_MUCH)
+        table[:, a, a:] = np.where(most < _TOO_MUCH, most * rows[:, a, a:], _TOO_MUCH)
     bad = np.maximum(table[..., 1:], table[..., :-1]) >= _TOO_MUCH
     middle = np.where(bad, _TOO_MUCH, (table[..., 1:] + table[..., :-1]) / 2 * pitch)
     count = np.arange(ns)[None, :] - np.arange(ns)[:, None] + 1

@@ -106,6 +106,26 @@ class Lattice:
         size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(self.cells)
         return np.asarray(size * np.diff(self.lines[0])[:, None] * np.diff(self.lines[1]) * self.filled)
 
+    @cached_property
+    def lengths(self) -> tuple[Array, Array]:
+        """Length of the lines between neighbouring nodes, along u (nu, nv + 1) and along v (nu + 1, nv), mm."""
+        along_u, along_v = (np.linalg.norm(np.diff(self.points, axis=axis), axis=-1) for axis in (0, 1))
+        return np.asarray(along_u), np.asarray(along_v)
+
+    @cached_property
+    def sides(self) -> tuple[Array, Array]:
+        """How much of each of these pieces of the lines lies on the face: the mean of the cells beside it."""
+        found = []
+        for axis in (0, 1):
+            sides = np.zeros(self.lengths[axis].shape)
+            cells = np.moveaxis(self.filled, 1 - axis, 0)
+            view = np.moveaxis(sides, 1 - axis, 0)
+            view[:-1] += cells
+            view[1:] += cells
+            view[1:-1] /= 2
+            found.append(sides)
+        return found[0], found[1]
+
     def _clipped(self, loops: tuple[Array, ...], axis: int, first: int, last: int) -> tuple[Array, ...]:
         """The part of loops between two lines."""
         line = self.lines[axis]

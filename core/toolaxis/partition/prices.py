@@ -1,4 +1,7 @@
-"""What axes cost at the nodes of a lattice: where they are forbidden, and how many passes a unit of the step takes."""
+"""What axes cost on a lattice: where they are forbidden, how many passes a unit of the step takes, and what these take.
+
+Costs are mm of cutting length, and seconds where the least time is asked for.
+"""
 
 from dataclasses import dataclass
 
@@ -9,6 +12,7 @@ from toolaxis.contact.strip import step_widths
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.contacts import contacts_at
 from toolaxis.orient.feasible import Feasibility
+from toolaxis.orient.pace import Pace
 from toolaxis.orient.verdicts import FREE
 from toolaxis.orient.worth import CLEAN_UP, FEEDS, Worth
 from toolaxis.partition.lattice import Lattice
@@ -17,6 +21,8 @@ from toolaxis.progress import NO_PROGRESS, Progress
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
+#: Places for a speed between two nodes.
+_FINE = 8
 #: Rate of passes where an axis is forbidden; finite, so that sums stay numbers.
 FORBIDDEN = 1e12
 
@@ -33,8 +39,11 @@ class Prices:
         the axis may not be used.
     left : (k, nu + 1, nv + 1) array of bool
         Whether the node lies at a wall and is left to a clean-up tool.
+    lines : pair of (1 or k, nu, nv + 1) and (1 or k, nu + 1, nv) arrays
+        What one pass costs between neighbouring nodes along u, with feed u, and along v; one row where all axes cost
+        the same.
     extra : (k, nu, nv) array
-        What it costs to clean up in each cell, mm.
+        What it costs to clean up in each cell.
     whole : (nu, nv) array
         Area of the face in each cell, mm^2.
     """
@@ -42,6 +51,7 @@ class Prices:
     axes: Array
     rates: Array
     left: Bools
+    lines: tuple[Array, Array]
     extra: Array
     whole: Array
 
@@ -52,7 +62,8 @@ class Prices:
         ----------
         places : (m,) array of int
         """
-        return Prices(self.axes[places], self.rates[places], self.left[places], self.extra[places], self.whole)
+        u, v = (line if len(line) == 1 else line[places] for line in self.lines)
+        return Prices(self.axes[places], self.rates[places], self.left[places], (u, v), self.extra[places], self.whole)
 
     def joined(self, other: "Prices") -> "Prices":
         """The prices of more axes after these.
@@ -61,8 +72,11 @@ class Prices:
         ----------
         other : Prices
         """
+        u, v = (line if len(line) == 1 else np.concatenate([line, more])
+                for line, more in zip(self.lines, other.lines, strict=True))
         return Prices(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
-                      np.concatenate([self.left, other.left]), np.concatenate([self.extra, other.extra]), self.whole)
+                      np.concatenate([self.left, other.left]), (u, v), np.concatenate([self.extra, other.extra]),
+                      self.whole)
 
 
 def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array,
@@ -73,7 +87,7 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     ----------
     lattice : Lattice
     worth : Worth
-        Tool, scallop height and allowance.
+        Tool, scallop height and allowance, and the pace where the least time is asked for.
     feasibility : Feasibility
         Of the whole face.
     axes : (k, 3) array
@@ -106,7 +120,28 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)
     everywhere[:, nodes] = left
     rates, everywhere = rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape)
-    return Prices(axes, rates, everywhere, _clean_up(lattice, worth, everywhere), lattice.areas)
+    extra = _clean_up(lattice, worth, everywhere)
+    if worth.timed is None:
+        return Prices(axes, rates, everywhere, (lattice.lengths[0][None], lattice.lengths[1][None]), extra,
+                      lattice.areas)
+    lines = _line_seconds(lattice, worth.timed, axes, progress)
+    return Prices(axes, rates, everywhere, lines, extra / worth.timed.feeds.cut, lattice.areas)
+
+
+def _line_seconds(lattice: Lattice, pace: Pace, axes: Array, progress: Progress) -> tuple[Array, Array]:
+    """Seconds that a pass takes between neighbouring nodes along u and along v, for each axis."""
+    found = []
+    for along in (0, 1):
+        nodes, across = lattice.lines[along], lattice.lines[1 - along]
+        fine = np.interp(np.arange(_FINE * (len(nodes) - 1) + 1) / _FINE, np.arange(len(nodes)), nodes)
+        rows = np.empty((len(axes), len(across), len(nodes) - 1))
+        for j, other in enumerate(across):
+            progress.report("speeds along the lattice", along * len(across) + j, 2 * len(across))
+            uv = np.full((len(fine), 2), other)
+            uv[:, along] = fine
+            rows[:, j] = pace.line_seconds(uv, axes).reshape(len(axes), -1, _FINE).sum(axis=2)
+        found.append(rows)
+    return found[0].swapaxes(1, 2), found[1]
 
 
 def _clean_up(lattice: Lattice, worth: Worth, left: Bools) -> Array:

@@ -12,7 +12,7 @@ from toolaxis.orient.mounted import combined
 from toolaxis.orient.setting import Obstacles
 from toolaxis.partition.around import Distance, candidates, slivers
 from toolaxis.partition.bosses import distances
-from toolaxis.partition.divider import MOST, Divider, Regions
+from toolaxis.partition.divider import INDEX_COST, MOST, Divider, Regions
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -20,9 +20,6 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
-
-#: What one more sub-surface costs unless told, in mm of cutting length: about 6 s at 1000 mm/min.
-INDEX_COST = 100.0
 
 
 def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str | None = None, *,
@@ -88,16 +85,18 @@ def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str 
     return tuple(pieces)
 
 
-def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX_COST,
+def regions(job: Task, count: int | str | None = None, index_cost: float | None = None,
             progress: Progress = NO_PROGRESS, bosses: Sequence[Distance] = ()) -> Regions:
     """Divide one face.
 
     Parameters
     ----------
     job : Task
-        From `toolaxis.orient.indexed.task`.
-    count, index_cost, progress
+        From `toolaxis.orient.indexed.task`; with the objective "time" the division goes by time, else by length.
+    count, progress
         As for `partition`.
+    index_cost : float, optional
+        What one more sub-surface costs, mm or s; `Divider.index_cost` unless given.
     bosses : sequence of callable
         Distances to what stands on the face, from `toolaxis.partition.bosses.distances`: it is also divided around
         them, and the cheaper division is taken.
@@ -118,7 +117,8 @@ def regions(job: Task, count: int | str | None = None, index_cost: float = INDEX
     around = [one for one in candidates(divider, bosses) if np.isfinite(one.curve).any()] if len(bosses) else []
     if number is None:
         least = np.min([divider.curve, *(one.curve for one in around)], axis=0)
-        number = int(np.argmin(least + index_cost * np.arange(len(least))))
+        each = divider.index_cost if index_cost is None else index_cost
+        number = int(np.argmin(least + each * np.arange(len(least))))
     for one in sorted(around, key=lambda one: float(one.curve[number])):
         if not one.curve[number] < divider.curve[number]:
             break

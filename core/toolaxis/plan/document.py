@@ -175,7 +175,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "order": None if plan.order is None else {
             **asdict(plan.order), "listed": plan.order.listed if np.isfinite(plan.order.listed) else None},
         "in_the_way": list(plan.in_the_way),
-        "options": [asdict(option) for option in plan.options],
+        "options": [{name: value for name, value in asdict(option).items() if value is not None}
+                    for option in plan.options],
         "operations": [_operation_document(op, plan, name)
                        for op, name in zip(plan.operations, files["operations"], strict=True)],
     }

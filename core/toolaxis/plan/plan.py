@@ -119,12 +119,15 @@ class Option:
         Reckoned length of cutting, links and clean-up, mm.
     chosen : bool
         Whether the plan's operations follow it.
+    seconds : float, optional
+        Reckoned time of the same, where the plan goes by time.
     """
 
     orientations: int
     sub_surfaces: int
     length: float
     chosen: bool
+    seconds: float | None = None
 
 
 def outcome_of(operations: Sequence[Operation], blades: Blades | None = None) -> str:
@@ -162,7 +165,7 @@ class Plan:
         "complete" (every sub-surface has an axis, fillets at the roots of blades and faces that are left to a clean-up
         tool as a whole apart), "incomplete" (one or more have none) or "cancelled".
     options : tuple of Option
-        Cutting length against the number of different axes, where that was asked for.
+        Cutting length, or time, against the number of different axes, where that was asked for.
     baselines : tuple of Baseline
         What other methods come to on the same faces, this plan first, where that was asked for.
     blades : Blades, optional

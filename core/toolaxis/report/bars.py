@@ -52,7 +52,7 @@ def baselines_picture(rows: Sequence[Baseline]) -> Figure:
 
 
 def options_picture(options: Sequence[Option]) -> Figure:
-    """Cutting length against the number of different axes, the chosen one marked.
+    """Cutting length, or time, against the number of different axes, the chosen one marked.
 
     Parameters
     ----------
@@ -60,17 +60,18 @@ def options_picture(options: Sequence[Option]) -> Figure:
     """
     made = figure(7.5, 4.6)
     ax = made.subplots()
-    count, length = [one.orientations for one in options], [one.length for one in options]
-    ax.plot(count, length, "o-", color=BLUE, markersize=5)
-    for one in options:
-        ax.annotate(f"{one.sub_surfaces}", (one.orientations, one.length), textcoords="offset points", xytext=(4, 6),
+    timed = all(one.seconds is not None for one in options)
+    count, costs = [one.orientations for one in options], [one.seconds or one.length for one in options]
+    ax.plot(count, costs, "o-", color=BLUE, markersize=5)
+    for one, cost in zip(options, costs, strict=True):
+        ax.annotate(f"{one.sub_surfaces}", (one.orientations, cost), textcoords="offset points", xytext=(4, 6),
                     fontsize=8, color=GREY)
         if one.chosen:
-            ax.plot(one.orientations, one.length, "o", color=VERMILION, markersize=12, fillstyle="none",
+            ax.plot(one.orientations, cost, "o", color=VERMILION, markersize=12, fillstyle="none",
                     markeredgewidth=1.8, label="chosen, at the knee")
     ax.plot([], [], linestyle="none", marker="$n$", color=GREY, markersize=6, label="number of sub-surfaces")
     ax.set_xlabel("different tool axes")
-    ax.set_ylabel("reckoned length, mm")
+    ax.set_ylabel("reckoned time, s" if timed else "reckoned length, mm")
     ax.set_title("cutting, links and clean-up against the number of orientations", fontsize=10)
     ax.set_xticks(count)
     ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))

@@ -202,16 +202,21 @@ def _baseline_row(one: Baseline, first: Baseline) -> list[str]:
 def options_table(options: Sequence[Option]) -> Table:
     """One row per number of different axes: sub-surfaces, cutting length, and what it saves over one axis.
 
+    Where the plan goes by time there is a column of times, and what is saved is time.
+
     Parameters
     ----------
     options : sequence of Option
     """
-    first = options[0].length
+    costs = [one.seconds or one.length for one in options]
+    timed = all(one.seconds is not None for one in options)
     rows = [[str(one.orientations), str(one.sub_surfaces), number(one.length, 1),
-             f"{100 * (1 - one.length / first):.1f}", "chosen" if one.chosen else ""] for one in options]
+             *([clock(cost)] if timed else []), f"{100 * (1 - cost / costs[0]):.1f}", "chosen" if one.chosen else ""]
+            for one, cost in zip(options, costs, strict=True)]
     columns: tuple[Column, ...] = (("different\naxes", "right"), ("sub-\nsurfaces", "right"),
-                                   ("reckoned\nlength mm", "right"), ("less than\nthe first %", "right"),
-                                   ("", "left"))
+                                   ("reckoned\nlength mm", "right"),
+                                   *([("reckoned\ntime", "right")] if timed else []),
+                                   ("less than\nthe first %", "right"), ("", "left"))
     return table("cutting, links and clean-up against the number of orientations", columns, rows)
 
 
