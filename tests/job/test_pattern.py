@@ -13,6 +13,7 @@ from toolaxis.job.axes import with_operations
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.pattern import recognised, shared_out, too_narrow
 from toolaxis.job.rooms import tightest
+from toolaxis.orient.indexed import evaluate_axis
 from toolaxis.plan.document import plan_document
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
@@ -80,6 +81,18 @@ def ring(count: int = 6) -> Part:
 def plan() -> Plan:
     tool = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
     return ta.plan(wheel(change=("", "swapped", "reversed")), tool, 0.15, regions=1, compare=True)
+
+
+def test_the_axis_along_a_blade_is_found() -> None:
+    """Between hub and neighbours all but a narrow lobe around it is forbidden; the sectors' steps meet it."""
+    part, tool = wheel(), ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
+    found = ta.best_axis(part.faces[1], tool, 0.15, part=part)
+    known = evaluate_axis(part.faces[1], tool, (0.9825, 0.066, 0.1739), 0.15, part=part)
+    assert known.outcome == "feasible" and known.length < 75
+    assert found.length < known.length
+    for lobe in found.lobes:
+        other = evaluate_axis(part.faces[1], tool, lobe.axis, 0.15, part=part)
+        assert other.outcome != "feasible" or found.length <= other.length * 1.001
 
 
 def test_every_blade_is_machined_as_the_first(plan: Plan) -> None:

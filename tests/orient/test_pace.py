@@ -11,10 +11,10 @@ from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import best_axis, task
+from toolaxis.orient.least_made import least_made
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.pace import Pace
 from toolaxis.orient.polish import Candidate
-from toolaxis.orient.quickest import quickest
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -99,12 +99,12 @@ def test_the_planner_decides_between_lobes_of_nearly_the_same_time(face: Face) -
         some.append(Candidate(axis, 0, job.worth.value(axis, 0, passes, length), passes, length, 0.0))
     some.sort(key=lambda one: -_planned(job, one.axis, "u"))  # the worse one first, as if the estimate liked it
     some[1] = replace(some[1], value=1.05 * some[0].value)
-    ordered = quickest(job.worth, some, job.made)
+    ordered = least_made(job.worth, some, job.made)
     times = [_planned(job, one.axis, "u") for one in ordered]
     assert times == sorted(times)
     far = [some[0], replace(some[1], value=2 * some[0].value)]
-    assert quickest(job.worth, far, job.made) == far
-    assert quickest(task(face, TOOL, H, MIKRON).worth, some, job.made) is some
+    assert least_made(job.worth, far, job.made) == far
+    assert least_made(task(face, TOOL, H, MIKRON).worth, some, job.made) is some
 
 
 def test_what_time_needs(face: Face) -> None:

@@ -16,12 +16,12 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.orient.crossing import Crossing
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
+from toolaxis.orient.least_made import least_made
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held, make_room, mounting_of, stopped
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.quickest import quickest
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
@@ -264,7 +264,7 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
         How often each is tried, repaired between; 1 to take them as they are.
     """
     refused: list[str] = []
-    found = quickest(job.worth, held(ledger, found), job.made)
+    found = least_made(job.worth, held(ledger, found), job.made)
     best: tuple[float, Orientation, int] | None = None
     for k in range(len(found)):
         accepted, missed = _accepted(job, ledger, found[k], refused, attempts)

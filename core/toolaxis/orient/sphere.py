@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.orient.flank import flank_axes
 from toolaxis.orient.hunt import hunt
 from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.normals import NormalField
@@ -65,6 +66,7 @@ def search(ledger: Ledger) -> list[Candidate]:
     field = ledger.feasibility.normals
     frame = frame_of(field)
     ledger.look(np.concatenate([np.stack([field.mean, frame[2]]), ledger.starts]))
+    ledger.lay(flank_axes(ledger.feasibility))
     first = len(ledger.axes)
     ledger.lay(spiral(frame, SPACING))
     for _ in range(_HUNTS):
