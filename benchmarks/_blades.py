@@ -24,7 +24,8 @@ def profile(camber: float, thick: float, chord: float, blunt: float, count: int)
     count : int
     """
     t = (1 - np.cos(np.linspace(0, np.pi, 4001))) / 2
-    half = blunt * np.sqrt(np.maximum(1 - (2 * t - 1)**8, 0)) + (thick / 2 - blunt) * (4 * t * (1 - t))**1.3
+    end = np.clip(1 - chord * np.minimum(t, 1 - t) / (1.6 * blunt), 0, 1)
+    half = blunt * np.sqrt(1 - end**2.5) + (thick / 2 - blunt) * (4 * t * (1 - t))**1.3
     if abs(camber) > 1e-9:
         radius = chord / (2 * np.sin(camber / 2))
         angle = camber * (t - 0.5)
@@ -73,7 +74,7 @@ def sections(name: str, layers: int = 1, radius: float = 4.0, count: int = 300) 
     return made
 
 
-def loft(name: str, span: float = 40.0, rows: int = 9, columns: int = 161,
+def loft(name: str, span: float = 40.0, rows: int = 9, columns: int = 241,
          place: Callable[[Array], Array] = lambda points: points) -> Face:
     """The closed face of a blade of a family, its span along z, through splines that close smoothly."""
     from scipy.interpolate import BSpline, make_interp_spline

@@ -94,7 +94,7 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    ({"strategy": "six-axis"}, "strategy is 'six-axis': use indexed, sturz or two-point"),
+    ({"strategy": "six-axis"}, "strategy is 'six-axis': use indexed, sturz"),
     ({"strategy": "sturz", "method": "roman"}, "method 'roman' finds fixed axes"),
     ({"method": "sturz"}, "ask for the strategy 'sturz' instead"),
     ({"strategy": "sturz", "objective": "time"}, "by length or passes"),

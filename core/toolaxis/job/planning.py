@@ -1,7 +1,8 @@
 """Sub-surfaces, axes and operations of one plan: what `toolaxis.plan` sets going."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.blade_plan import blade
 from toolaxis.orient.flat_plan import two_point
 from toolaxis.orient.indexed import Task, searched
 from toolaxis.orient.indexed import task as search_task
@@ -49,7 +51,8 @@ REFUSED = "shared axis refused: "
 #: Methods that search as another one does.
 _SEARCHES = {"ball": "normal"}
 #: Methods that move the axis.
-_MOVING = {"sturz": sturz, "two-point": two_point}
+_MOVING: dict[str, Callable[[Task], tuple[Orientation, ToolPath | None]]] = {
+    "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys")}
 
 
 class Target(NamedTuple):

@@ -135,12 +135,14 @@ def check_five_axes(machine: Machine, strategy: str) -> None:
     Raises
     ------
     InvalidInput
-        When it has no two rotary axes of its own drives.
+        When it has too few rotary axes of its own drives: two, or one to go around blades.
     """
     driven = sum(not axis.by_hand for axis in machine.rotary)
-    if driven < 2:
-        raise InvalidInput(f"strategy {strategy!r} moves two rotary axes while it cuts and {machine.name} drives "
-                           f"{driven}: name another machine or leave out the strategy")
+    needed = 1 if strategy.startswith("blade") else 2
+    if driven < needed:
+        count = ("one rotary axis", "two rotary axes")[needed - 1]
+        raise InvalidInput(f"strategy {strategy!r} moves {count} while it cuts and {machine.name} drives {driven}: "
+                           "name another machine or leave out the strategy")
 
 
 def parse_faces(text: str) -> Numbers | str:

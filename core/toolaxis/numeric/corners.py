@@ -4,7 +4,6 @@ The curve stays a function of x, rises where both segments rise, and leaves the 
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +15,7 @@ Array = NDArray[np.float64]
 
 #: Change of slope below which a vertex is no corner.
 _STRAIGHT = 1e-12
-_HALVINGS = 60
+_STEPS = 14
 
 
 def corner(before: ArrayLike, vertex: ArrayLike, after: ArrayLike, height: ArrayLike) -> Array:
@@ -134,22 +133,17 @@ class RoundedLine:
 
 
 def _on_bezier(control: Array, x: Array) -> Array:
-    """y, slope and second derivative of a cubic Bezier curve whose x ascends, at places on it, (3, n)."""
-    low, high = np.zeros(len(x)), np.ones(len(x))
-    for _ in range(_HALVINGS):
-        t = (low + high) / 2
-        right = _bernstein(control[:, 0], t) > x
-        low, high = np.where(right, low, t), np.where(right, t, high)
-    t = (low + high) / 2
-    first, second = 3 * np.diff(control, axis=0), 6 * np.diff(control, n=2, axis=0)
-    dx, dy = (_bernstein(first[:, k], t) for k in (0, 1))
-    ddx, ddy = (_bernstein(second[:, k], t) for k in (0, 1))
-    return np.stack([_bernstein(control[:, 1], t), dy / dx, (ddy * dx - ddx * dy) / dx**3])
+    """y, slope and second derivative of a cubic Bezier curve whose inner points coincide, at places on it, (3, n).
 
-
-def _bernstein(values: Array, t: Array) -> Array:
-    """A polynomial in Bernstein form, by repeated interpolation."""
-    rows = [np.full(len(t), value) for value in values]
-    while len(rows) > 1:
-        rows = [(1 - t) * one + t * other for one, other in pairwise(rows)]
-    return np.asarray(rows[0])
+    Newton's method begins where x bends the other way: from there it overshoots once and then comes down to the place.
+    """
+    (x0, y0), (x1, y1), _, (x3, y3) = control
+    t = np.full(len(x), (x1 - x0) / (x3 - x0))
+    for _ in range(_STEPS):
+        s = 1 - t
+        off = s**3 * x0 + 3 * s * t * x1 + t**3 * x3 - x
+        t = np.clip(t - off / (3 * (s * s * (x1 - x0) + t * t * (x3 - x1))), 0.0, 1.0)
+    s = 1 - t
+    dx, dy = (3 * (s * s * (b - a) + t * t * (c - b)) for a, b, c in ((x0, x1, x3), (y0, y1, y3)))
+    ddx, ddy = (6 * (t * (c - b) - s * (b - a)) for a, b, c in ((x0, x1, x3), (y0, y1, y3)))
+    return np.stack([s**3 * y0 + 3 * s * t * y1 + t**3 * y3, dy / dx, (ddy * dx - ddx * dy) / dx**3])

@@ -114,25 +114,19 @@ def _check_simple(rows: Array, place: str) -> None:
     edges = np.arange(0, len(rows), _CHUNK)
     low, high = np.minimum.reduceat(low, edges), np.maximum.reduceat(high, edges)
     near = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(axis=2)
-    ends = np.append(edges, len(rows))
-    for i, j in np.argwhere(np.triu(near)):
-        one, other = (np.arange(ends[k], ends[k + 1]) for k in (i, j))
-        at = _crossing(a, b, one, other)
-        if at is not None:
-            raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take a smaller cutter where "
-                               "it is hollow, or repair the section")
-
-
-def _crossing(a: Array, b: Array, one: NDArray[np.intp], other: NDArray[np.intp]) -> Array | None:
-    """Where a segment of one piece properly crosses one of another; None where none does."""
-    p, r = a[one][:, None], (b - a)[one][:, None]
-    q, s = a[other][None], (b - a)[other][None]
+    i, j = np.nonzero(np.triu(near))
+    own = np.minimum(edges[:, None] + np.arange(_CHUNK), len(rows) - 1)
+    one, other = own[i][:, :, None], own[j][:, None, :]
+    p, r, q, s = a[one], (b - a)[one], a[other], (b - a)[other]
     across = _cross(r, s)
-    apart = (np.abs(one[:, None] - other[None]) > 1) & (np.abs(one[:, None] - other[None]) < len(a) - 1)
+    gap = np.abs(one - other)
     with np.errstate(divide="ignore", invalid="ignore"):
         t, u = _cross(q - p, s) / across, _cross(q - p, r) / across
-    found = np.argwhere(apart & (across != 0) & (t > 0) & (t < 1) & (u > 0) & (u < 1))
-    return None if not len(found) else np.asarray(a[one[found[0, 0]]])
+    found = np.argwhere((gap > 1) & (gap < len(rows) - 1) & (across != 0) & (t > 0) & (t < 1) & (u > 0) & (u < 1))
+    if len(found):
+        at = rows[own[i[found[0, 0]], found[0, 1]]]
+        raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take a smaller cutter where it is "
+                           "hollow, or repair the section")
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 METHOD_NAMES = {"plan": "this plan", "sphere": "best of the hemisphere", "sectors": "sectors of zhu2016",
                 "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis",
                 "ball": "ball end, mean normal", "sturz": "five axes, constant lead",
-                "two-point": "five axes, two contacts"}
+                "two-point": "five axes, two contacts", "blade": "four axes, least acceleration",
+                "blade-keys": "four axes, key points"}
 
 
 @dataclass(frozen=True)

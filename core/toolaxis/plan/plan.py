@@ -19,8 +19,9 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
-#: Fixed axes, or simultaneous five-axis milling: with a constant lead, or with two-point contact of a flat bottom.
-STRATEGIES = ("indexed", "sturz", "two-point")
+#: Fixed axes, or simultaneous five-axis milling: with a constant lead, or with two-point contact of a flat bottom; or
+#: four-axis milling around blades, with least peak acceleration or by key points.
+STRATEGIES = ("indexed", "sturz", "two-point", "blade", "blade-keys")
 #: How the axis of each sub-surface is found; strategies that move it are methods too.
 METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball", *STRATEGIES[1:])
 OBJECTIVES = ("length", "passes", "time")
