@@ -70,7 +70,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     strategy : str
         "indexed": every sub-surface has one fixed axis; "sturz": simultaneous five-axis milling with the best constant
         lead, for comparison or where one fixed axis does not do; "two-point": simultaneous five-axis milling in which a
-        flat end or torus touches hollow faces at two points.
+        flat end or torus touches hollow faces at two points; "blade" and "blade-keys": a ball end goes around blades in
+        layers while one rotary axis swings without turning back, with least peak acceleration or by key points and
+        rounded corners; the faces around a blade are joined: "1+2+3+4".
     objective : str
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
         limits of its axes. Faces are divided by time too where that is asked for, else by cutting length.
