@@ -99,14 +99,30 @@ def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed =
     """
     check_bull_nose(tool)
     cutter_numbers(tool, scallop, allowance)
-    frame, rows = contact_frame(face, uv, feed), np.atleast_2d(np.asarray(uv, dtype=float))
+    rows = np.atleast_2d(np.asarray(uv, dtype=float))
     places = _REACH * tool.radius * (np.arange(1, _PLACES + 1) / _PLACES) ** _CLOSER
-    point = face.evaluate(rows).point
-    wanted = places * np.array([1.0, -1.0])[:, None]
-    start = np.repeat(rows, 2 * _PLACES, axis=0)
-    feeds, lefts, origin = (np.repeat(each, 2 * _PLACES, axis=0) for each in (frame.feed, frame.left, point))
-    across = np.tile(wanted.ravel(), len(rows))
-    at = start.copy()
+    at, up = section_points(face, section_parameters(face, rows, np.concatenate([places, -places]), feed))
+    lifted = (at + (scallop + allowance) * up).reshape(len(rows), 2, _PLACES, 3)
+    point, normal = face.evaluate(rows).point, contact_frame(face, rows, feed).normal
+    return Sections(point, normal, places, lifted, tool, scallop, allowance)
+
+
+def section_parameters(face: Face, uv: ArrayLike, offsets: ArrayLike, feed: Feed = "u") -> Array:
+    """Parameters of the points of a surface in the planes across the feed at contacts, (n, k, 2).
+
+    Parameters
+    ----------
+    face : Face
+    uv : (n, 2) array_like
+    offsets : (k,) array_like
+        Distances from the contact to the left in the tangent plane, mm.
+    feed : "u", "v" or (3,) or (n, 3) array_like
+    """
+    frame, rows = contact_frame(face, uv, feed), np.atleast_2d(np.asarray(uv, dtype=float))
+    away = np.asarray(offsets, dtype=float)
+    feeds, lefts, origin, at = (np.repeat(each, len(away), axis=0) for each in
+                                (frame.feed, frame.left, face.evaluate(rows).point, rows))
+    across = np.tile(away, len(rows))
     for _ in range(_SECTION_STEPS):
         d = face.evaluate(at)
         miss_f, miss_k = dot(d.point - origin, feeds), dot(d.point - origin, lefts) - across
@@ -116,11 +132,24 @@ def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed =
         at = at - np.stack([vk * miss_f - vf * miss_k, uf * miss_k - uk * miss_f], axis=1) / det[:, None]
         if max(np.abs(miss_f).max(initial=0.0), np.abs(miss_k).max(initial=0.0)) < _CLOSE:
             break
+    return np.asarray(at.reshape(len(rows), len(away), 2))
+
+
+def section_points(face: Face, parameters: Array) -> tuple[Array, Array]:
+    """Points and normals at (n, k, 2) parameters, (n, k, 3) each; beyond its domain the surface goes straight ahead.
+
+    Parameters
+    ----------
+    face : Face
+    parameters : (n, k, 2) array
+        As `section_parameters` gives.
+    """
     (u0, u1), (v0, v1) = face.surface.domain
+    at = parameters.reshape(-1, 2)
     d = face.evaluate(at)
     normal = normals(d, face.flip, np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - at)
-    lifted = (d.point + (scallop + allowance) * normal).reshape(len(rows), 2, _PLACES, 3)
-    return Sections(point, frame.normal, places, lifted, tool, scallop, allowance)
+    shape = (*parameters.shape[:2], 3)
+    return d.point.reshape(shape), normal.reshape(shape)
 
 
 def section_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: Feed = "u",

@@ -1,0 +1,183 @@
+"""Rotary axes along a pass: conditions as they are defined, kept, and the least sum beside a general solver's."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from toolaxis.contact.scallop import RA_SHARE
+from toolaxis.contact.second_order import second_order_width
+from toolaxis.contact.section_width import expected_widths, section_width
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.kinematics import rotary_angles
+from toolaxis.orient.lane import (
+    GOUGE,
+    NARROW,
+    ROUGH,
+    WIDE,
+    Lane,
+    Wish,
+    beginnings,
+    best_roughness,
+    followed,
+    knots_of,
+    leaning,
+    windows,
+)
+from toolaxis.orient.multiscale import smoothed
+from toolaxis.orient.multiscale_pins import pinned
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+from .conftest import patch  # type: ignore[import-not-found]
+
+TOOL, H = Tool.torus(10, 3), 0.1
+WIDTHS = expected_widths(TOOL, np.radians(20.0), H)
+FACE = patch(0.5 * np.random.default_rng(11).normal(size=(5, 5)), size=25.0)
+
+
+def lane(face: Face = FACE, machine: str = "bc-table-table", step: float = 0.4, count: int = 40, apart: float = 0.6,
+         roughness: float = 1.6e-3, widths: tuple[float, float] = WIDTHS, controls: int | None = None) -> Lane:
+    places = np.linspace(0, 1, count)
+    uv = np.column_stack([places, np.full(count, step)])
+    return Lane(face, TOOL, load_machine(machine), np.eye(3), Wish(H, widths, roughness), "u", places, uv,
+                np.ones(count, dtype=bool), np.full(count, apart), np.full(count, 0.01), 800 / 60,
+                knots_of(places, controls))
+
+
+def test_margins_are_those_of_the_definitions() -> None:
+    one = lane()
+    axes = leaning(one, np.radians(17.0), 0.3)
+    margins, middle = one.margins(axes), (WIDTHS[1] - WIDTHS[0]) / 2
+    wide = section_width(FACE, TOOL, one.uv, axes, H).sum(axis=1)
+    assert np.allclose(margins[:, NARROW], (wide - WIDTHS[0]) / middle, atol=1e-12)
+    assert np.allclose(margins[:, WIDE], (WIDTHS[1] - wide) / middle, atol=1e-12)
+    swept = second_order_width(FACE, TOOL, one.uv, axes, 1e-3)  # 2 sqrt(2 h / k), k the relative curvature
+    ra = RA_SHARE * 0.6**2 * (8e-3 / swept**2) / 8
+    assert np.allclose(one.roughness(axes), ra, rtol=1e-9)
+    assert np.allclose(margins[:, ROUGH], 1 - ra / 1.6e-3, atol=1e-9)
+    assert np.allclose(one.leans(axes), np.radians(17.0), atol=1e-12) and (margins[:, GOUGE] > 0).all()
+
+
+@pytest.mark.parametrize("step", [0.15, 0.4, 0.7])
+def test_all_conditions_are_kept_and_no_neighbour_that_keeps_them_turns_less(step: float) -> None:
+    one = lane(step=step, roughness=0.85e-3)
+    found = smoothed(one, beginnings(one)[0])
+    assert found.kept and found.margins.min() >= 0
+    assert np.allclose(one.margins(found.axes), found.margins)
+    sturz = followed(one, leaning(one, np.radians(20.0)))
+    assert found.cost < sturz.cost(one.places, one.durations)
+    rng, less = np.random.default_rng(0), 0
+    for size in 10.0 ** rng.uniform(-5, -1, 300):
+        step_ = size * rng.normal(size=found.spline.control.shape)
+        other = replace(found.spline, control=found.spline.control + step_)
+        if one.margins(one.axes(other.control)).min() >= 0:
+            less += other.cost(one.places, one.durations) < found.cost * (1 - 1e-4) - 1e-6
+    assert less == 0
+
+
+def test_a_general_solver_finds_no_smaller_sum() -> None:
+    one = lane(count=24, controls=7, roughness=0.8e-3)
+    start = beginnings(one)[0]
+    found = smoothed(one, start)
+    scale = found.cost
+
+    def _spline(x):
+        return replace(start, control=x.reshape(start.control.shape))
+
+    general = minimize(lambda x: _spline(x).cost(one.places, one.durations) / scale, start.control.ravel(),
+                       method="SLSQP", options={"ftol": 1e-8, "maxiter": 300},
+                       bounds=[(x - 0.4, x + 0.4) for x in start.control.ravel()],
+                       constraints={"type": "ineq", "fun": lambda x: one.margins(one.axes(_spline(x).control)).ravel()})
+    assert one.margins(one.axes(_spline(general.x).control)).min() > -1e-5
+    assert found.kept and general.fun > 1 - 5e-3
+    again = smoothed(one, _spline(general.x))
+    assert again.cost == pytest.approx(found.cost, rel=1e-2)
+
+
+def test_ends_that_are_fixed_are_met() -> None:
+    one = lane(roughness=0.9e-3)
+    start = followed(one, leaning(one, np.radians(20.0)))
+    ends = start.angles([0.0, 1.0])
+    free = lane(roughness=0.9e-3)
+    free = replace(free, inside=np.arange(40) % 39 > 0)  # both ends count for nothing but gouging
+    found = smoothed(free, start, ends)
+    assert np.abs(found.spline.angles([0.0, 1.0]) - ends).max() < 1e-9
+    assert found.kept and found.cost >= smoothed(free, start).cost * (1 - 1e-6)
+
+
+def test_the_loop_of_the_paper_ends_and_turns_no_less() -> None:
+    one = lane(roughness=1.0e-3, apart=0.52)
+    lean, kept = windows(one)
+    loop = pinned(one, float(lean[kept[:, 0] & kept[:, -1]].max()))
+    assert loop.kept
+    ends = loop.spline.angles([0.0, 1.0])
+    ours = smoothed(replace(one, knots=loop.lane.knots), loop.spline, ends)
+    assert ours.kept and ours.cost <= loop.cost * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("machine", ["ab-trunnion", "bc-table-table", "dmg-dmu-60t", "head-head-portal",
+                                     "mikron-ucp-710", "nutating-head"])
+def test_every_machine_keeps_its_ranges(machine: str) -> None:
+    one = lane(machine=machine, roughness=0.9e-3)
+    found = smoothed(one, beginnings(one)[0])
+    angles = found.spline.angles(np.linspace(0, 1, 400))
+    for i, axis in enumerate(one.machine.rotary):
+        assert (angles[:, i] >= axis.low - 1e-9).all() and (angles[:, i] <= axis.high + 1e-9).all()
+    assert found.kept
+    back = rotary_angles(one.machine, found.axes)
+    assert back.reached.all()
+
+
+def test_a_range_that_ends_on_the_way_binds() -> None:
+    one = lane(roughness=0.9e-3)
+    free = smoothed(one, beginnings(one)[0])
+    table = one.machine.table
+    reach = free.spline.angles(one.places)
+    edge = float(np.quantile(reach[:, 1], 0.6)) - 0.01
+    tilt = RotaryAxis("B", table[1].direction, table[1].point, table[1].drive, table[1].low, edge)
+    tight = replace(one, machine=replace(one.machine, table=(table[0], tilt), bodies=()))
+    found = smoothed(tight, free.spline)
+    assert found.spline.angles(np.linspace(0, 1, 300))[:, 1].max() <= edge + 1e-9
+    assert found.cost >= free.cost - 1e-9
+
+
+def test_across_the_singular_direction_the_first_axis_does_not_race() -> None:
+    # Normals swing through the vertical, about which C turns, and with a constant lead the axis goes right through it.
+    arch = patch(np.array([[0.0, 3, 4, 3, 0]] * 5).T - 2, size=25.0)
+    one = lane(arch, roughness=2.0e-3, step=0.5, count=50)
+    straight = followed(one, leaning(one, np.full(50, np.radians(14.0)), 0.2))
+    velocities = np.abs(straight.velocities(one.places, one.durations)).max()
+    found = smoothed(one, straight)
+    assert found.kept and found.cost < 0.5 * straight.cost(one.places, one.durations)
+    assert np.abs(found.spline.velocities(one.places, one.durations)).max() < 0.8 * velocities
+
+
+def test_a_roughness_that_no_orientation_gives_is_told_with_the_best() -> None:
+    one = lane(apart=1.5, roughness=0.5e-3)
+    best = best_roughness(one)
+    assert (best > 0.5e-3).all()
+    with pytest.raises(InvalidInput, match=r"Ra 0.5 um is asked for, and near .* passes 1.5 mm apart leave") as told:
+        beginnings(one)
+    leave = float(str(told.value).split("leave ")[1].split(" um")[0])
+    assert leave == pytest.approx(1000 * best[0], rel=1e-2)
+    wide = replace(one, wish=Wish(H, WIDTHS, 1.02 * float(best.max())))
+    assert not wide.sharpest.max() == one.sharpest.max()
+    assert beginnings(wide)
+
+
+def test_a_face_too_hollow_for_the_cutter_is_told() -> None:
+    with pytest.raises(InvalidInput, match=r"no orientation near .* free of gouging"):
+        beginnings(lane(patch(np.array([[6.0, 0, -2, 0, 6]] * 5), size=6.0), apart=0.1))
+
+
+def test_wishes_that_make_no_sense() -> None:
+    with pytest.raises(InvalidInput, match="range of the strip width"):
+        Wish(H, (3.0, 2.0), 1e-3)
+    with pytest.raises(InvalidInput, match="roughness is 0 um"):
+        Wish(H, WIDTHS, 0.0)
+    with pytest.raises(InvalidInput, match="the radius of the cutter"):
+        _ = replace(lane(), tool=Tool.ball(10)).bench
