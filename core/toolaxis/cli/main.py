@@ -35,6 +35,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_verify(commands)
     _add_post(commands)
+    _add_report(commands)
     _add_batch(commands)
     return top
 
@@ -131,6 +132,16 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.post")
+
+
+def _add_report(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("report", help="write a plan as one HTML page",
+                              description="Write one self-contained HTML page that shows all of a plan and its "
+                                          "verdict; it needs no network.")
+    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+    sub.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html)")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.report")
 
 
 def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:

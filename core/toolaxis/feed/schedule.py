@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.constraints import linear_bounds
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
 from toolaxis.feed.profile import travel_time
-from toolaxis.feed.ramps import ramps
+from toolaxis.feed.ramps import Ramps, ramps
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
 from toolaxis.numeric.vectors import angle_between, unit
@@ -165,6 +165,24 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
     for kind in Motion:
         seconds[kind] += float(times[(kinds == kind) & ~curved[motions]].sum())
     return MachiningTime(seconds[Motion.CUT], seconds[Motion.ENTRY], seconds[Motion.EXIT], seconds[Motion.LINK])
+
+
+def longest_cut(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
+                table_from_part: ArrayLike | None = None) -> Ramps | None:
+    """Speeds along the longest smooth cut of a path, as `machining_time` takes it; None where there is none.
+
+    Parameters
+    ----------
+    machine, path, feeds, rotary, table_from_part
+        As for `path_schedule`.
+    """
+    moves = _moves(machine, path, rotary, table_from_part)
+    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moves.tips, axis=0), axis=1))])
+    ends = max(_smooth_cuts(moves), key=lambda piece: lengths[piece[1]] - lengths[piece[0]], default=None)
+    if ends is None:
+        return None
+    here = slice(ends[0], ends[1] + 1)
+    return ramps(moves.joints[here], moves.tips[here], feeds.cut, linear_bounds(machine), feeds.tolerance)
 
 
 def _smooth_cuts(moves: _Moves) -> list[tuple[int, int]]:

@@ -100,7 +100,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
                 _draw_contacts(plan, op, folder)
             continue
         if op.done:
-            _draw_widths(plan, op, job, folder)
+            widths_picture(width_lines(plan, op, job), (op.face, plan.tool),
+                           op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
         if op is largest:
             _draw_study(plan, op, job, folder)
 
@@ -149,7 +150,22 @@ def _baselines(plan: Plan, job: Task, sectors_too: bool) -> Mapping[str, ArrayLi
     return marks
 
 
-def _draw_widths(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
+def width_lines(plan: Plan, op: Operation, job: Task) -> list[tuple[Array, Array]]:
+    """Strip widths along the passes of an operation with a fixed axis, as it is laid out on its own.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+        With a path.
+    job : Task
+        Of `toolaxis.job.axes.search_task`.
+
+    Returns
+    -------
+    list of ((n, 3) array, (n,) array)
+        Contact points of each pass, mm, and the strip width there, mm.
+    """
     axis, feed = op.orientation.axis, op.orientation.feed
     assert axis is not None
 
@@ -164,7 +180,7 @@ def _draw_widths(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
         if len(uv) > 1:
             width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
             lines.append((op.face.evaluate(uv).point, width))
-    widths_picture(lines, (op.face, plan.tool), op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
+    return lines
 
 
 def _draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:

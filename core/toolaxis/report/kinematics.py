@@ -102,7 +102,7 @@ def feed_figure(passes: Mapping[str, Ramps], feed: float) -> Figure:
     made = figure(8.0, 3.6)
     ax = made.subplots()
     for (name, found), colour in zip(passes.items(), _COLOURS, strict=False):
-        places, speeds = _speeds(found)
+        places, speeds = speeds_along(found)
         ax.plot(places, 0.06 * speeds, color=colour, linewidth=1.6, label=f"{name}: {found.duration:.3f} s")
     if np.isfinite(feed):
         ax.axhline(0.06 * feed, color="black", linewidth=0.8, linestyle=":", label="programmed")
@@ -114,8 +114,13 @@ def feed_figure(passes: Mapping[str, Ramps], feed: float) -> Figure:
     return made
 
 
-def _speeds(found: Ramps) -> tuple[Array, Array]:
-    """Ways, mm, and speeds, mm/s, all along."""
+def speeds_along(found: Ramps) -> tuple[Array, Array]:
+    """Ways, mm, and speeds, mm/s, all along.
+
+    Parameters
+    ----------
+    found : Ramps
+    """
     places: list[Array] = []
     speeds: list[Array] = []
     for k, length in enumerate(np.diff(found.borders)):

@@ -62,10 +62,10 @@ def overview_picture(plan: Plan) -> Figure:
     middle = mean_direction(normals)
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
     arrow = (0.22 if len(operations) <= _MANY else 0.16) * float(np.linalg.norm(np.ptp(corners, axis=0)))
-    roots = np.array([_root(op) for op in operations])
+    roots = np.array([root_of(op) for op in operations])
     heads = np.array([root + (op.orientation.axis if op.orientation.axis is not None else 0 * root) * arrow
                       for op, root in zip(operations, roots, strict=True)])
-    seen = camera(*_view(middle), np.concatenate([corners, roots, heads]), pixels=1100)
+    seen = camera(*view_onto(middle), np.concatenate([corners, roots, heads]), pixels=1100)
     canvas = Canvas(seen)
     whole = {op.face.number for op in plan.operations}
     for face in plan.part.faces:
@@ -125,15 +125,26 @@ def _border(op: Operation) -> tuple[cKDTree, Array]:
     return cKDTree(rows), rows
 
 
-def _view(middle: Array) -> tuple[Array, Array]:
-    """Towards the viewer and upright: obliquely onto the mean normal."""
+def view_onto(middle: Array) -> tuple[Array, Array]:
+    """Towards the viewer and upright: obliquely onto the mean normal.
+
+    Parameters
+    ----------
+    middle : (3,) array
+        Mean normal.
+    """
     up = np.array([0.0, 0.0, 1.0]) if abs(middle[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
     side = unit(np.cross(up, middle))
     return middle + 0.45 * side - 0.65 * np.cross(middle, side), middle if abs(middle[2]) >= 0.9 else up
 
 
-def _root(op: Operation) -> Array:
-    """The point of a sub-surface nearest to its middle, (3,) mm."""
+def root_of(op: Operation) -> Array:
+    """The point of a sub-surface nearest to its middle, (3,) mm.
+
+    Parameters
+    ----------
+    op : Operation
+    """
     points = op.face.evaluate(op.face.grid(16, 16)).point
     if not len(points):
         points = op.face.evaluate(op.face.outline[0]).point

@@ -105,7 +105,7 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.inputs.method == "sturz" else ""
-    return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, _assumed(plan), _order(plan)))))
+    return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, reckoning(plan), _order(plan)))))
 
 
 def _order(plan: Plan) -> str:
@@ -136,8 +136,13 @@ def _links(op: Operation, inputs: Inputs) -> list[str]:
     return [number(op.orientation.length + op.travel, 1), clock(op.seconds(inputs.feedrate, inputs.rapid))]
 
 
-def _assumed(plan: Plan) -> str:
-    """What times are reckoned with."""
+def reckoning(plan: Plan) -> str:
+    """What times are reckoned with, as a sentence.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
     inputs = plan.inputs
     if plan.timed and plan.machine is not None:
         placed = "" if plan.machine.table_from_part is not None and plan.tool.gauge_length is not None else (
@@ -187,7 +192,7 @@ def baselines_table(plan: Plan) -> Table:
     notes = [f"{METHOD_NAMES.get(one.method, one.method)}: {one.reason}" for one in plan.baselines if one.reason]
     what = "the same faces" if plan.blades is None else "the machined sub-surfaces of the first blade"
     return table(f"{what} by other methods, each with the same proofs", columns, rows,
-                 "\n".join([_assumed(plan), *notes]))
+                 "\n".join([reckoning(plan), *notes]))
 
 
 def _baseline_row(one: Baseline, first: Baseline) -> list[str]:

@@ -1,0 +1,90 @@
+"""What a reader of a plan must know first: what has no axis, what failed, what was not checked, what stays."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from toolaxis.plan.plan import Plan, outcome_of
+
+
+@dataclass(frozen=True)
+class Warning:
+    """One sentence to be minded.
+
+    Attributes
+    ----------
+    level : str
+        "stop" (do not machine this), "mind" (not checked or left over) or "note".
+    text : str
+    """
+
+    level: str
+    text: str
+
+
+def warnings_of(plan: Plan, verdict: Mapping[str, Any] | None) -> tuple[Warning, ...]:
+    """The warnings of a plan, the gravest first.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : mapping or None
+        The document of verdict.json; None where the plan was not judged.
+    """
+    found = [*_of_outcome(plan), *_of_verdict(plan, verdict),
+             *(Warning("stop", f"between operations: {text}") for text in plan.in_the_way)]
+    unchecked = plan.not_checked if verdict is None else verdict["not_checked"]
+    if unchecked:
+        found.append(Warning("mind", f"not checked: {', '.join(unchecked)}"))
+    found += [Warning("mind", text) for text in plan.part.warnings]
+    if plan.machine is not None and plan.machine.machine.assumed:
+        found.append(Warning("mind", f"assumed in the machine's file: {', '.join(plan.machine.machine.assumed)}"))
+    found += _of_clean_up(plan)
+    order = {"stop": 0, "mind": 1, "note": 2}
+    return tuple(sorted(found, key=lambda one: order[one.level]))
+
+
+def _of_outcome(plan: Plan) -> list[Warning]:
+    found = []
+    if plan.outcome == "cancelled":
+        found.append(Warning("stop", "the plan was cancelled before all sub-surfaces were done: it is not whole"))
+    for op in plan.operations:
+        if op.done:
+            continue
+        why = "; ".join(op.orientation.reasons) or op.orientation.outcome
+        if outcome_of([op], plan.blades) == "incomplete":
+            found.append(Warning("stop", f"{op.name} has no axis: {why}"))
+        else:
+            found.append(Warning("mind", f"{op.name} is left to a clean-up tool: {why}"))
+    return found
+
+
+def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
+    if verdict is None:
+        return [Warning("stop", "not judged: run toolaxis verify on this folder before anything is machined")]
+    found = []
+    failed = {op["name"] for op in verdict["operations"] if not op["passed"]}
+    if not verdict["passed"]:
+        found.append(Warning("stop", "the verdict is FAIL" + (f": {', '.join(sorted(failed))}" if failed else "")))
+    judged = {op["name"] for op in verdict["operations"]}
+    unjudged = [op.name for op in plan.operations if op.done and op.name not in judged]
+    if unjudged:
+        found.append(Warning("stop", f"the verdict says nothing of {', '.join(unjudged)}: run toolaxis verify again"))
+    for text in verdict["reasons"]:
+        name, _, rest = text.partition(": ")
+        if name in failed:
+            found.append(Warning("stop", text))
+        elif "not checked" not in rest and "nothing to judge" not in rest:
+            found.append(Warning("note", text))
+    return found
+
+
+def _of_clean_up(plan: Plan) -> list[Warning]:
+    copies = {} if plan.blades is None else plan.blades.copies
+    zones = [zone for op in plan.operations if op.done and op.number not in copies for zone in op.zones]
+    if not zones:
+        return []
+    area, elsewhere = sum(zone.area for zone in zones), sum(zone.elsewhere for zone in zones)
+    more = f", {elsewhere:.1f} mm² of it machined by other operations" if elsewhere > 0 else ""
+    turned = " (turned copies not counted)" if copies else ""
+    return [Warning("mind", f"{len(zones)} zones, {area:.1f} mm², are left to a clean-up tool{more}{turned}")]
