@@ -47,8 +47,9 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         if op.done and op.orientation.unreached > 0:
             say(f"toolaxis: {op.name}: the plan leaves {100 * op.orientation.unreached:.1f} % of the area, at "
                 "walls, to clean-up: that share was not asked for")
-    if not_judged(plan):
-        say(f"toolaxis: not checked: {', '.join(not_judged(plan))}")
+    missing = not_judged(plan, verdict)
+    if missing:
+        say(f"toolaxis: not checked: {', '.join(missing)}")
     for reason in document["reasons"]:
         say(f"toolaxis: {reason}")
     if plan.outcome == "cancelled":

@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.machine.kinematics import placement
@@ -17,6 +20,8 @@ from toolaxis.shape.skins import own_pieces
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.verdict import OperationVerdict, Task, Verdict, judge
+
+Array = NDArray[np.float64]
 
 
 def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progress: Progress = NO_PROGRESS) -> Verdict:
@@ -67,11 +72,12 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     for index, op in enumerate(done):
         name = f"{op.name} ({index + 1} of {len(done)})"
         with heard(progress):
-            found.append(judge(_task(plan, op), spacing, threads, progress.within(name)))
+            task = _task(plan, op, done[index - 1] if index else None)
+            found.append(judge(task, spacing, threads, progress.within(name)))
     return Verdict(tuple(found))
 
 
-def _task(plan: Plan, op: Operation) -> Task:
+def _task(plan: Plan, op: Operation, last: Operation | None) -> Task:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
     around = grouped(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
@@ -87,7 +93,15 @@ def _task(plan: Plan, op: Operation) -> Task:
                 plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines,
                 plan.inputs.tolerance, min(1.0, op.orientation.unreached),
                 machine=None if machine is None else machine.machine, place=on_table,
-                tool_length=plan.tool.gauge_length)
+                tool_length=plan.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
+                before=_end_of(last))
+
+
+def _end_of(op: Operation | None) -> tuple[Array, Array, tuple[float, ...]] | None:
+    """Where an operation ends: tip, axis and rotary angles; None where its axis moves, and at the start."""
+    if op is None or op.path is None or not op.rotary or op.orientation.lead is not None:
+        return None
+    return op.path.cl[-1], op.path.axis[-1], op.rotary
 
 
 def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
@@ -101,20 +115,24 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing)],
-            "not_checked": list(not_judged(plan)),
+            "not_checked": list(not_judged(plan, verdict)),
             "operations": [_operation_document(op) for op in verdict.operations]}
 
 
-def not_judged(plan: Plan) -> tuple[str, ...]:
-    """What the verdict says nothing of: what was not given, and bodies of the machine, which planning alone looks at.
+def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:
+    """What the verdict says nothing of.
 
     Parameters
     ----------
     plan : Plan
+    verdict : Verdict
     """
-    itself = "collision with the machine itself"
     missing = [name for name in plan.not_checked if not name.startswith("collision with the machine")]
-    return (*missing, itself) if plan.machine is not None else tuple(missing)
+    if plan.machine is not None and not all("machine" in op.clearance for op in verdict.operations):
+        missing.append("collision with the machine itself")
+    elif plan.machine is not None and not all("index move" in op.clearance for op in verdict.operations[1:]):
+        missing.append("collision with the machine on index moves")
+    return tuple(missing)
 
 
 def passes(plan: Plan, verdict: Verdict) -> bool:

@@ -16,6 +16,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.bodies import Rig, least_room
 from toolaxis.verify.edges import depth_at_edges
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
@@ -30,6 +31,8 @@ Array = NDArray[np.float64]
 SHARE, FACTOR = 0.999, 1.02
 
 NOT_CHECKED = "not checked"
+#: What is judged of a machine's bodies, and what rounding of the cutter locations may cost there, mm.
+_MACHINE, ROUNDING = ("machine", "index move", "tool on index move"), 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,11 @@ class Task:
         Where the part stands on the machine's table, all axes at zero.
     tool_length : float, optional
         From the spindle's gauge point to the tip, mm.
+    rotary : tuple of float
+        Where the machine's rotary axes stand at the first location, rad: with them, place and tool length its bodies
+        are judged.
+    before : tuple of tip, axis and rotary angles, optional
+        Where the operation before ends: the index move from there is judged for bodies too.
     """
 
     name: str
@@ -92,6 +100,8 @@ class Task:
     machine: Machine | None = None
     place: Array | None = None
     tool_length: float | None = None
+    rotary: tuple[float, ...] = ()
+    before: tuple[Array, Array, tuple[float, ...]] | None = None
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):
@@ -122,7 +132,7 @@ class OperationVerdict:
     gouge_max, gouge_allowed : float
         mm; the greatest is no more than the depth to which gouges are followed.
     clearance : dict of str to Clearance or "not checked"
-        For "cutter", "shank" and "holder".
+        For "cutter", "shank" and "holder"; for "machine", where its bodies were judged, between table and spindle.
     worst_scallop, worst_gouge : tuple of Place
         The worst first; the gouge's only where it exceeds the judge's uncertainty.
     link_cut : Place or None
@@ -258,7 +268,8 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
                      enough=task.tolerance.gouge, threads=threads, progress=progress)
     uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
-    return _summed(task, (targets, skin), (_rooms(task, threads, progress), edge, link_cut), uncertainty)
+    rooms = {**_rooms(task, threads, progress), **_machine_rooms(task, progress)}
+    return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
 
 
 def _needed(task: Task, name: str) -> float:
@@ -278,6 +289,28 @@ def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance 
         rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=_needed(task, name),
                                 threads=threads, progress=progress)
     return rooms
+
+
+def _machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
+    """How near table and spindle come to each other, part and tool: on the index move before and along the passes."""
+    if task.machine is None or task.place is None or task.tool_length is None or not task.machine.bodies \
+            or len(task.rotary) != len(task.machine.rotary) or machine_faults(task.machine, task.tips, task.axes, None,
+                                                                              None):
+        return {}
+    rig = Rig(task.machine, task.place, task.tool_length, task.profile, task.outlines,
+              (*task.targets, *task.skin, *task.touching, *task.surroundings))
+    if not rig.judged:
+        return {}
+    needed, joints = task.tolerance.holder_clearance, rig.joints(task.tips, task.axes, task.rotary)
+    found = {"machine": least_room(rig, joints, needed, rig.pairs, progress)}
+    if task.before is not None:
+        tip, axis, rotary = task.before
+        ways = rig.between(rig.joints(tip[None], axis[None], rotary)[0], joints[0])
+        if ways is not None:
+            found["index move"] = least_room(rig, ways, needed, rig.pairs, progress)
+            found["tool on index move"] = least_room(rig, ways, task.tolerance.cutter_clearance, rig.tool_and_part,
+                                                     progress)
+    return found
 
 
 def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Remains]) -> Place | None:
@@ -360,6 +393,18 @@ def _machine_reasons(task: Task) -> list[str]:
     return machine_faults(task.machine, task.tips, task.axes, task.place, task.tool_length)
 
 
+def _meeting_reasons(task: Task, name: str, room: Clearance) -> list[str]:
+    """What bodies of the machine come too near, in words."""
+    need = task.tolerance.cutter_clearance if name == "tool on index move" else task.tolerance.holder_clearance
+    if room.distance >= need - ROUNDING or task.machine is None:
+        return []
+    other = room.face if room.face.startswith("face ") else f"the {room.face}"
+    met = f"comes within {room.distance:.2f} mm of {other}" if room.distance >= 0 else \
+        f"meets {other} by {-room.distance:.2f} mm"
+    when = f"on the {_motion(task, room.motion)}" if name == "machine" else "on the index move before it"
+    return [f"the {room.component} {met} at {_at(room.point)} on {task.machine.name}, needed {need} mm, {when}"]
+
+
 def _edge_reasons(task: Task, edge: Clearance) -> list[str]:
     if -edge.distance <= task.tolerance.gouge:
         return []
@@ -378,7 +423,9 @@ def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
     for name, room in rooms.items():
         need = _needed(task, name)
-        if isinstance(room, Clearance) and room.distance < min(need, FAR):
+        if name in _MACHINE and isinstance(room, Clearance):
+            reasons += _meeting_reasons(task, name, room)
+        elif isinstance(room, Clearance) and room.distance < min(need, FAR):
             verb = f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
             reasons.append(f"{name} {verb} face {room.face} at {_at(room.point)}, needed {need} mm, on the "
                            f"{_motion(task, room.motion)}")
