@@ -8,6 +8,7 @@ from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
 from toolaxis.orient.impossible import corner_too_large, tight_fillet
 from toolaxis.orient.reasons import place
+from toolaxis.path.beyond_layers import beyond_layers
 from toolaxis.path.left_over import FACTOR, also_machined, excess, left_over
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -90,6 +91,8 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
         When the user asked to stop.
     """
     assert op.path is not None and op.orientation.axis is not None
+    if plan.inputs.method.startswith("blade"):
+        return beyond_layers(op.face, op.path, op.orientation.feed)
     if op.orientation.lead is not None:  # a constant lead is taken only where it serves the whole sub-surface
         return ()
     axis, feasibility = op.orientation.axis, search_task(plan, op, progress).feasibility
