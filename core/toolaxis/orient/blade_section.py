@@ -18,11 +18,9 @@ Array = NDArray[np.float64]
 #: A section is open where its ends are farther apart than so many of its steps, and than this share of its length.
 _STEPS, _SHARE = 3.0, 0.02
 #: Tangents must fall by this much, rad, for a part to count as hollow.
-HOLLOW = np.radians(0.5)
+HOLLOW = np.radians(3.0)
 #: Pieces of a section that are compared with each other before their segments are.
 _CHUNK = 16
-#: Share of a section's length on both sides over which its flattest place is looked for.
-_FLAT = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +134,7 @@ def _cross(a: Array, b: Array) -> Array:
 def base_of(one: Section) -> int:
     """The point at which layers begin: the end of the deepest hollow, where the section turns convex again.
 
-    Of a section without a hollow, the middle of its flattest part.
+    Of a section without a hollow, the place from which the way to a quarter of a turn is longest on both sides.
 
     Parameters
     ----------
@@ -152,9 +150,9 @@ def base_of(one: Section) -> int:
     deepest = int(np.argmax(drop[count:])) + count
     if drop[deepest] > HOLLOW:
         return deepest % count
-    middle = (one.lengths[:-1] + one.lengths[1:]) / 2
-    reach = _FLAT * one.length
-    places = np.concatenate([middle - one.length, middle, middle + one.length])
-    angle = np.concatenate([one.ahead[:-1] + turns * 2 * pi for turns in (-1, 0, 1)])
-    turned = np.interp(middle + reach, places, angle) - np.interp(middle - reach, places, angle)
-    return int(np.argmin(np.round(turned, 9)))
+    turns = np.array([-1.0, 0.0, 1.0])[:, None]
+    angle = np.maximum.accumulate((one.ahead[:-1] + 2 * pi * turns).ravel())
+    places = (one.lengths[:-1] + one.length * turns).ravel()
+    here = one.lengths[:-1]
+    ahead, before = (np.interp(one.ahead[:-1] + sense * pi / 2, angle, places) for sense in (1, -1))
+    return int(np.argmax(np.round(np.minimum(ahead - here, here - before), 6)))
