@@ -6,9 +6,11 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.orient.indexed import task
+from toolaxis.orient.laying import made
 from toolaxis.orient.moving import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
 from toolaxis.orient.setting import Group
 from toolaxis.orient.sturz import Sturz, sturz
+from toolaxis.path.leading import LeadChart
 from toolaxis.shape.nearest import nearest
 from toolaxis.tools.assembly import Tool
 
@@ -92,14 +94,14 @@ def test_a_bowl_asks_for_the_lead_at_which_the_heel_clears_it() -> None:
 def test_a_lead_that_gouges_is_found_out_at_points() -> None:
     job = task(bowl(60.0, 10.0), Tool.flat(10), H)
     search = Sturz(job)
-    _, path = search.made(search.cut(np.radians(2.0), "u"))
+    _, path = made(job, LeadChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
     witness = prove_moving(path, job.worth.tool, job.groups).witness
     assert witness is not None and witness.distance < -0.01
 
 
 def test_positions_looked_at_lie_close() -> None:
-    search = Sturz(task(seeded(5, 0.5), TOOL, H))
-    _, path = search.made(search.cut(np.radians(20.0), "v"))
+    job = task(seeded(5, 0.5), TOOL, H)
+    _, path = made(job, LeadChart(job.worth.face, "v"), Sturz(job).cut(np.radians(20.0), "v"))
     spans = spans_of(path).rows(np.flatnonzero(path.kind[1:] == Motion.CUT))
     tips = standing(spans)[:, 0]
     for share in (0.0, 0.3, 0.77, 1.0):

@@ -165,6 +165,25 @@ def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tu
             np.asarray(along * y * y + across * x * x - forms[:, 11]))
 
 
+def screen_many(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+    """Second-order half widths of many axes at many contacts, (k, n).
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As of `contact_forms`.
+    axes : (k, 3) array
+        Unit vectors.
+    cutter : (6,) array
+        As of `toolaxis.contact.sizes.cutter_numbers`.
+    scallop : float
+        mm
+    """
+    out = np.empty((len(axes), len(forms)))
+    (_screen if _compiled.available else screen_numpy)(forms, np.ascontiguousarray(axes), cutter, float(scallop), out)
+    return out
+
+
 def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
     """Second-order half widths of contacts with an axis each, (n,).
 
@@ -179,14 +198,9 @@ def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) 
     scallop : float
         mm
     """
-    screen = _screen if _compiled.available else screen_numpy
-    out = np.empty(len(forms))
-    for begin in range(0, len(forms), _TOGETHER):
-        part = slice(begin, begin + _TOGETHER)
-        square = np.empty((len(forms[part]),) * 2)
-        screen(forms[part], np.ascontiguousarray(axes[part]), cutter, float(scallop), square)
-        out[part] = np.diagonal(square)
-    return out
+    parts = [slice(begin, begin + _TOGETHER) for begin in range(0, len(forms), _TOGETHER)]
+    return np.concatenate([np.diagonal(screen_many(forms[part], axes[part], cutter, scallop)) for part in parts]
+                          or [np.empty(0)])
 
 
 def contact_forms(face: Face, uv: ArrayLike, feed: Feed, steps: bool) -> Array:
@@ -254,10 +268,7 @@ def second_order_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLik
     """
     cutter = cutter_numbers(tool, scallop, 0.0)
     forms = contact_forms(face, uv, feed, steps)
-    rows = np.ascontiguousarray(unit(as_rows(axes, 3, "axes")))
-    out = np.empty((len(rows), len(forms)))
-    (_screen if _compiled.available else screen_numpy)(forms, rows, cutter, float(scallop), out)
-    return out
+    return screen_many(forms, np.asarray(unit(as_rows(axes, 3, "axes"))), cutter, scallop)
 
 
 def second_order_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float,

@@ -11,30 +11,18 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import judged, motions
 from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placing import place
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
-from toolaxis.machine.limits import ROUNDING, AxisLimits
-from toolaxis.numeric.vectors import unit
 from toolaxis.orient.contacts import around
-from toolaxis.orient.indexed import CROSSING, Task
-from toolaxis.orient.mounted import mounting_of
-from toolaxis.orient.moving import MovingCrossing, prove_moving
-from toolaxis.orient.proof import Proof
+from toolaxis.orient.indexed import Task
+from toolaxis.orient.laying import CHECKED, laid
 from toolaxis.orient.reasons import sentence
-from toolaxis.orient.setting import OTHER, SKIN
-from toolaxis.orient.verdicts import BACK, LIMITS, Witness
+from toolaxis.orient.verdicts import Witness
 from toolaxis.orient.worth import FEEDS
-from toolaxis.path.chart import tip_points
-from toolaxis.path.following import follow
-from toolaxis.path.layout import Layout, lay_out
 from toolaxis.path.leading import LeadChart, LeadCut
-from toolaxis.path.linking import Linking
-from toolaxis.path.swivelling import MovingStroke, Swivelling, joined
-from toolaxis.path.tracing import climbing
 from toolaxis.plan.orientation import Orientation
 
 Array = NDArray[np.float64]
@@ -50,8 +38,6 @@ _GRID, _BORDER, _ALONG, _ACROSS = 28, 120, 13, 9
 _BEYOND = 1.04
 #: How many of the best leads are tried, and how often the gap to the last one that was refused is halved.
 _TRIED, _CLOSER = 8, 2
-CHECKED = ("the cutter on the machined skin is checked at points of the path, 0.5 mm and 0.5 deg apart at most; all "
-           "other distances are proven along it")
 
 
 @dataclass(frozen=True)
@@ -167,46 +153,6 @@ class Sturz:
         counts = (s1 - s0) / _ACROSS / wide.min(axis=1)
         return _Lead(lead, feed, float(counts.sum()), float((counts * lengths).sum()))
 
-    def made(self, one: LeadCut) -> tuple[Layout, ToolPath]:
-        """Passes with their links.
-
-        Parameters
-        ----------
-        one : LeadCut
-        """
-        job = self.job
-        placed = lay_out(LeadChart(self.face, one.feed), one, progress=job.progress)
-        chart, tolerance = placed.chart, job.feasibility.tolerance
-        piece, along = follow(chart, one, placed.pieces, min(tolerance.chord_for(one.scallop), tolerance.gouge / 2))
-        steps = placed.pieces[piece, 2]
-        rows = (*tip_points(chart, one, along, steps), one.axes(self.face, chart.uv(along, steps)))
-        strokes = [MovingStroke(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
-        return placed, joined(_ordered(strokes, placed, job.direction), self._links(one))
-
-    def _links(self, one: LeadCut) -> Swivelling:
-        groups = self.job.groups
-        walls = any(group.role == OTHER or (group.role == SKIN and any(face is not self.face for face in group.faces))
-                    for group in groups)
-        low, high = self.job.box
-        height = float(np.maximum(low * one.axis, high * one.axis).sum()) + CROSSING
-        crossing = MovingCrossing(self.tool, groups, one.allowance)
-        return Swivelling(Linking(height, run_in=0.0 if walls else 1.0), one.axis, self.tool, crossing.clear)
-
-
-def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> list[list[MovingStroke]]:
-    """Strokes of each pass in the order and sense in which they are cut."""
-    climb = climbing(placed.chart, placed.cut)
-    passes: list[list[MovingStroke]] = []
-    for i in np.unique(placed.owner):
-        members = [strokes[j] for j in np.flatnonzero(placed.owner == i)]
-        sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
-        passes.append(members if sense > 0 else [_back(one) for one in reversed(members)])
-    return passes
-
-
-def _back(one: MovingStroke) -> MovingStroke:
-    return MovingStroke(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
-
 
 def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
     """The constant lead that machines a face in the shortest passes, or the fewest, and those passes.
@@ -271,35 +217,11 @@ def _closer(search: Sturz, best: tuple[Orientation, ToolPath | None],
     return best
 
 
-def _beyond(limits: AxisLimits | None, path: ToolPath) -> Witness | None:
-    """Why the machine among limits cannot follow a path with one solution, without jumps and inside its travel."""
-    mounting = mounting_of(limits)
-    if mounting is None:
-        return None
-    try:
-        following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
-                  travel=mounting.judges_travel)
-    except InvalidInput as reason:
-        return Witness(LIMITS, ROUNDING, words=str(reason))
-    return None
-
-
 def _tried(search: Sturz, cut: LeadCut) -> tuple[Orientation, ToolPath | None, Witness | None]:
     """What one lead comes to: its passes made and judged."""
-    job = search.job
-    try:
-        placed, path = search.made(cut)
-    except InvalidInput as reason:  # a place between the screened ones leaves no strip
-        return Orientation(None, cut.feed), None, Witness(BACK, 0.0, words=str(reason))
-    limits = job.feasibility.limits
-    if limits is not None and not limits.allowed(path.axis).all():
-        return Orientation(None, cut.feed), None, Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the "
-                                                          "passes, where they run out")
-    beyond = _beyond(limits, path)
-    if beyond is not None:
-        return Orientation(None, cut.feed), None, beyond
-    proof: Proof = prove_moving(path, search.tool, job.groups, job.worth.allowance, progress=job.progress)
-    length, axis = path.length(Motion.CUT), np.asarray(unit(path.axis.mean(axis=0)))
-    return Orientation(axis, cut.feed, path.passes, placed.used, length, search.face.area / length, proof.gouge,
-                       proof.clearance, "feasible", (f"lead {degrees(cut.lead):.2f} deg towards {cut.feed}", CHECKED),
-                       evaluations=search.tried, lead=cut.lead), path, proof.witness
+    chart = LeadChart(search.face, cut.feed)
+    found = laid(search.job, chart, cut)
+    if found.witness is not None:
+        return Orientation(None, cut.feed), found.path, found.witness
+    words = (f"lead {degrees(cut.lead):.2f} deg towards {cut.feed}", CHECKED)
+    return found.orientation(search.job, cut, words, search.tried, cut.lead), found.path, None

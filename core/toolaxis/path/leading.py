@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame, frame_from_normal
+from toolaxis.contact.frame import Frame, axis_from_lead_tilt, contact_frame, frame_from_normal
 from toolaxis.contact.moving import least_distance_to_positions
 from toolaxis.contact.placing import tips
 from toolaxis.contact.sizes import CAP, cutter_numbers
@@ -56,6 +56,17 @@ class LeadCut(Cut):
         uv : (n, 2) array
         """
         return axis_from_lead_tilt(contact_frame(face, uv, self.feed), self.lead, 0.0)
+
+    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
+        """The same at contacts, beyond the face too, whose frames are known, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        frame : Frame
+        """
+        return axis_from_lead_tilt(frame, self.lead, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +122,9 @@ class LeadChart(IsoChart):
         speed = np.linalg.norm(d.su if self.feed == "u" else d.sv, axis=1)
         reach = _WINDOW * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9)
         t = np.linspace(-1.0, 1.0, 2 * _POSITIONS + 1)
-        near, normal = self._seen(self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t))))
-        axes = axis_from_lead_tilt(frame_from_normal(normal, near.su if self.feed == "u" else near.sv), cut.lead, 0.0)
+        uv = self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t)))
+        near, normal = self._seen(uv)
+        axes = cut.axes_near(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
         shape = (len(along), len(t), 3)
         return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
 

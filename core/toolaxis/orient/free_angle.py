@@ -1,0 +1,187 @@
+"""The free angle over a face: the widest strips that turning smoothly leaves, and the smoothest angle that keeps them.
+
+Nodes stand along the passes (i) and across them (k), angles on a grid (j).  Passes go from the middle one outwards;
+dynamic programming finds for each the angles with the widest strip against a charge on turning, along it and from the
+pass beside it.  Around these angles lie bands in which the strip stays as wide, and the smoothest angle inside all
+bands is a bounded linear least-squares problem.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+#: How sharply a narrow place of a pass counts against its wider ones, and what a turn by a tenth of a rad between two
+#: nodes costs, along the pass and from pass to pass, in shares of one node's strip.
+_POWER, _ALONG, _ACROSS = 8, 0.02, 0.02
+_TENTH = 0.1
+#: Weights of slopes along and across against bends, which are what accelerates the axis.
+_SLOPE = 0.02
+_TIGHT = {"maxiter": 2_000, "maxfun": 4_000, "ftol": 1e-13, "gtol": 1e-8}
+#: How often bounds that hold are exchanged, and by how much angles may pass them, rad.
+_EXCHANGES, _TOUCH = 60, 1e-10
+#: Greatest turn between two nodes, along a pass and from pass to pass, rad: more would be a jump.
+_MOST = 0.5
+
+
+def widest(widths: Array, angles: Array) -> Index | None:
+    """The angles with the widest strips that turn gently, (i, k) places on the grid of angles.
+
+    Parameters
+    ----------
+    widths : (j, i, k) array
+        Strip widths of each angle at each node in one unit; 0 where the angle must not be used.
+    angles : (j,) array
+        Even, rad.
+
+    Returns
+    -------
+    (i, k) array of int, or None where there are none without a jump.
+
+    Notes
+    -----
+    **Source**: [zhu2016] Sec. 5.4.2 takes the widest strip at every sample by itself; here the angles belong together.
+    """
+    best = widths.max(axis=0)
+    if not (best > 0).all():
+        return None
+    least = best.min(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        price = np.where(widths > 0, (np.where(np.isfinite(least), least, 0.0) / widths) ** _POWER, np.inf)
+    apart = np.abs(angles[:, None] - angles)
+    turn, usable = np.where(apart <= _MOST, (apart / _TENTH) ** 2, np.inf), widths > 0
+    chosen = np.empty(best.shape, dtype=np.intp)
+    middle = best.shape[1] // 2
+    chosen[:, middle] = _cheapest(price[:, :, middle], turn, usable[:, :, middle])
+    for k in (*range(middle + 1, best.shape[1]), *range(middle - 1, -1, -1)):
+        last = k - 1 if k > middle else k + 1
+        walls = _walls(usable[:, :, k], usable[:, :, last])
+        beside = chosen[:, last]
+        over = walls != np.take_along_axis(walls, beside[None], axis=0)
+        charge = np.where(over, np.inf, _ACROSS * turn[:, beside])
+        chosen[:, k] = _cheapest(price[:, :, k] + charge, turn, usable[:, :, k])
+    steps = (np.abs(np.diff(angles[chosen], axis=axis)).max(initial=0.0) for axis in (0, 1))
+    used = np.take_along_axis(widths, chosen[None], axis=0)[0]
+    return chosen if (used > 0).all() and max(steps) <= _MOST else None
+
+
+def _walls(one: Bools, other: Bools) -> Index:
+    """Numbers of angles (j, ...) up to each that two nodes both forbid: between angles with the same none does."""
+    return np.asarray(np.cumsum(~(one | other), axis=0))
+
+
+def _cheapest(price: Array, turn: Array, usable: Bools) -> Index:
+    """Places of the angles (i,) with the least sum of prices (j, i) and charges on turning.
+
+    An angle that both of two nodes forbid is not turned across between them.
+    """
+    count = price.shape[1]
+    walls = _walls(usable[:, :-1], usable[:, 1:])
+    total, origin = price[:, 0].copy(), np.empty((count, len(price)), dtype=np.intp)
+    for i in range(1, count):
+        wall = walls[:, i - 1]
+        ways = total[None] + _ALONG * turn + np.where(wall[:, None] == wall, 0.0, np.inf)
+        origin[i] = ways.argmin(axis=1)
+        total = ways[np.arange(len(total)), origin[i]] + price[:, i]
+    chosen = np.empty(count, dtype=np.intp)
+    chosen[-1] = int(total.argmin())
+    for i in range(count - 1, 0, -1):
+        chosen[i - 1] = origin[i, chosen[i]]
+    return chosen
+
+
+def narrowest(widths: Array, chosen: Index) -> Array:
+    """Least strip width of each pass, (k,).
+
+    Parameters
+    ----------
+    widths : (j, i, k) array
+    chosen : (i, k) array of int
+    """
+    return np.asarray(np.take_along_axis(widths, chosen[None], axis=0)[0].min(axis=0))
+
+
+def bands(widths: Array, angles: Array, chosen: Index, share: float) -> tuple[Array, Array]:
+    """Angles around those chosen at which no strip is narrower than a share of the narrowest of its pass, (i, k) each.
+
+    Parameters
+    ----------
+    widths : (j, i, k) array
+    angles : (j,) array
+        rad
+    chosen : (i, k) array of int
+    share : float
+        Of the width that a pass has at its narrowest place, 0 to 1.
+
+    Returns
+    -------
+    low, high : (i, k) array
+        rad; up to half a step short of the first angle that does not do.
+    """
+    good = widths >= share * narrowest(widths, chosen)
+    low, high, count = chosen.copy(), chosen.copy(), len(angles)
+    for _ in range(count):
+        down, up = np.maximum(low - 1, 0), np.minimum(high + 1, count - 1)
+        low = np.where(np.take_along_axis(good, down[None], axis=0)[0], down, low)
+        high = np.where(np.take_along_axis(good, up[None], axis=0)[0], up, high)
+    return angles[low], angles[high]
+
+
+def smoothest(low: Array, high: Array, along: Array, step: Array) -> Array:
+    """Angles between bounds with the least bends, (i, k) rad.
+
+    Parameters
+    ----------
+    low, high : (i, k) array
+        rad
+    along, step : (i,), (k,) array
+        Places of the nodes in mm, even.
+
+    Notes
+    -----
+    **Properties**: 1. inside the bounds; 2. no other angles inside them have a smaller sum of squared second
+    differences, mixed ones included, and small shares of first ones; 3. constant where a constant fits in.
+    """
+    common = float(low.max()), float(high.min())
+    if common[0] <= common[1]:
+        return np.full(low.shape, (common[0] + common[1]) / 2)
+    n, m = low.shape
+    ratio = ((step[-1] - step[0]) / (m - 1)) / ((along[-1] - along[0]) / (n - 1))
+    one, two = ((_differences(n, order), _differences(m, order) / ratio**order) for order in (1, 2))
+    rows = np.concatenate([np.kron(two[0], np.eye(m)), np.kron(np.eye(n), two[1]), np.sqrt(2.0) * np.kron(*one),
+                           _SLOPE * np.kron(one[0], np.eye(m)), _SLOPE * np.kron(np.eye(n), one[1])])
+    return _least_form(rows.T @ rows, low.ravel(), np.maximum(high, low).ravel()).reshape(n, m)
+
+
+def _least_form(form: Array, low: Array, high: Array) -> Array:
+    """The least of a positive definite form x form x between bounds: those that hold are exchanged until none is wrong.
+    """
+    x = (low + high) / 2
+    held = np.zeros(len(x), dtype=np.int8)
+    for _ in range(_EXCHANGES):
+        free = held == 0
+        x = np.where(held < 0, low, np.where(held > 0, high, x))
+        x[free] = np.linalg.solve(form[np.ix_(free, free)], -form[np.ix_(free, ~free)] @ x[~free])
+        slope = form @ x
+        new = np.where(free, np.where(x < low - _TOUCH, -1, np.where(x > high + _TOUCH, 1, 0)),
+                       np.where(held * slope > 0, 0, held))
+        if (new == held).all():
+            return np.clip(x, low, high)
+        held = new.astype(np.int8)
+    return _by_descent(form, low, high)
+
+
+def _by_descent(form: Array, low: Array, high: Array) -> Array:
+    """The same where exchanging goes round in circles."""
+    from scipy.optimize import minimize
+
+    found = minimize(lambda x: (x @ form @ x / 2, form @ x), (low + high) / 2, jac=True, method="L-BFGS-B",
+                     bounds=list(zip(low, high, strict=True)), options=_TIGHT)
+    return np.asarray(np.clip(found.x, low, high), dtype=float)
+
+
+def _differences(count: int, order: int) -> Array:
+    """First or second differences of so many numbers, as a matrix."""
+    return np.asarray(np.diff(np.eye(count), order, axis=0))

@@ -1,0 +1,169 @@
+"""Passes with a moving axis laid over a face, joined, followed by the machine, and proven."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import following
+from toolaxis.machine.limits import ROUNDING, AxisLimits
+from toolaxis.numeric.vectors import unit
+from toolaxis.orient.indexed import CROSSING, Task
+from toolaxis.orient.mounted import mounting_of
+from toolaxis.orient.moving import MovingCrossing, prove_moving
+from toolaxis.orient.proof import Proof
+from toolaxis.orient.setting import OTHER, SKIN
+from toolaxis.orient.verdicts import BACK, LIMITS, Witness
+from toolaxis.path.chart import tip_points
+from toolaxis.path.following import follow
+from toolaxis.path.layout import Layout, lay_out
+from toolaxis.path.leading import LeadChart, LeadCut
+from toolaxis.path.linking import Linking
+from toolaxis.path.swivelling import MovingStroke, Swivelling, joined
+from toolaxis.path.tracing import climbing
+from toolaxis.plan.orientation import Orientation
+
+Array = NDArray[np.float64]
+
+CHECKED = ("the cutter on the machined skin is checked at points of the path, 0.5 mm and 0.5 deg apart at most; all "
+           "other distances are proven along it")
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """Passes that were laid, or why they may not be used.
+
+    Attributes
+    ----------
+    placed : Layout or None
+    path : ToolPath or None
+    witness : Witness or None
+        What speaks against them.
+    proof : Proof or None
+    """
+
+    placed: Layout | None = None
+    path: ToolPath | None = None
+    witness: Witness | None = None
+    proof: Proof | None = None
+
+    def orientation(self, job: Task, cut: LeadCut, words: tuple[str, ...], tried: int, lead: float) -> Orientation:
+        """What passes without a witness come to.
+
+        Parameters
+        ----------
+        job : Task
+        cut : LeadCut
+        words : tuple of str
+            The reasons.
+        tried : int
+            Axes looked at.
+        lead : float
+            rad
+        """
+        assert self.placed is not None and self.path is not None and self.proof is not None
+        length = self.path.length(Motion.CUT)
+        return Orientation(np.asarray(unit(self.path.axis.mean(axis=0))), cut.feed, self.path.passes, self.placed.used,
+                           length, job.worth.face.area / length, self.proof.gouge, self.proof.clearance, "feasible",
+                           words, evaluations=tried, lead=lead)
+
+
+def laid(job: Task, chart: LeadChart, cut: LeadCut,
+         finish: Callable[[ToolPath], ToolPath] = lambda path: path) -> Laid:
+    """Passes of a cut with a moving axis, made and judged.
+
+    Parameters
+    ----------
+    job : Task
+    chart : LeadChart
+    cut : LeadCut
+    finish : callable
+        What is done to the path before it is judged.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    try:
+        placed, path = made(job, chart, cut)
+    except InvalidInput as reason:  # a place between the screened ones leaves no strip
+        return Laid(witness=Witness(BACK, 0.0, words=str(reason)))
+    path, limits = finish(path), job.feasibility.limits
+    if limits is not None and not limits.allowed(path.axis).all():
+        return Laid(witness=Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes, where they run "
+                                                            "out"))
+    witness = beyond(limits, path)
+    if witness is not None:
+        return Laid(witness=witness)
+    proof = prove_moving(path, cut.tool, job.groups, job.worth.allowance, progress=job.progress)
+    return Laid(placed, path, proof.witness, proof)
+
+
+def made(job: Task, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
+    """Passes with their links.
+
+    Parameters
+    ----------
+    job : Task
+    chart : LeadChart
+    cut : LeadCut
+
+    Raises
+    ------
+    InvalidInput
+        When the axis leaves no strip somewhere, or a retract along it leads nowhere.
+    """
+    placed, tolerance = lay_out(chart, cut, progress=job.progress), job.feasibility.tolerance
+    piece, along = follow(chart, cut, placed.pieces, min(tolerance.chord_for(cut.scallop), tolerance.gouge / 2))
+    steps = placed.pieces[piece, 2]
+    rows = (*tip_points(chart, cut, along, steps), cut.axes(chart.face, chart.uv(along, steps)))
+    strokes = [MovingStroke(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
+    return placed, joined(_ordered(strokes, placed, job.direction), _links(job, cut))
+
+
+def _links(job: Task, cut: LeadCut) -> Swivelling:
+    face = job.worth.face
+    walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
+                for group in job.groups)
+    low, high = job.box
+    height = float(np.maximum(low * cut.axis, high * cut.axis).sum()) + CROSSING
+    crossing = MovingCrossing(cut.tool, job.groups, cut.allowance)
+    return Swivelling(Linking(height, run_in=0.0 if walls else 1.0), cut.axis, cut.tool, crossing.clear)
+
+
+def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> list[list[MovingStroke]]:
+    """Strokes of each pass in the order and sense in which they are cut."""
+    climb = climbing(placed.chart, placed.cut)
+    passes: list[list[MovingStroke]] = []
+    for i in np.unique(placed.owner):
+        members = [strokes[j] for j in np.flatnonzero(placed.owner == i)]
+        sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
+        passes.append(members if sense > 0 else [_back(one) for one in reversed(members)])
+    return passes
+
+
+def _back(one: MovingStroke) -> MovingStroke:
+    return MovingStroke(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
+
+
+def beyond(limits: AxisLimits | None, path: ToolPath) -> Witness | None:
+    """Why the machine among limits cannot follow a path with one solution, without jumps and inside its travel.
+
+    Parameters
+    ----------
+    limits : AxisLimits or None
+    path : ToolPath
+    """
+    mounting = mounting_of(limits)
+    if mounting is None:
+        return None
+    try:
+        following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
+                  travel=mounting.judges_travel)
+    except InvalidInput as reason:
+        return Witness(LIMITS, ROUNDING, words=str(reason))
+    return None

@@ -1,0 +1,105 @@
+"""The free angle over a face: as wide as brute force finds, as smooth as a general solver, and never through walls."""
+
+from itertools import pairwise, product
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from toolaxis.orient import free_angle
+from toolaxis.orient.free_angle import bands, narrowest, smoothest, widest
+
+ANGLES = np.radians(np.linspace(-10, 10, 5))
+
+
+def _price(widths, chosen):
+    """What dynamic programming makes least on one pass, written again."""
+    width = widths[list(chosen), np.arange(len(chosen))]
+    if (width <= 0).any():
+        return np.inf
+    turn = np.diff(ANGLES[list(chosen)]) / free_angle._TENTH
+    least = widths.max(axis=0).min()
+    for i, (a, b) in enumerate(pairwise(chosen)):
+        low, high = min(a, b), max(a, b)
+        if ((widths[low:high + 1, i] <= 0) & (widths[low:high + 1, i + 1] <= 0)).any():
+            return np.inf
+    return float(((least / width) ** free_angle._POWER).sum() + free_angle._ALONG * (turn**2).sum())
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_one_pass_is_that_of_brute_force(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    widths = rng.uniform(0.2, 1.0, (5, 4)) * (rng.random((5, 4)) > 0.25)
+    rows = sorted((_price(widths, chosen), chosen) for chosen in product(range(5), repeat=4))
+    found = widest(widths[:, :, None], ANGLES)
+    if not np.isfinite(rows[0][0]):
+        assert found is None
+    else:
+        assert found is not None and _price(widths, found[:, 0]) == pytest.approx(rows[0][0], rel=1e-12)
+
+
+def test_an_angle_that_two_places_forbid_is_not_turned_across() -> None:
+    widths = np.ones((5, 2, 1))
+    widths[2] = 0.0
+    widths[:2, 0], widths[3:, 1] = 0.0, 0.0  # above the wall at first, below it then
+    assert widest(widths, ANGLES) is None
+    widths[2, 1] = 0.5
+    assert widest(widths, ANGLES) is not None
+
+
+def test_bands_hold_wide_strips_alone() -> None:
+    rng = np.random.default_rng(3)
+    widths = rng.uniform(0.5, 1.0, (9, 6, 4))
+    angles = np.radians(np.linspace(-20, 20, 9))
+    chosen = widest(widths, angles)
+    assert chosen is not None
+    low, high = bands(widths, angles, chosen, 0.9)
+    inside = (angles[:, None, None] >= low - 1e-12) & (angles[:, None, None] <= high + 1e-12)
+    assert (widths >= 0.9 * narrowest(widths, chosen) - 1e-12)[inside].all()
+    assert (low <= angles[chosen]).all() and (high >= angles[chosen]).all()
+
+
+def _rows(n: int, m: int) -> np.ndarray:
+    """The sums of squares that are to be least, written again for even spacing of one mm."""
+    names = np.arange(n * m).reshape(n, m)
+    out = []
+
+    def add(places, weights):
+        row = np.zeros(n * m)
+        row[list(places)] += weights
+        out.append(row)
+
+    for i, k in product(range(n), range(m)):
+        if i + 2 < n:
+            add(names[i:i + 3, k], [1, -2, 1])
+        if k + 2 < m:
+            add(names[i, k:k + 3], [1, -2, 1])
+        if i + 1 < n and k + 1 < m:
+            add(names[i:i + 2, k:k + 2].ravel(), np.sqrt(2.0) * np.array([1, -1, -1, 1]))
+        if i + 1 < n:
+            add(names[i:i + 2, k], 0.02 * np.array([-1, 1]))
+        if k + 1 < m:
+            add(names[i, k:k + 2], 0.02 * np.array([-1, 1]))
+    return np.array(out)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_smoothest_angles_are_those_of_a_general_solver(seed: int) -> None:
+    rng, n, m = np.random.default_rng(seed), 7, 6
+    x, y = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    middle = np.sin(x + 0.4 * y) + 0.4 * rng.normal(size=(n, m))
+    low, high = middle - 0.3 * rng.random((n, m)), middle + 0.3 * rng.random((n, m))
+    found = smoothest(low, high, np.arange(n, dtype=float), np.arange(m, dtype=float))
+    rows = _rows(n, m)
+    best = lsq_linear(rows, np.zeros(len(rows)), (low.ravel(), high.ravel()), method="bvls", tol=1e-12)
+    assert (found >= low).all() and (found <= high).all()
+    assert ((rows @ found.ravel()) ** 2).sum() == pytest.approx(2 * best.cost, rel=1e-8)
+    again = free_angle._by_descent(rows.T @ rows, low.ravel(), high.ravel())
+    assert ((rows @ again) ** 2).sum() == pytest.approx(2 * best.cost, rel=1e-4)
+
+
+def test_a_constant_that_fits_is_taken() -> None:
+    low, high = np.full((5, 5), -0.1), np.full((5, 5), 0.3)
+    low[2, 2], high[4, 1] = 0.1, 0.2
+    found = smoothest(low, high, np.arange(5.0), np.arange(5.0))
+    assert np.ptp(found) == 0.0 and 0.1 <= found[0, 0] <= 0.2
