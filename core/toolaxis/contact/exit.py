@@ -6,13 +6,13 @@ the second-order solution; it is then checked to be the first one and not covere
 a check fails, a march along the cross curve with the global minimum over w finds it instead.
 """
 
-from math import inf, sqrt
+from math import inf, isnan, nan, sqrt
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.curves import Curve, Scratch
+from toolaxis.contact.curves import ALONG_U, SECTION, Curve, Scratch
 from toolaxis.contact.newton import exit_step
 from toolaxis.contact.swept import Setting, gap_rates, lifted_point, pair_of, pass_tip, scan_pass, signed_distance
 from toolaxis.numeric.compiled import built_in, compiled
@@ -25,6 +25,10 @@ Road: TypeAlias = tuple[Array, Array, int, int]
 """Nodes of the pass, room for their distances and slopes, first and last row."""
 Lengths: TypeAlias = tuple[float, float, float, float]
 """Lift h + A, radius R, cap of a half width, spacing of the nodes; mm."""
+
+#: Where it is looked whether all up to a pole is covered, as a share of the last step: at the pole itself there is no
+#: normal.
+_BEFORE = 1e-6
 
 
 @compiled
@@ -251,6 +255,17 @@ def _root(job: Job, lengths: Lengths, inside: float, outside: float,
     return outside
 
 
+@built_in
+def _pole_between(job: Job, s: float, ahead: float) -> float:
+    """The end of the surface on an iso-curve between two parameters; NaN where there is none."""
+    surface, cross = job[0][0], job[2]
+    if cross[0] == SECTION:
+        return nan
+    knots, degree = (surface[0], surface[3]) if cross[0] == ALONG_U else (surface[1], surface[4])
+    end = knots[degree] if ahead < s else knots[knots.shape[0] - degree - 1]
+    return float(end) if min(s, ahead) < end < max(s, ahead) else nan
+
+
 @compiled
 def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road, memory: Memory) -> float:
     """The first exit by steps along the cross curve.
@@ -264,19 +279,29 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
     Returns
     -------
     float
-        s of the exit, or where the polyline of the steps reaches the cap.
+        s of the exit, or where the polyline of the steps reaches the cap, or the pole at which an iso-curve ends and
+        the normal turns over.
     """
     setting, _, cross = job
     s0, stride = move
     state, point = memory[0], memory[2]
     lifted_point(setting, cross, s0, lengths[0], memory)
     x, y, z = state[0, 0], state[0, 1], state[0, 2]
+    a, b, c = state[2, 0], state[2, 1], state[2, 2]
     pace = sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2)
     s = s0
     walked = 0.0
     while pace > 1e-300:
         ahead = s + stride / pace
         lifted_point(setting, cross, ahead, lengths[0], memory)
+        if a * state[2, 0] + b * state[2, 1] + c * state[2, 2] < 0.0:
+            pole = _pole_between(job, s, ahead)
+            if not isnan(pole):
+                before = pole + _BEFORE * (s - pole)
+                if swept_distance(job, lengths, before, road, memory)[0] < 0.0:
+                    return pole
+                return _root(job, lengths, s, before, (road, memory))
+        a, b, c = state[2, 0], state[2, 1], state[2, 2]
         piece = sqrt((state[0, 0] - x) ** 2 + (state[0, 1] - y) ** 2 + (state[0, 2] - z) ** 2)
         pace = max(sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2), 0.25 * pace)
         x, y, z = state[0, 0], state[0, 1], state[0, 2]

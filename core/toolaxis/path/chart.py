@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 #: Share of the range across passes that is kept from a pole, where they have no direction.
 _POLE = 1e-3
 
+#: Strips that end nearer to a pole than this share of their width reach it: at the pole itself there is no normal.
+_AT = 1e-6
+
 #: Lines are kept this share of the range off its ends: there the noise of a loop along the end, and no more than that,
 #: would decide which parts of a line are inside.
 _EDGE = 1e-5
@@ -201,10 +204,19 @@ class IsoChart:
         return np.stack([along, step], axis=1)[:, self._order]
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
-        """Half widths (n, 2) in the step parameter, towards its lower and its upper end; at a pole those before it."""
+        """Half widths (n, 2) in the step parameter, towards its lower and its upper end; at a pole those before it.
+
+        A strip that reaches a pole ends there.
+        """
         step = np.clip(step, *self._poles)
-        return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
-                                      cut.allowance))
+        found = np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
+                                       cut.allowance))
+        for side in (0, 1):
+            if np.isfinite(self._poles[side]):
+                room = np.abs(self._range[2 + side] - step)
+                found[:, side] = np.where(found[:, side] > (1 - _AT) * room, np.maximum(found[:, side], room),
+                                          found[:, side])
+        return found
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""

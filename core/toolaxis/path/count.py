@@ -20,6 +20,9 @@ _EXACT_GAPS = 12
 _HALVINGS = 4
 _CANDIDATES = 2
 _SETTLED = 3
+#: At a pole strips end at the same place, to this share of their width, from this many times as far away; how often
+#: the farthest such pass is looked for half-way.
+_SAME, _FARTHER, _HALVED = 1e-6, 1.5, 9
 #: Edges that rise by less than this share of the range are level: rounding must not hide where a loop turns.
 _LEVEL = 1e-6
 
@@ -199,7 +202,29 @@ def _outermost(chart: Chart, cut: Cut, beyond: "_Beyond") -> _Rows:
     for _ in range(_SETTLED):
         halves = chart.half_widths(cut, place, step)
         step = border + inwards * np.where(halves > 0, halves, 0.0)[[0, 1], [0, 1]]
-    return found._replace(step=step)
+    return found._replace(step=_off_poles(chart, cut, place, step))
+
+
+def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
+    """The outermost passes, (2,), moved away from a pole as far as all of their strips still end at it.
+
+    There each of many passes ends at the border; where strips end elsewhere with another pass, nothing is moved.
+    """
+    a0, a1, s0, s1 = chart.bounds
+    border, inwards = np.array([s0, s1]), np.array([1.0, -1.0])
+    away = np.abs(step - border)
+    tried = np.append(away, _FARTHER * away)
+    halves = chart.half_widths(cut, np.tile(place, 2), np.tile(border, 2) + np.tile(inwards, 2) * tried)
+    past = (halves[np.arange(4), [0, 1, 0, 1]] - tried).reshape(2, 2)
+    along = np.linspace(a0, a1, _EXACT_GAPS + 1)
+    for k in np.flatnonzero((away > 0) & (np.abs(past[1] - past[0]) <= _SAME * away)):
+        near, far = away[k], max(away[k], (s1 - s0) / 2)
+        for _ in range(_HALVED):
+            middle = (near + far) / 2
+            ends = chart.half_widths(cut, along, np.full(len(along), border[k] + inwards[k] * middle))[:, k] - middle
+            near, far = (middle, far) if (np.abs(ends - past[0, k]) <= _SAME * middle).all() else (near, middle)
+        away[k] = near
+    return np.asarray(np.where(away == np.abs(step - border), step, border + inwards * away))
 
 
 class _Beyond:

@@ -180,6 +180,21 @@ class _Strips:
                                f"{self.chart.face.label}: the axis {self.cut.axis.tolist()} gouges or stands "
                                "upright there; choose one that is free over the whole face")
 
+    def check_progress(self, last: float) -> None:
+        """Refuse the last place asked for if it is no farther than the pass before, as lines with no strip keep it.
+
+        Parameters
+        ----------
+        last : float
+            Place of the pass before.
+        """
+        if not self._step > last:
+            least = int(np.nan_to_num(self.measured).min(axis=1).argmin())
+            where = self.chart.uv(self.across.measured[[least]], np.array([self._step]))[0]
+            raise InvalidInput(f"strip width is {self.measured[least].tolist()} at uv {where.tolist()} of face "
+                               f"{self.chart.face.label}: passes do not advance there, as where they meet in a pole; "
+                               "cut along the other parameter")
+
 
 def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Progress = NO_PROGRESS) -> Spacing:
     """Lay passes over a face as far apart as the scallop height allows.
@@ -223,6 +238,7 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
         if not steps and unused > 0:
             place = min(max((greedy + place) / 2, s0), s1)
         half = strips.at(place)
+        strips.check_progress(steps[-1] if steps else -np.inf)
         steps.append(place)
         halves.append(strips.measured)
         front = np.where(active, first_from(material, np.maximum(front, place + half[:, 1] * (1 + 1e-9))), np.inf)
