@@ -25,8 +25,8 @@ from toolaxis.orient.flat_tilt import Work, postures
 from toolaxis.orient.indexed import Task, task
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import OperationVerdict, judge
-from toolaxis.verify.verdict import Task as Judged
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "biquintic.json"
 R, D, A = 30.0, 0.03, 0.5

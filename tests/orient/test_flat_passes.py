@@ -15,7 +15,8 @@ from toolaxis.orient.indexed import task
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
-from toolaxis.verify.verdict import Task, judge
+from toolaxis.verify.task import Task
+from toolaxis.verify.verdict import judge
 
 TOOL, H, RHO = Tool.flat(20), 0.03, 40.0
 

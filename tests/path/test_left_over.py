@@ -10,7 +10,7 @@ from toolaxis.numeric.polygons import inside, slabs
 from toolaxis.orient.indexed import Task, task
 from toolaxis.path.left_over import FACTOR, left_over, machined
 from toolaxis.tolerances import Tolerance
-from toolaxis.verify.verdict import Task as Judged
+from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import judge
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30)

@@ -16,7 +16,8 @@ from toolaxis.machine.kinematics import forward
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.cells import forest
-from toolaxis.verify.bodies import Rig, body_thing, cutter_line, least_room, turned_thing
+from toolaxis.verify.bodies import Rig, least_room
+from toolaxis.verify.things import body_thing, cutter_line, turned_thing
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])
@@ -153,7 +154,10 @@ def test_turning_between_operations_is_judged_too() -> None:
     lowest = 90 - 20 - np.hypot(90, 70)  # the rim of the head turns about a point 90 mm above it
     assert found.distance == pytest.approx(lowest, abs=1.0)
     move = one.between(before, after)
-    assert move is not None and move[:, 2].tolist() == [-20, 900, 900, 900, -20]
-    assert move[:, 4].tolist() == [0, 0, after[4], after[4], after[4]]
-    up = least_room(one, move[1:4], 1.0, pairs)
+    assert move is not None and move[:, 2].tolist() == [-20, 900, 900, -20], "one straight line to a tilted spindle"
+    assert move[:, 4].tolist() == [0, 0, after[4], after[4]]
+    assert one.between(None, after) is None
+    first = one.between(None, before)
+    assert first is not None and first[:, 2].tolist() == [900, -20]
+    up = least_room(one, move[1:3], 1.0, pairs)
     assert up.distance == 100.0, "beyond what is measured"

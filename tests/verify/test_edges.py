@@ -7,7 +7,8 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.verdict import Task, judge
+from toolaxis.verify.task import Task
+from toolaxis.verify.verdict import judge
 
 FLAT = Profile(1.5, 0.0, 0.0, 20.0)
 LEAN = np.radians(70.0)

@@ -6,7 +6,8 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.verdict import OperationVerdict, Task, verify
+from toolaxis.verify.task import Task
+from toolaxis.verify.verdict import OperationVerdict, verify
 
 BALL = Profile(0.0, 5.0, 0.0, 20.0)
 

@@ -10,7 +10,8 @@ from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import Clearance
-from toolaxis.verify.verdict import NOT_CHECKED, Task, judge, verify
+from toolaxis.verify.task import Task
+from toolaxis.verify.verdict import NOT_CHECKED, judge, verify
 
 WIDTH = 2.171571  # R6 r1, lead 10 deg, h = 0.02
 HOLDER = {"holder": np.array([[12.0, 40.0], [12.0, 80.0]])}

@@ -72,14 +72,10 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surro
     tilted spindle one straight motion leads from the retracted place to the first point.  So do the programs that
     `toolaxis.post` writes.
     """
-    machine, length = mounting.machine, float(mounting.tool_length or 0.0)
-    start, end = (linear_coordinates(machine, one.tip, one.rotary, length, mounting.table_from_part)[0]
-                  for one in (before, after))
-    top = float(machine.linear[2].high)
+    start, end = _linear(mounting, before), _linear(mounting, after)
+    top = float(mounting.machine.linear[2].high)
     up, over = np.append(start[:2], top), np.append(end[:2], top)
-    spindle = tool_axes(machine, np.concatenate([np.zeros(len(machine.table)), after.rotary[len(machine.table):]]))[0]
-    tilted = float(angle_between(spindle, np.array([0.0, 0.0, 1.0]))) > _TILTED
-    if tilted:
+    if _tilted(mounting.machine, after):
         ways = segments(np.array([up, end]))
     else:
         ways = segments(np.array([up, over, end]))
@@ -91,6 +87,46 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surro
         if found is not None and found.distance < around.required:
             return f"{name} {words(mounting, stop.rotary, found, around.required)}"
     return turning(mounting, up, (before.rotary, after.rotary), around)
+
+
+def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: Surroundings) -> tuple[str, str]:
+    """What is in the way from above down to the begin of the first path, and up from the end of the last one, in words;
+    empty where nothing is.
+
+    Parameters
+    ----------
+    mounting : Mounting
+        One that `judges_index_moves`.
+    first, last : Stop
+    around : Surroundings
+
+    Notes
+    -----
+    Where a program starts is not known: with a tilted spindle, which goes to the first point in one straight line from
+    there, nothing is said of the approach.
+    """
+    told = []
+    for name, stop in (("on the approach", first), (RETRACT, last)):
+        at = _linear(mounting, stop)
+        found = None
+        if stop is last or not _tilted(mounting.machine, stop):
+            above = np.append(at[:2], float(mounting.machine.linear[2].high))
+            found = meeting_on(mounting, stop.rotary, segments(np.array([above, at])), around)
+        near = found is not None and found.distance < around.required
+        told.append(f"{name} {words(mounting, stop.rotary, found, around.required)}" if near and found else "")
+    return told[0], told[1]
+
+
+def _linear(mounting: Mounting, stop: Stop) -> Array:
+    """Linear coordinates at a stop, (3,) mm."""
+    return np.asarray(linear_coordinates(mounting.machine, stop.tip, stop.rotary, float(mounting.tool_length or 0.0),
+                                         mounting.table_from_part)[0])
+
+
+def _tilted(machine: Machine, stop: Stop) -> bool:
+    """Whether the spindle leans away from Z at a stop."""
+    head = np.concatenate([np.zeros(len(machine.table)), stop.rotary[len(machine.table):]])
+    return float(angle_between(tool_axes(machine, head)[0], np.array([0.0, 0.0, 1.0]))) > _TILTED
 
 
 def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], around: Surroundings) -> str:

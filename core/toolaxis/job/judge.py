@@ -19,7 +19,8 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.skins import own_pieces
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
-from toolaxis.verify.verdict import OperationVerdict, Task, Verdict, judge
+from toolaxis.verify.task import Task
+from toolaxis.verify.verdict import OperationVerdict, Verdict, judge
 
 Array = NDArray[np.float64]
 

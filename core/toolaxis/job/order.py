@@ -8,7 +8,7 @@ from math import inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.indexing import RETRACT, Stop, trouble_between
+from toolaxis.contact.indexing import RETRACT, Stop, trouble_at_the_ends, trouble_between
 from toolaxis.contact.machinery import Surroundings, free_solutions
 from toolaxis.feed.profile import travel_time
 from toolaxis.machine.axes import RotaryAxis
@@ -75,6 +75,7 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
         chosen = best if best.tour.cost < before.tour.cost - 1e-6 else before
     else:
         chosen, best = before, before
+    chosen = replace(chosen, troubles=(*chosen.troubles, *_at_the_ends(mounting, rows, chosen, around)))
     order = None
     if reorder and len(rows) > 1 and not mounting.machine.unstated:
         order = Order(chosen.tour.cost, before.tour.cost, min(best.tour.bound, chosen.tour.cost))
@@ -87,6 +88,19 @@ class _Way:
 
     tour: Tour
     troubles: tuple[str, ...]
+
+
+def _at_the_ends(mounting: Mounting, rows: Sequence[list[_State]], way: _Way, around: Surroundings) -> list[str]:
+    """What is in the way before the first and after the last operation."""
+    if not mounting.judges_index_moves:
+        return []
+    states = [state for some in rows for state in some]
+    first, last = (states[way.tour.states[k]] for k in (0, -1))
+    assert first.op.path is not None and last.op.path is not None
+    begin, end = Stop(first.op.path.cl[0], first.rotary), Stop(last.op.path.cl[-1], last.rotary)
+    told = trouble_at_the_ends(mounting, begin, end, around)
+    return [f"{when} {_named(state.op)}: {why}" for when, state, why in
+            zip(("before", "after"), (first, last), told, strict=True) if why]
 
 
 def _fixed(op: Operation) -> bool:

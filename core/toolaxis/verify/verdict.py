@@ -1,28 +1,24 @@
 """The verdict: per operation what was measured, against what is allowed, and in sentences why it fails."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
-from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
-from toolaxis.tolerances import Tolerance
-from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import FAR, Clearance, clearance
-from toolaxis.verify.bodies import Rig, least_room
 from toolaxis.verify.edges import depth_at_edges
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
+from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.rays import Rays, face_rays
 from toolaxis.verify.removal import Remains, removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
+from toolaxis.verify.task import Task, motion_of, spot
 from toolaxis.verify.walls import wall_depth
 
 Array = NDArray[np.float64]
@@ -31,87 +27,6 @@ Array = NDArray[np.float64]
 SHARE, FACTOR = 0.999, 1.02
 
 NOT_CHECKED = "not checked"
-#: What is judged of a machine's bodies, and what rounding of the cutter locations may cost there, mm.
-_MACHINE, ROUNDING = ("machine", "index move", "tool on index move"), 1e-3
-
-
-@dataclass(frozen=True, eq=False)
-class Task:
-    """What is to be judged: one operation, as data.
-
-    Attributes
-    ----------
-    name : str
-    tips, axes : (n, 3) array
-        Cutter locations, mm, and unit tool axes.
-    kind : (n,) array of int
-        `Motion` that arrives at each point.
-    profile : Profile
-        Generatrix of the cutter.
-    targets : tuple of Face
-        What the operation machines: judged for scallop and gouge.
-    scallop : float
-        Limit of the scallop height, mm.
-    allowance : float
-        Stock to be left on the targets and the skin, mm.
-    skin : tuple of Face
-        Faces that continue the targets and that the cutter may touch but not cut: judged for gouge.
-    touching : tuple of Face
-        Faces behind a convex edge of targets or skin: the cutter may touch them where it runs out over the edge, and
-        must not enter them by more than the allowed gouge.  Their own normals leave the part at the edge, so they are
-        judged by distance; shank and holder keep their clearance from them.
-    surroundings : tuple of Face
-        Everything else, further bodies included: judged for the clearance of all components.
-    outlines : dict of str to (k, 2) array
-        Shank and holder as polylines (radius, z from the tip); one that is absent is reported as not checked.
-    tolerance : Tolerance
-    clean_up : float
-        Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
-    depth : float
-        How far below a face a gouge is followed, mm; less where a wall of targets and skin is thinner.
-    machine : Machine, optional
-        Judged for the reach of its rotary axes and, with place and tool length, for the travel of its linear ones.
-    place : (4, 4) array, optional
-        Where the part stands on the machine's table, all axes at zero.
-    tool_length : float, optional
-        From the spindle's gauge point to the tip, mm.
-    rotary : tuple of float
-        Where the machine's rotary axes stand at the first location, rad: with them, place and tool length its bodies
-        are judged.
-    before : tuple of tip, axis and rotary angles, optional
-        Where the operation before ends: the index move from there is judged for bodies too.
-    """
-
-    name: str
-    tips: Array
-    axes: Array
-    kind: NDArray[np.int8]
-    profile: Profile
-    targets: tuple[Face, ...]
-    scallop: float
-    allowance: float = 0.0
-    skin: tuple[Face, ...] = ()
-    touching: tuple[Face, ...] = ()
-    surroundings: tuple[Face, ...] = ()
-    outlines: dict[str, Array] = field(default_factory=dict)
-    tolerance: Tolerance = field(default_factory=Tolerance)
-    clean_up: float = 0.0
-    depth: float = 1.0
-    machine: Machine | None = None
-    place: Array | None = None
-    tool_length: float | None = None
-    rotary: tuple[float, ...] = ()
-    before: tuple[Array, Array, tuple[float, ...]] | None = None
-
-    def __post_init__(self) -> None:
-        if not (isfinite(self.scallop) and self.scallop > 0):
-            raise InvalidInput(f"scallop limit of operation {self.name} is {self.scallop} mm: it must be above zero")
-        if not isfinite(self.allowance):
-            raise InvalidInput(f"allowance of operation {self.name} is {self.allowance} mm: it must be finite")
-        if not 0 <= self.clean_up <= 1:
-            raise InvalidInput(f"clean-up share of operation {self.name} is {self.clean_up}: it must be 0 to 1")
-        if not self.targets:
-            raise InvalidInput(f"operation {self.name} machines no face: give at least one target")
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,7 +183,7 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
                      enough=task.tolerance.gouge, threads=threads, progress=progress)
     uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
-    rooms = {**_rooms(task, threads, progress), **_machine_rooms(task, progress)}
+    rooms = {**_rooms(task, threads, progress), **machine_rooms(task, progress)}
     return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
 
 
@@ -289,28 +204,6 @@ def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance 
         rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=_needed(task, name),
                                 threads=threads, progress=progress)
     return rooms
-
-
-def _machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
-    """How near table and spindle come to each other, part and tool: on the index move before and along the passes."""
-    if task.machine is None or task.place is None or task.tool_length is None or not task.machine.bodies \
-            or len(task.rotary) != len(task.machine.rotary) or machine_faults(task.machine, task.tips, task.axes, None,
-                                                                              None):
-        return {}
-    rig = Rig(task.machine, task.place, task.tool_length, task.profile, task.outlines,
-              (*task.targets, *task.skin, *task.touching, *task.surroundings))
-    if not rig.judged:
-        return {}
-    needed, joints = task.tolerance.holder_clearance, rig.joints(task.tips, task.axes, task.rotary)
-    found = {"machine": least_room(rig, joints, needed, rig.pairs, progress)}
-    if task.before is not None:
-        tip, axis, rotary = task.before
-        ways = rig.between(rig.joints(tip[None], axis[None], rotary)[0], joints[0])
-        if ways is not None:
-            found["index move"] = least_room(rig, ways, needed, rig.pairs, progress)
-            found["tool on index move"] = least_room(rig, ways, task.tolerance.cutter_clearance, rig.tool_and_part,
-                                                     progress)
-    return found
 
 
 def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Remains]) -> Place | None:
@@ -356,15 +249,6 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, .
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes), maps)
 
 
-def _at(point: tuple[float, float, float]) -> str:
-    return f"({point[0]:.3f}, {point[1]:.3f}, {point[2]:.3f})"
-
-
-def _motion(task: Task, index: int) -> str:
-    """What the motion that arrives at a point is, for a sentence."""
-    return f"{Motion(int(task.kind[index])).name.lower()} motion to point {index + 1}" if index >= 0 else "no motion"
-
-
 def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
     if share >= SHARE - task.clean_up:
         return []
@@ -373,8 +257,8 @@ def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: fl
     if zones:
         zone = zones[0]
         left = "never reached" if zone.reason == "not reached" else f"up to {zone.largest:.4f} mm high"
-        text += (f"; the largest of {len(zones)} zones beyond it is on face {zone.face} from {_at(zone.low)} to "
-                 f"{_at(zone.high)}, {zone.area:.2f} mm^2 of {area:.2f}, {left}")
+        text += (f"; the largest of {len(zones)} zones beyond it is on face {zone.face} from {spot(zone.low)} to "
+                 f"{spot(zone.high)}, {zone.area:.2f} mm^2 of {area:.2f}, {left}")
     return [text]
 
 
@@ -383,8 +267,8 @@ def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[
         return []
     worst = places[0]
     deep = f"{gouge:.4f} mm" if gouge < task.depth else f"{gouge:.3f} mm or more"
-    return [f"gouge {deep} at face {worst.face} {_at(worst.point)}, allowed {task.tolerance.gouge} mm, by the "
-            f"{_motion(task, worst.motion)}"]
+    return [f"gouge {deep} at face {worst.face} {spot(worst.point)}, allowed {task.tolerance.gouge} mm, by the "
+            f"{motion_of(task, worst.motion)}"]
 
 
 def _machine_reasons(task: Task) -> list[str]:
@@ -393,40 +277,28 @@ def _machine_reasons(task: Task) -> list[str]:
     return machine_faults(task.machine, task.tips, task.axes, task.place, task.tool_length)
 
 
-def _meeting_reasons(task: Task, name: str, room: Clearance) -> list[str]:
-    """What bodies of the machine come too near, in words."""
-    need = task.tolerance.cutter_clearance if name == "tool on index move" else task.tolerance.holder_clearance
-    if room.distance >= need - ROUNDING or task.machine is None:
-        return []
-    other = room.face if room.face.startswith("face ") else f"the {room.face}"
-    met = f"comes within {room.distance:.2f} mm of {other}" if room.distance >= 0 else \
-        f"meets {other} by {-room.distance:.2f} mm"
-    when = f"on the {_motion(task, room.motion)}" if name == "machine" else "on the index move before it"
-    return [f"the {room.component} {met} at {_at(room.point)} on {task.machine.name}, needed {need} mm, {when}"]
-
-
 def _edge_reasons(task: Task, edge: Clearance) -> list[str]:
     if -edge.distance <= task.tolerance.gouge:
         return []
-    return [f"gouge {-edge.distance:.4f} mm at face {edge.face} {_at(edge.point)} behind a convex edge, allowed "
-            f"{task.tolerance.gouge} mm, by the {_motion(task, edge.motion)}"]
+    return [f"gouge {-edge.distance:.4f} mm at face {edge.face} {spot(edge.point)} behind a convex edge, allowed "
+            f"{task.tolerance.gouge} mm, by the {motion_of(task, edge.motion)}"]
 
 
 def _link_reasons(task: Task, place: Place | None) -> list[str]:
     if place is None:
         return []
-    return [f"a {_motion(task, place.motion)} goes {place.value:.4f} mm into what the passes leave on face "
-            f"{place.face} at {_at(place.point)}: links must stay clear of it"]
+    return [f"a {motion_of(task, place.motion)} goes {place.value:.4f} mm into what the passes leave on face "
+            f"{place.face} at {spot(place.point)}: links must stay clear of it"]
 
 
 def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
     for name, room in rooms.items():
         need = _needed(task, name)
-        if name in _MACHINE and isinstance(room, Clearance):
-            reasons += _meeting_reasons(task, name, room)
+        if name in KINDS and isinstance(room, Clearance):
+            reasons += meeting_reasons(task, name, room)
         elif isinstance(room, Clearance) and room.distance < min(need, FAR):
             verb = f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
-            reasons.append(f"{name} {verb} face {room.face} at {_at(room.point)}, needed {need} mm, on the "
-                           f"{_motion(task, room.motion)}")
+            reasons.append(f"{name} {verb} face {room.face} at {spot(room.point)}, needed {need} mm, on the "
+                           f"{motion_of(task, room.motion)}")
     return reasons

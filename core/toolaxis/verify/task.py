@@ -1,0 +1,119 @@
+"""What the judge is asked: one operation, as data."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.configurations import Machine
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.profile import Profile
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is to be judged: one operation, as data.
+
+    Attributes
+    ----------
+    name : str
+    tips, axes : (n, 3) array
+        Cutter locations, mm, and unit tool axes.
+    kind : (n,) array of int
+        `Motion` that arrives at each point.
+    profile : Profile
+        Generatrix of the cutter.
+    targets : tuple of Face
+        What the operation machines: judged for scallop and gouge.
+    scallop : float
+        Limit of the scallop height, mm.
+    allowance : float
+        Stock to be left on the targets and the skin, mm.
+    skin : tuple of Face
+        Faces that continue the targets and that the cutter may touch but not cut: judged for gouge.
+    touching : tuple of Face
+        Faces behind a convex edge of targets or skin: the cutter may touch them where it runs out over the edge, and
+        must not enter them by more than the allowed gouge.  Their own normals leave the part at the edge, so they are
+        judged by distance; shank and holder keep their clearance from them.
+    surroundings : tuple of Face
+        Everything else, further bodies included: judged for the clearance of all components.
+    outlines : dict of str to (k, 2) array
+        Shank and holder as polylines (radius, z from the tip); one that is absent is reported as not checked.
+    tolerance : Tolerance
+    clean_up : float
+        Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
+    depth : float
+        How far below a face a gouge is followed, mm; less where a wall of targets and skin is thinner.
+    machine : Machine, optional
+        Judged for the reach of its rotary axes and, with place and tool length, for the travel of its linear ones.
+    place : (4, 4) array, optional
+        Where the part stands on the machine's table, all axes at zero.
+    tool_length : float, optional
+        From the spindle's gauge point to the tip, mm.
+    rotary : tuple of float
+        Where the machine's rotary axes stand at the first location, rad: with them, place and tool length its bodies
+        are judged.
+    before : tuple of tip, axis and rotary angles, optional
+        Where the operation before ends: the index move from there is judged for bodies too; without one the way down
+        from above.
+    """
+
+    name: str
+    tips: Array
+    axes: Array
+    kind: NDArray[np.int8]
+    profile: Profile
+    targets: tuple[Face, ...]
+    scallop: float
+    allowance: float = 0.0
+    skin: tuple[Face, ...] = ()
+    touching: tuple[Face, ...] = ()
+    surroundings: tuple[Face, ...] = ()
+    outlines: dict[str, Array] = field(default_factory=dict)
+    tolerance: Tolerance = field(default_factory=Tolerance)
+    clean_up: float = 0.0
+    depth: float = 1.0
+    machine: Machine | None = None
+    place: Array | None = None
+    tool_length: float | None = None
+    rotary: tuple[float, ...] = ()
+    before: tuple[Array, Array, tuple[float, ...]] | None = None
+
+    def __post_init__(self) -> None:
+        if not (isfinite(self.scallop) and self.scallop > 0):
+            raise InvalidInput(f"scallop limit of operation {self.name} is {self.scallop} mm: it must be above zero")
+        if not isfinite(self.allowance):
+            raise InvalidInput(f"allowance of operation {self.name} is {self.allowance} mm: it must be finite")
+        if not 0 <= self.clean_up <= 1:
+            raise InvalidInput(f"clean-up share of operation {self.name} is {self.clean_up}: it must be 0 to 1")
+        if not self.targets:
+            raise InvalidInput(f"operation {self.name} machines no face: give at least one target")
+
+
+def spot(point: tuple[float, float, float]) -> str:
+    """A place, for a sentence.
+
+    Parameters
+    ----------
+    point : (float, float, float)
+        mm
+    """
+    return f"({point[0]:.3f}, {point[1]:.3f}, {point[2]:.3f})"
+
+
+def motion_of(task: Task, index: int) -> str:
+    """What the motion that arrives at a point is, for a sentence.
+
+    Parameters
+    ----------
+    task : Task
+    index : int
+        Of the point; below zero for none.
+    """
+    return f"{Motion(int(task.kind[index])).name.lower()} motion to point {index + 1}" if index >= 0 else "no motion"
