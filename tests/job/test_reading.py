@@ -26,7 +26,7 @@ def test_an_apt_file(tmp_path: Path) -> None:
     ("GOTO/0,0,0\nGOTO/1,0,0\nFINI\n", "tells no tool axes"),
     (TEXT.replace("UNITS/MM", "UNITS/FATHOMS"), "line 1: UNITS/FATHOMS"),
     (TEXT.replace("0.6", "nan"), "line 6"),
-    ("hello\n", "is no APT CL file")])
+    ("hello\n", "is no APT CL file, for it has no GOTO, and no NC program")])
 def test_what_is_no_cl_data_is_refused(text: str, said: str, tmp_path: Path) -> None:
     file = tmp_path / "wrong.cls"
     file.write_text(text)
