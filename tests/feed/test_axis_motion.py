@@ -1,4 +1,4 @@
-"""Axis motion at a constant speed against circles in closed form, and baselines of tool angles against smooth curves."""
+"""Axis motion at a constant speed against circles in closed form, and baselines of tool angles on smooth sections."""
 
 import numpy as np
 import pytest

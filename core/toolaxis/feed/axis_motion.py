@@ -72,5 +72,5 @@ def axis_motion(machine: Machine, path: ToolPath, places: ArrayLike, speed: floa
     kept = np.concatenate([found.arrival[1:] != found.arrival[:-1], [True]])
     rows = np.hstack([found.linear, found.rotary])[kept]
     velocity = np.gradient(rows, s / speed, axis=0, edge_order=2)
-    names = tuple(axis.name for axis in (*machine.linear, *machine.rotary))
+    names = (*(axis.name for axis in machine.linear), *(axis.name for axis in machine.rotary))
     return AxisMotion(names, s, rows, velocity, np.gradient(velocity, s / speed, axis=0, edge_order=2))

@@ -11,6 +11,7 @@ from toolaxis.contact.rings import Setting, rings, stand_of
 from toolaxis.contact.strip import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.job.axes import search_task
+from toolaxis.job.blade_pictures import draw_blade
 from toolaxis.job.rooms import tightest
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import Task
@@ -98,6 +99,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
         if op.done and op.orientation.lead is not None:
             if plan.inputs.method == "two-point":
                 _draw_contacts(plan, op, folder)
+            if plan.inputs.method.startswith("blade"):
+                draw_blade(plan, op, job, folder)
             continue
         if op.done:
             widths_picture(width_lines(plan, op, job), (op.face, plan.tool),

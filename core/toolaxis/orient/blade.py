@@ -31,6 +31,8 @@ CURVES = ("keys", "least")
 CLEARANCE = radians(2.0)
 #: By how much of the channel's width base vectors stay below its upper side: where a hollow ends there, and elsewhere.
 _LIMIT, _MIDDLE = 0.1, 0.5
+#: Ends of a turn may lie so far apart, as a share of its length, and still be those of a helix around a blade.
+_HELIX = 0.02
 #: A layer on which the common rule of key points does so much worse than elsewhere gets one of its own.
 _WORSE = 1.3
 
@@ -230,6 +232,10 @@ def plane_of(layer: Layer, swing: Swing, tool: Tool | None, number: int = 1) -> 
         When the section is open or crosses itself, or points are repeated.
     """
     flat = swing.flat(layer.centres)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(flat, axis=0).T))])
+    gap = flat[-1] - flat[0]
+    if np.hypot(*gap) <= _HELIX * way[-1]:  # a turn of a helix on a blade that tapers: its section closes on the way
+        flat = flat - np.outer(way / way[-1], gap)
     x, y = flat.T
     onward = bool((x[:-1] * y[1:] - x[1:] * y[:-1]).sum() > 0)
     rows = flat[:-1] if onward else flat[:0:-1]

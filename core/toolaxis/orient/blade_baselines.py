@@ -1,4 +1,4 @@
-"""What re-scheduled tool angles compete with: a constant lead from the normal, and quaternions between some of those."""
+"""What re-scheduled tool angles compete with: a constant lead from the normal, and quaternions between a few of it."""
 
 from math import pi
 
@@ -92,4 +92,4 @@ def by_quaternions(one: SmoothSection, lengths: ArrayLike, keys: int = KEYS, lea
     at = np.concatenate([at[:-1] - 2 * pi, at, at[1:] + 2 * pi])
     curve = RotationSpline(places, Rotation.from_rotvec(np.column_stack([0 * at, 0 * at, at])))
     x = curve(s).as_matrix()[:, :, 0]
-    return np.unwrap(np.arctan2(x[:, 1], x[:, 0])) + 2 * pi * round(float(at[keys]) / (2 * pi))
+    return np.asarray(np.unwrap(np.arctan2(x[:, 1], x[:, 0])) + 2 * pi * round(float(at[keys]) / (2 * pi)))
