@@ -98,7 +98,13 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--strategy", default="indexed", metavar="NAME",
                      help="indexed (default): one fixed axis for each sub-surface; sturz: simultaneous five-axis "
                           "milling with the best constant lead; two-point: the same with a flat end or torus that "
-                          "touches hollow faces at two points")
+                          "touches hollow faces at two points; blade, blade-keys: a ball end goes around blades in "
+                          "layers while one rotary axis swings without turning back, with least acceleration or by "
+                          "key points; four-plus-one: one rotary axis of the machine clamped at the best angle, the "
+                          "other turning along the passes; multiscale: a torus keeps --roughness and an expected "
+                          "strip width while the machine's rotary axes turn least")
+    sub.add_argument("--roughness", type=float, metavar="UM",
+                     help="greatest Ra across the feed for the strategy multiscale, micrometres (default: 1.6)")
     sub.set_defaults(module="toolaxis.cli.plan")
 
 

@@ -8,7 +8,7 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.errors import Cancelled
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
-from toolaxis.job.spec import Spec, by_strategy
+from toolaxis.job.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
@@ -40,7 +40,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
-                        strategy=given.strategy,
+                        strategy=given.strategy, roughness=_roughness(given),
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
                         rapid=spec.inputs.rapid, compare=given.compare,
                         orientations=spec.orientations, workers=given.workers, progress=progress)
@@ -56,6 +56,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 def _spec(given: Namespace) -> Spec:
     by_strategy(given.strategy, given.method, given.objective)
+    roughness_for(given.strategy, _roughness(given))
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
@@ -66,6 +67,11 @@ def _spec(given: Namespace) -> Spec:
     if spec.machine:
         load_machine(spec.machine)
     return spec
+
+
+def _roughness(given: Namespace) -> float | None:
+    """Ra in mm, as it is planned with, from micrometres."""
+    return None if given.roughness is None else float(given.roughness) / 1000
 
 
 def _draw(made: Plan, folder: Path, progress: Progress) -> None:

@@ -14,7 +14,7 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 
 #: Steps up the normal to the cutter, of which each leaves about a thousandth of the rest.
-_CLIMBS = 4
+_CLIMBS = 3
 
 
 def arithmetic_roughness(heights: ArrayLike, lengths: ArrayLike | None = None) -> Array:

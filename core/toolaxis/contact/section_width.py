@@ -24,7 +24,7 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 
 #: Places on each side of a contact, how far they reach in radii of the tool, and how much closer they lie near it.
-_PLACES, _REACH, _CLOSER = 56, 2.0, 1.3
+_PLACES, _REACH, _CLOSER, _FEWEST = 56, 2.0, 1.3, 16
 #: Newton steps to a place in the section, and to the end of a strip.
 _SECTION_STEPS, _END_STEPS = 8, 6
 #: By how much a place may still miss the section before the last step, mm: steps converge like squares.
@@ -88,21 +88,26 @@ def _crossing(places: Array, values: Array, k: NDArray[np.intp]) -> Array:
     return np.asarray(x)
 
 
-def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed = "u",
-             allowance: float = 0.0) -> Sections:
+def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed = "u", allowance: float = 0.0,
+             reach: float | None = None) -> Sections:
     """Lifted points in the planes across the feed at contacts.
 
     Parameters
     ----------
     face, tool, uv, scallop, feed, allowance
         As for `section_width`.
+    reach : float, optional
+        How far to look on each side, mm; 2 R unless given, and no farther than that.
     """
     check_bull_nose(tool)
     cutter_numbers(tool, scallop, allowance)
     rows = np.atleast_2d(np.asarray(uv, dtype=float))
-    places = _REACH * tool.radius * (np.arange(1, _PLACES + 1) / _PLACES) ** _CLOSER
+    far = _REACH * tool.radius
+    near = far if reach is None else min(reach, far)
+    count = max(int(np.ceil(_PLACES * (near / far) ** (1 / _CLOSER))), _FEWEST)
+    places = near * (np.arange(1, count + 1) / count) ** _CLOSER
     at, up = section_points(face, section_parameters(face, rows, np.concatenate([places, -places]), feed))
-    lifted = (at + (scallop + allowance) * up).reshape(len(rows), 2, _PLACES, 3)
+    lifted = (at + (scallop + allowance) * up).reshape(len(rows), 2, count, 3)
     point, normal = face.evaluate(rows).point, contact_frame(face, rows, feed).normal
     return Sections(point, normal, places, lifted, tool, scallop, allowance)
 

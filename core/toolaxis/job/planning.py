@@ -23,9 +23,11 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import Mounting
 from toolaxis.orient.blade_plan import blade
 from toolaxis.orient.flat_plan import two_point
+from toolaxis.orient.four_plus_one import four_plus_one
 from toolaxis.orient.indexed import Task, searched
 from toolaxis.orient.indexed import task as search_task
 from toolaxis.orient.mounted import combined
+from toolaxis.orient.multiscale_plan import multiscale
 from toolaxis.orient.sturz import sturz
 from toolaxis.orient.together import together
 from toolaxis.orient.worth import FEEDS
@@ -52,7 +54,8 @@ REFUSED = "shared axis refused: "
 _SEARCHES = {"ball": "normal"}
 #: Methods that move the axis.
 _MOVING: dict[str, Callable[[Task], tuple[Orientation, ToolPath | None]]] = {
-    "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys")}
+    "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys"),
+    "four-plus-one": four_plus_one, "multiscale": multiscale}
 
 
 class Target(NamedTuple):
@@ -295,6 +298,8 @@ class Job:
         if moving is not None:
             plain = self if self.inputs.objective != "time" else replace(self, inputs=replace(self.inputs,
                                                                                               objective="length"))
+            if self.inputs.method == "multiscale":
+                return multiscale(plain._task(face, progress), self.inputs.roughness, self.inputs.feedrate)
             return moving(plain._task(face, progress))
         job = Remembering(self._task(face, progress))
         found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)

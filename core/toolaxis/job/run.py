@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 from toolaxis.cad.loading import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.units import tool_warnings
+from toolaxis.contact.feasible_area import check_bull_nose
 from toolaxis.contact.rings import check_bottom
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
-from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, with_joined
+from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.zones import zoned
@@ -43,7 +44,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
          limits: AxisLimits | str | None = None, offset: ArrayLike | None = None,
-         rapid: float = 10000.0, compare: bool = False, workers: int | None = None,
+         rapid: float = 10000.0, roughness: float | None = None, compare: bool = False, workers: int | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
 
@@ -72,7 +73,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         lead, for comparison or where one fixed axis does not do; "two-point": simultaneous five-axis milling in which a
         flat end or torus touches hollow faces at two points; "blade" and "blade-keys": a ball end goes around blades in
         layers while one rotary axis swings without turning back, with least peak acceleration or by key points and
-        rounded corners; the faces around a blade are joined: "1+2+3+4".
+        rounded corners; the faces around a blade are joined: "1+2+3+4"; "four-plus-one": one rotary axis of the machine
+        is clamped at the best angle and the other turns along the passes, so that their strips are the widest;
+        "multiscale": a torus keeps a roughness across the feed and an expected strip width, while the machine's rotary
+        axes turn as little as that allows.
     objective : str
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
         limits of its axes. Faces are divided by time too where that is asked for, else by cutting length.
@@ -98,6 +102,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         rigid motion.  Without it the part's axes are the machine's, and travel is not judged.
     rapid : float
         Rate of rapid traverse in links, mm/min; for times only.
+    roughness : float, optional
+        Greatest Ra across the feed, mm, for the strategy "multiscale" only: 0.0016 (1.6 um) unless given.
     compare : bool
         Also plan the same faces by the other methods; what they come to stands in the plan's baselines.
     workers : int, optional
@@ -128,7 +134,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else written(allowed)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), tolerance or Tolerance(), float(rapid))
+                    float(spindle), tolerance or Tolerance(), float(rapid), roughness_for(strategy, roughness))
     if objective == "time":
         known_machine(mounting)
     if strategy != "indexed" and mounting is not None:
@@ -137,6 +143,13 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     inputs.check_tool(cutter)
     if strategy == "two-point":
         check_bottom(cutter)
+    if strategy == "four-plus-one" and mounting is None:
+        raise InvalidInput("strategy 'four-plus-one' clamps one rotary axis of a machine and turns the other: name a "
+                           "machine")
+    if strategy == "multiscale":
+        check_bull_nose(cutter, flat_too=False)
+        if mounting is None:
+            raise InvalidInput("strategy 'multiscale' has the rotary axes of a machine turn least: name a machine")
     loaded, numbers = with_joined(load(part), faces)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
     bodies = tuple(load(body) for body in _listed(obstacles))

@@ -20,6 +20,9 @@ from toolaxis.tools.assembly import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
 
+#: Ra that five axes keep with the strategy "multiscale" unless another is given, mm.
+ROUGHNESS = 1.6e-3
+
 
 @dataclass(frozen=True)
 class Spec:
@@ -122,6 +125,31 @@ def by_strategy(strategy: str, method: str = "sphere", objective: str = "length"
         raise InvalidInput(f"strategy {strategy!r} chooses how to lean by length or passes: leave out the objective "
                            "time")
     return strategy
+
+
+def roughness_for(strategy: str, roughness: float | None) -> float:
+    """The greatest Ra that a strategy keeps, mm; 0 where it looks at none.
+
+    Parameters
+    ----------
+    strategy : str
+    roughness : float or None
+        mm; 1.6 um unless given.
+
+    Raises
+    ------
+    InvalidInput
+        When one is given to a strategy that does not look at it, or it is not above zero.
+    """
+    if strategy != "multiscale":
+        if roughness is not None:
+            raise InvalidInput(f"roughness is given and strategy {strategy!r} does not look at it: leave it out, or "
+                               "ask for the strategy 'multiscale'")
+        return 0.0
+    wanted = ROUGHNESS if roughness is None else float(roughness)
+    if not (isfinite(wanted) and wanted > 0):
+        raise InvalidInput(f"roughness is {1000 * wanted:g} um: it must be finite and above zero")
+    return wanted
 
 
 def check_five_axes(machine: Machine, strategy: str) -> None:

@@ -124,7 +124,8 @@ class Lane:
     @cached_property
     def bench(self) -> Sections:
         """What section strip widths are measured on."""
-        return sections(self.face, self.tool, self.uv, self.wish.scallop, self.feed, self.allowance)
+        return sections(self.face, self.tool, self.uv, self.wish.scallop, self.feed, self.allowance,
+                        1.2 * self.wish.widths[1])
 
     @cached_property
     def durations(self) -> Array:

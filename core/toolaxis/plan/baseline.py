@@ -7,7 +7,8 @@ METHOD_NAMES = {"plan": "this plan", "sphere": "best of the hemisphere", "sector
                 "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis",
                 "ball": "ball end, mean normal", "sturz": "five axes, constant lead",
                 "two-point": "five axes, two contacts", "blade": "four axes, least acceleration",
-                "blade-keys": "four axes, key points"}
+                "blade-keys": "four axes, key points",
+                "four-plus-one": "4+1 axes, one clamped", "multiscale": "five axes, least turning"}
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,9 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 
 #: Fixed axes, or simultaneous five-axis milling: with a constant lead, or with two-point contact of a flat bottom; or
-#: four-axis milling around blades, with least peak acceleration or by key points.
-STRATEGIES = ("indexed", "sturz", "two-point", "blade", "blade-keys")
+#: four-axis milling around blades, with least peak acceleration or by key points; 4 + 1 axes; or five that keep a
+#: roughness and turn least.
+STRATEGIES = ("indexed", "sturz", "two-point", "blade", "blade-keys", "four-plus-one", "multiscale")
 #: How the axis of each sub-surface is found; strategies that move it are methods too.
 METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball", *STRATEGIES[1:])
 OBJECTIVES = ("length", "passes", "time")
@@ -56,6 +57,8 @@ class Inputs:
     tolerance : Tolerance
     rapid : float
         Rate of rapid traverse in links, mm/min; for times only.
+    roughness : float
+        Greatest Ra across the feed, mm; 0 where none was asked for.
 
     Raises
     ------
@@ -73,6 +76,7 @@ class Inputs:
     spindle: float = 10000.0
     tolerance: Tolerance = field(default_factory=Tolerance)
     rapid: float = 10000.0
+    roughness: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -82,6 +86,8 @@ class Inputs:
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        if not (isfinite(self.roughness) and self.roughness >= 0):
+            raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.002)")

@@ -1,0 +1,86 @@
+"""Strip width and roughness together through the doors: planned, read back, judged; refused where it makes no sense."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.cli.main import main
+from toolaxis.contact.roughness import arithmetic_roughness
+from toolaxis.contact.section_width import expected_widths, section_parameters, section_points, section_width
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import following
+from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.shape.nearest import nearest
+from toolaxis.verify.removal import removal
+
+H, RA = 0.1, 1.6e-3
+
+
+def hill(size: float = 4.0) -> ta.Face:
+    x, y = np.meshgrid(np.linspace(-size, size, 4), np.linspace(-size, size, 4), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 3.0 + 0.15 * x - 0.004 * x**2 - 0.006 * y**2 + 0.002 * x * y], axis=-1))
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return ta.plan(hill(), "torus:10x3", H, strategy="multiscale", machine="bc-table-table", feedrate=800, workers=1)
+
+
+def test_the_judge_passes_it_and_finds_the_roughness(plan) -> None:
+    op = plan.operations[0]
+    assert plan.outcome == "complete" and plan.inputs.roughness == RA, op.orientation.reasons
+    verdict = ta.verify(plan)
+    assert verdict.passed, verdict.reasons
+    # Ra from the judge's removal along profiles across the feed.
+    face, path = op.face, op.path
+    uv = np.array([[0.5, 0.5], [0.35, 0.5], [0.65, 0.45]])
+    at = section_parameters(face, uv, np.linspace(-2, 2, 241), op.orientation.feed)
+    points, normal = section_points(face, at)
+    left = removal((path.cl, path.axis, path.kind), plan.tool.profile, (points.reshape(-1, 3), normal.reshape(-1, 3)),
+                   depth=0.05, height=0.5)
+    judged = arithmetic_roughness(left.remaining.reshape(3, -1))
+    assert (judged < 1.1 * RA).all() and (judged > 0.3 * RA).all()
+
+
+def test_strips_are_as_wide_as_expected_and_the_machine_follows(plan) -> None:
+    op = plan.operations[0]
+    cut = op.path.kind == Motion.CUT
+    found = nearest(op.face, op.path.cc[cut])
+    inside = (found.distance < 1e-6) & ((found.uv > 0.02) & (found.uv < 0.98)).all(axis=1)
+    uv, axis = found.uv[inside][::7], op.path.axis[cut][inside][::7]
+    wide = section_width(op.face, plan.tool, uv, axis, H, op.orientation.feed).sum(axis=1)
+    low, high = expected_widths(plan.tool, np.radians(20.0), H)
+    assert len(wide) > 20 and wide.min() > low - 5e-3 and wide.max() < high + 5e-3
+    assert len(following(plan.machine.machine, op.path).rotary) >= len(op.path.cl)
+    assert any("um allowed" in why for why in op.orientation.reasons)
+
+
+def test_it_is_read_back(plan, tmp_path) -> None:
+    write_plan(plan, tmp_path)
+    again = read_plan(tmp_path)
+    assert again.inputs.method == "multiscale" and again.inputs.roughness == RA
+    np.testing.assert_allclose(again.operations[0].path.axis, plan.operations[0].path.axis, atol=1e-8)
+
+
+@pytest.mark.parametrize("given, what", [
+    ({"tool": "ball:10"}, "the radius of the cutter"), ({"tool": "flat:10"}, "a sharp corner"),
+    ({"machine": None}, "name a machine"), ({"machine": "three-axes-fixture"}, "moves two rotary axes"),
+    ({"roughness": 0.0}, "roughness is 0 um"), ({"objective": "time"}, "by length or passes"),
+    ({"strategy": "sturz"}, "does not look at it"), ({"strategy": "indexed"}, "does not look at it")])
+def test_what_makes_no_sense_is_refused(given, what) -> None:
+    asked = {"tool": "torus:10x3", "machine": "bc-table-table", "strategy": "multiscale", "roughness": RA} | given
+    with pytest.raises(InvalidInput, match=what):
+        ta.plan(hill(), scallop=H, workers=1, **asked)
+
+
+def test_a_scallop_below_that_of_the_roughness_is_told() -> None:
+    made = ta.plan(hill(), "torus:10x3", 0.005, strategy="multiscale", machine="bc-table-table", workers=1)
+    assert made.outcome == "incomplete"
+    assert "Ra 1.6 um stands for scallops of 0.00624 mm" in made.operations[0].orientation.reasons[0]
+
+
+def test_the_command_takes_micrometres(capsys) -> None:
+    told = main(["plan", "none.step", "--tool", "torus:10x3", "--scallop", "0.1", "--roughness", "-2", "--strategy",
+                 "multiscale", "--machine", "bc-table-table"])
+    assert told == 2 and "roughness is -2 um" in capsys.readouterr().err
