@@ -47,7 +47,8 @@ class Chart:
     figure : plotly Figure
     cells : tuple of dict
         For traces that are pictures: "traces" (their numbers), "shape", "index" (base64 of unsigned little-endian
-        numbers), "bytes" (of each), "values" (one table for each trace) and "texts" (what the pointer reads).
+        numbers), "bytes" (of each), "values" (one table for each trace) and "texts" (what the pointer reads; None where
+        that is the value).
     """
 
     figure: go.Figure
@@ -62,11 +63,11 @@ def _plain(figure: go.Figure, **more: Any) -> go.Figure:
 
 
 def _cells(index: NDArray[Any], traces: Sequence[int], values: Sequence[Sequence[float | None]],
-           texts: Sequence[str]) -> dict[str, Any]:
-    size = 1 if len(texts) <= 256 else 2
+           texts: Sequence[str] | None = None) -> dict[str, Any]:
+    size = 1 if len(values[0]) <= 256 else 2
     packed = np.ascontiguousarray(index, dtype=f"<u{size}").tobytes()
     return {"traces": list(traces), "shape": list(index.shape), "index": b64encode(packed).decode("ascii"),
-            "bytes": size, "values": [list(row) for row in values], "texts": list(texts)}
+            "bytes": size, "values": [list(row) for row in values], "texts": None if texts is None else list(texts)}
 
 
 def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike], name: str) -> Chart:
@@ -159,13 +160,11 @@ def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
     index = np.searchsorted(levels, np.where(np.isfinite(cells), cells, 0.0), side="left")
     index = np.where(np.isposinf(cells), len(levels), np.where(np.isnan(cells), len(levels) + 1, index))
     values = [round(1000 * float(level), 3) for level in levels]
-    texts = [f"at most {value:g} µm" + (", above the limit" if value > 1000 * _FACTOR * limit else "")
-             for value in values]
     made = go.Figure()
     place = {"x0": round(float(view.corner[0] + 0.5 * view.cell), 4), "dx": round(view.cell, 6),
              "y0": round(float(view.corner[1] + 0.5 * view.cell), 4), "dy": round(view.cell, 6)}
     label = "scallop left" if what == "scallop" else "gouge"
-    said = f"<b>{label} %{{text}}</b><br>X %{{x:.2f}}, Y %{{y:.2f}} mm<extra></extra>"
+    said = f"<b>{label} at most %{{z:.3g}} µm</b><br>X %{{x:.2f}}, Y %{{y:.2f}} mm<extra></extra>"
     made.add_heatmap(**place, zmin=0.0, zmax=round(1200 * limit, 6), colorscale=_scale(), name=label,
                      hovertemplate=said, colorbar={"title": {"text": "µm", "side": "right"}, "thickness": 14})
     made.add_heatmap(**place, zmin=0, zmax=1, colorscale=[[0, GREY], [1, GREY]], showscale=False,
@@ -177,7 +176,7 @@ def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
            xaxis={"title": {"text": "X of the work coordinate system, mm"}, "constrain": "domain"}, height=520,
            yaxis={"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"})
     none: list[float | None] = [None] * len(values)
-    return Chart(made, (_cells(index, (0, 1), ([*values, None, None], [*none, 1, None]), [*texts, "not reached", ""]),))
+    return Chart(made, (_cells(index, (0, 1), ([*values, None, None], [*none, 1, None])),))
 
 
 def _scale() -> list[list[Any]]:

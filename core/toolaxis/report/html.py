@@ -41,6 +41,8 @@ from toolaxis.verify.view import View, coarser
 Array = NDArray[np.float64]
 Curve = tuple[Array, Array]
 
+#: Worst places that are marked.
+_PLACES = 8
 #: Cells of all maps of a page together, and of one at most.
 _CELLS, _MOST_CELLS = 1_200_000, 90_000
 
@@ -135,12 +137,14 @@ def _json(chart: Chart) -> str:
 
 
 def _worst(verdict: Mapping[str, Any] | None) -> dict[str, list[dict[str, Any]]]:
-    """The worst places that the judge found, the worst of each operation."""
-    found: dict[str, list[dict[str, Any]]] = {"worst scallop": [], "worst gouge": []}
-    for op in () if verdict is None else verdict["operations"]:
-        for label, key in (("worst scallop", "worst_scallop"), ("worst gouge", "worst_gouge")):
-            found[label] += [{"point": place["point"], "text": f"{op['name']}: {label} {number(place['value'], 4)} mm, "
-                              f"face {place['face']}"} for place in op[key][:1]]
+    """The worst places that the judge found, each of another operation."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    judged = () if verdict is None else verdict["operations"]
+    for label, key in (("worst scallop", "worst_scallop"), ("worst gouge", "worst_gouge")):
+        places = [(op["name"], place) for op in judged for place in op[key][:1]]
+        places.sort(key=lambda one: -np.inf if one[1]["value"] is None else -one[1]["value"])
+        found[label] = [{"point": place["point"], "text": f"{name}: {label} {number(place['value'], 4)} mm, "
+                         f"face {place['face']}"} for name, place in places[:_PLACES]]
     return found
 
 

@@ -21,7 +21,7 @@
         Array.from({length: columns}, (_, j) => table[index[i * columns + j]]));
       cells.traces.forEach((trace, k) => {
         chart.figure.data[trace].z = grid(cells.values[k]);
-        chart.figure.data[trace].text = grid(cells.texts);
+        if (cells.texts) chart.figure.data[trace].text = grid(cells.texts);
       });
     }
     return chart.figure;

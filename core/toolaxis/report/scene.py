@@ -13,7 +13,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.numeric.thinning import thinned
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.hatching import zone_faces
 from toolaxis.report.overview import coloured, root_of, view_onto
 from toolaxis.report.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, cutting_lines
@@ -78,7 +78,9 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene
     for op, colour in zip(originals, coloured(originals) if originals else (), strict=True):
         turned = [one.face for one in plan.operations if copies.get(one.number) == op.number]
         said = f"{op.number}: face {op.face.label}" + (f" and {len(turned)} turned" if turned else "")
-        traces.append(drawn.mesh([op.face, *turned], said if op.done else f"{said}, no axis",
+        left = outcome_of([op], plan.blades) == "complete"
+        said += "" if op.done else ", left to clean-up" if left else ", no axis"
+        traces.append(drawn.mesh([op.face, *turned], said,
                                  _PALE[colour] if op.done else _NO_AXIS))
     obstacles = [face for body in plan.obstacles for face in body.faces]
     if obstacles:
@@ -99,7 +101,7 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene
 
 def _layout(back: Array, up: Array) -> dict[str, Any]:
     hidden = {"visible": False}
-    eye = 1.25 * back
+    eye = 1.05 * back
     return {"scene": {"xaxis": hidden, "yaxis": hidden, "zaxis": hidden, "aspectmode": "data", "dragmode": "turntable",
                       "camera": {"eye": _xyz(eye), "up": _xyz(up), "projection": {"type": "orthographic"}}},
             "margin": {"l": 0, "r": 0, "t": 0, "b": 0}, "paper_bgcolor": "white", "template": "none",

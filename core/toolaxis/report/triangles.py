@@ -158,11 +158,12 @@ def _halved(loop: Array, corners: Index, first: int) -> Array:
 
 
 def _off(face: Face, uv: Array, points: Array, corners: Index) -> float:
-    """How far the middles of triangles and sides are from the surface at the same parameters, mm."""
+    """How far the middles of triangles and sides are from the surface, mm: along the normal at the same parameters."""
     if not len(corners):
         return 0.0
     worst = 0.0
     for rows in (corners, corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]):
-        on = face.evaluate(uv[rows].mean(axis=1)).point
-        worst = max(worst, float(np.linalg.norm(on - points[rows].mean(axis=1), axis=1).max()))
+        at = uv[rows].mean(axis=1)
+        apart = face.evaluate(at).point - points[rows].mean(axis=1)
+        worst = max(worst, float(np.abs((apart * face.normal(at)).sum(axis=1)).max()))
     return worst

@@ -31,32 +31,40 @@ def warnings_of(plan: Plan, verdict: Mapping[str, Any] | None) -> tuple[Warning,
     verdict : mapping or None
         The document of verdict.json; None where the plan was not judged.
     """
-    found = [*_of_outcome(plan), *_of_verdict(plan, verdict),
+    left, lost = _of_operations(plan)
+    found = [*lost, *_of_verdict(plan, verdict),
              *(Warning("stop", f"between operations: {text}") for text in plan.in_the_way)]
+    # Sorting keeps this order among those of one level: what was not checked stands before what is left.
     unchecked = plan.not_checked if verdict is None else verdict["not_checked"]
     if unchecked:
         found.append(Warning("mind", f"not checked: {', '.join(unchecked)}"))
     found += [Warning("mind", text) for text in plan.part.warnings]
     if plan.machine is not None and plan.machine.machine.assumed:
         found.append(Warning("mind", f"assumed in the machine's file: {', '.join(plan.machine.machine.assumed)}"))
-    found += _of_clean_up(plan)
+    found += [*left, *_of_clean_up(plan)]
     order = {"stop": 0, "mind": 1, "note": 2}
     return tuple(sorted(found, key=lambda one: order[one.level]))
 
 
-def _of_outcome(plan: Plan) -> list[Warning]:
-    found = []
+def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
+    """What is left to clean-up, and what has no axis; turned copies with the same fate count with their original."""
+    left, lost = [], []
     if plan.outcome == "cancelled":
-        found.append(Warning("stop", "the plan was cancelled before all sub-surfaces were done: it is not whole"))
+        lost.append(Warning("stop", "the plan was cancelled before all sub-surfaces were done: it is not whole"))
+    copies = {} if plan.blades is None else plan.blades.copies
+    numbers = {op.number for op in plan.operations if not op.done}
     for op in plan.operations:
-        if op.done:
+        if op.done or copies.get(op.number) in numbers:
             continue
+        turned = sum(copies.get(number) == op.number for number in numbers)
+        name = op.name if not turned else f"{op.name} and {turned} turned {'copies' if turned > 1 else 'copy'}"
+        verb = ("have", "are") if turned else ("has", "is")
         why = "; ".join(op.orientation.reasons) or op.orientation.outcome
         if outcome_of([op], plan.blades) == "incomplete":
-            found.append(Warning("stop", f"{op.name} has no axis: {why}"))
+            lost.append(Warning("stop", f"{name} {verb[0]} no axis: {why}"))
         else:
-            found.append(Warning("mind", f"{op.name} is left to a clean-up tool: {why}"))
-    return found
+            left.append(Warning("mind", f"{name} {verb[1]} left to a clean-up tool: {why}"))
+    return left, lost
 
 
 def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
@@ -72,10 +80,8 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         found.append(Warning("stop", f"the verdict says nothing of {', '.join(unjudged)}: run toolaxis verify again"))
     for text in verdict["reasons"]:
         name, _, rest = text.partition(": ")
-        if name in failed:
-            found.append(Warning("stop", text))
-        elif "not checked" not in rest and "nothing to judge" not in rest:
-            found.append(Warning("note", text))
+        if "not checked" not in rest and "nothing to judge" not in rest:
+            found.append(Warning("stop" if name in failed else "note", text))
     return found
 
 
