@@ -20,7 +20,8 @@ from toolaxis.post.locations import CutterLocations, gathered
 
 Array = NDArray[np.float64]
 
-_COMMENT = re.compile(r"\([^()]*\)")
+#: What stands in brackets: a comment, unless it follows the name of a Siemens call.
+_BRACKETS = re.compile(r"(CYCLE\d+|WORKPIECE|FGROUP|=\s*(?:DC|ACP|ACN|AC))?\([^()]*\)", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _WORD = re.compile(rf"([ABC]3(?==)|T[XYZ]|N[XYZ]|[A-Z])\s*=?\s*(?:DC\(|AC\(|ACP\(|ACN\()?\s*({_NUMBER})\)?")
 #: Blocks of Klartext that move nothing, by how they begin; and those without words.
@@ -230,7 +231,7 @@ def read_nc(text: str, machine: Machine, offset: ArrayLike | None = None, tool_l
     """
     control, number, ended = _Control(machine, offset, tool_length), 0, False
     for number, raw in enumerate(text.splitlines(), 1):
-        line = _COMMENT.sub(" ", raw) if "DC(" not in raw else raw
+        line = _BRACKETS.sub(lambda found: found[0] if found[1] else " ", raw)
         line = line.split(";")[0].upper().strip()
         if re.search(r"[A-Z=]\s*[-+]?(NAN|INF)\b", line):
             raise InvalidInput(f"NC line {number}: {line[:40]} holds a number that is not finite")
