@@ -1,0 +1,163 @@
+"""4+1 axes: one rotary axis stands still, the other turns without jumps, and passes are never longer than with both
+still."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import following
+from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.clamping import Clamping
+from toolaxis.orient.four_plus_one import (
+    clamped_range,
+    four_plus_one,
+    machine_of,
+    screened,
+)
+from toolaxis.orient.indexed import task
+from toolaxis.orient.moving import prove_moving
+from toolaxis.path.clamped import AngleField, Clamp, ClampedChart, ClampedCut
+from toolaxis.path.clamped_links import free_angles, on_the_circle
+from toolaxis.tools.assembly import Tool
+
+from .conftest import floor_and_wall, seeded  # type: ignore[import-not-found]
+
+TOOL = Tool.torus(12, 1, stickout=40, holder=[(14, 0), (14, 30)])
+H = 0.05
+#: Greatest turn of the free axis on this bent face, rad/mm.
+STEEP = 0.15
+MIKRON = load_machine("mikron-ucp-710")
+
+
+@pytest.fixture(scope="module")
+def found():
+    job = task(seeded(5, 1.2), TOOL, H, Mounting(MIKRON))
+    return job, *four_plus_one(job)
+
+
+def _clamp(orientation) -> tuple[int, float]:
+    name, said = orientation.reasons[0].split(" clamped at ")
+    return [axis.name for axis in MIKRON.rotary].index(name), np.radians(float(said.split()[0]))
+
+
+def test_it_is_shorter_than_the_best_fixed_axis_here_and_proven(found) -> None:
+    job, orientation, path = found
+    said = next(why for why in orientation.reasons if why.startswith("the best fixed axis takes"))
+    fixed = float(said.split(" of ")[1].split()[0])
+    assert orientation.outcome == "feasible" and path is not None and orientation.lead is not None
+    assert orientation.length == path.length(Motion.CUT) < 0.95 * fixed
+    assert prove_moving(path, TOOL, job.groups).witness is None
+    assert orientation.gouge <= 0.002 and orientation.passes == path.passes
+
+
+def test_one_axis_stands_still_and_the_other_has_no_jump(found) -> None:
+    _, orientation, path = found
+    which, angle = _clamp(orientation)
+    along = following(MIKRON, path)
+    clamped, free = along.rotary[:, which], along.rotary[:, 1 - which]
+    assert np.ptp(clamped) < np.radians(0.02)
+    mirrored = (clamped[0] - angle) / np.pi if which == 0 else 0.0
+    assert mirrored == pytest.approx(round(mirrored), abs=1e-4)
+    turn, way = np.abs(np.diff(free)), np.linalg.norm(np.diff(along.tips, axis=0), axis=1)
+    cut = path.kind[along.arrival[1:]] == Motion.CUT
+    assert np.ptp(free) > np.radians(3) and turn[~cut].max() <= np.radians(1.01)
+    assert (turn[cut] <= 1e-3 + STEEP * way[cut]).all()
+
+
+def test_the_free_angle_goes_on_from_pass_to_pass(found) -> None:
+    """Beside each other, places of two passes have angles that differ as little as along a pass."""
+    _, orientation, path = found
+    which, angle = _clamp(orientation)
+    cut = path.kind == Motion.CUT
+    free = free_angles(path.axis, Clamp(MIKRON, which, angle))[cut]
+    number = np.searchsorted(path.breaks, np.flatnonzero(cut), side="right")
+    for k in np.unique(number)[:-1]:
+        one, other = path.cc[cut][number == k], path.cc[cut][number == k + 1]
+        apart = np.linalg.norm(one[:, None] - other, axis=2)
+        turn = np.abs(free[number == k] - free[number == k + 1][apart.argmin(axis=1)])
+        assert (turn <= 1e-3 + STEEP * apart.min(axis=1)).all()
+
+
+def test_screening_takes_places_that_are_better_than_their_neighbours(found) -> None:
+    job = found[0]
+    rows = screened(Clamping(job, machine_of(job)), np.radians(12.0))
+    lengths = [one.length for one in rows]
+    assert lengths == sorted(lengths) and len(set(np.round(lengths, 6))) == len(lengths)
+
+
+@pytest.mark.parametrize("name", ["mikron-ucp-710", "dmg-dmu-60t", "head-head-portal", "nutating-head"])
+@pytest.mark.parametrize("which", [0, 1])
+def test_free_angles_of_axes_on_the_circle_are_theirs(name: str, which: int) -> None:
+    machine = load_machine(name)
+    free = machine.rotary[1 - which]
+    low, high = max(free.low, -3.0), min(free.high, 3.0)
+    angles = np.linspace(low + 0.1, high - 0.1, 40)
+    clamp = Clamp(machine, which, 0.35)
+    axes = clamp.axes(angles)
+    again = free_angles(axes, clamp)
+    assert np.allclose(clamp.axes(again), axes, atol=1e-12) and np.allclose(np.diff(again), np.diff(angles), atol=1e-9)
+
+
+def test_links_turn_the_free_axis_alone(found) -> None:
+    _, orientation, path = found
+    which, angle = _clamp(orientation)
+    clamp = Clamp(MIKRON, which, angle)
+    off = path.axis + 0.02 * np.cross(path.axis, [0.3, 1.0, 0.2]) * (path.kind != Motion.CUT)[:, None]
+    bent = replace(path, axis=off / np.linalg.norm(off, axis=1, keepdims=True))
+    made = on_the_circle(bent, clamp)
+    assert np.allclose(clamp.axes(free_angles(made.axis, clamp)), made.axis, atol=1e-12)
+    assert made.length() == pytest.approx(path.length(), rel=1e-9) and made.passes == path.passes
+    cut = made.kind == Motion.CUT
+    assert np.allclose(made.cl[cut], path.cl[path.kind == Motion.CUT], atol=1e-12)
+    assert np.abs(np.diff(free_angles(made.axis, clamp)))[~cut[1:]].max() <= np.radians(1.0) + 1e-9
+
+
+def test_a_field_that_does_not_turn_has_the_strips_of_a_fixed_axis() -> None:
+    face = seeded(5, 1.2)
+    clamp, angle = Clamp(MIKRON, 0, np.radians(30.0)), np.radians(14.0)
+    along, step = np.linspace(*face.bounds[:2], 5), np.linspace(*face.bounds[2:], 5)
+    axis = clamp.axes(np.array([angle]))[0]
+    cut = ClampedCut(TOOL, axis, H, 0.0, 0.0, "u", clamp, AngleField(along, step, np.full((5, 5), angle)))
+    places = np.array([(a, s) for a in (0.2, 0.5, 0.8) for s in (0.25, 0.5, 0.75)]).T
+    standing, moving = (ClampedChart(face, "u", still).half_widths(cut, *places) for still in (True, False))
+    assert (standing > 0).all() and np.allclose(moving, standing, rtol=3e-2)
+    guess = ClampedChart(face, "u").screen(cut, *places)
+    assert np.allclose(guess, standing.sum(axis=1), rtol=0.2)
+
+
+def test_a_field_goes_on_straight_beyond_its_nodes() -> None:
+    x = np.linspace(0, 1, 6)
+    field = AngleField(x, 2 * x, 0.3 * x[:, None] - 0.2 * (2 * x) + 0.1)
+    at = np.array([-0.2, 0.5, 1.3]), np.array([0.4, 2.5, -0.7])
+    assert np.allclose(field.at(*at), 0.3 * at[0] - 0.2 * at[1] + 0.1, atol=1e-12)
+
+
+def test_a_wall_is_kept_clear_of() -> None:
+    part = floor_and_wall()
+    job = task(part.face(1), TOOL, H, Mounting(MIKRON), part=part)
+    search = Clamping(job, machine_of(job))
+    for which in (0, 1):
+        one = search.standing(search.clamp(which, np.radians(-20.0)), "u")
+        if one is not None:
+            nodes = search.nodes["u"]
+            axes = one.clamp.axes(one.angles[one.chosen].ravel())
+            assert search._free(nodes.uv, axes)[nodes.counts.ravel()].all()
+
+
+def test_angles_at_which_an_axis_may_be_clamped() -> None:
+    turning, tilting = MIKRON.rotary
+    whole = np.degrees(clamped_range(turning, np.radians(30.0)))
+    assert np.allclose(whole, np.arange(-180, 180, 30))
+    ends = np.degrees(clamped_range(tilting, np.radians(30.0)))
+    assert np.allclose(ends, [-30, 0, 30, 60, 90, 120])
+
+
+@pytest.mark.parametrize("machine", [None, "three-axes-fixture"])
+def test_a_machine_with_two_driven_axes_is_needed(machine: str | None) -> None:
+    limits = None if machine is None else Mounting(load_machine(machine))
+    with pytest.raises(InvalidInput, match="clamps one of two driven rotary axes"):
+        four_plus_one(task(seeded(5, 0.5), TOOL, H, limits))
