@@ -113,7 +113,8 @@ def axes_picture(motions: Mapping[str, AxisMotion], speed: float, name: str) -> 
             ax = panels[row, j]
             for label, one in motions.items():
                 rows = (one.velocity, one.acceleration)[j][:, k] * scale
-                ax.plot(one.places, rows, color=_COLOURS[label], linewidth=1.2 if label in _BEFORE else 1.8, label=f"{label}: {np.abs(rows).max():.0f}")
+                ax.plot(one.places, rows, color=_COLOURS[label], linewidth=1.2 if label in _BEFORE else 1.8,
+                        label=f"{label}: {np.abs(rows).max():.0f}")
             most = sorted(float(peak[j][k]) * scale for peak in peaks)
             top = 1.15 * min(most[-1], 4 * most[0] + 1e-9)
             ax.set_ylim(-top, top)
