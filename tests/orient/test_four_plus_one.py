@@ -129,11 +129,14 @@ def test_a_field_that_does_not_turn_has_the_strips_of_a_fixed_axis() -> None:
     assert np.allclose(guess, standing.sum(axis=1), rtol=0.2)
 
 
-def test_a_field_goes_on_straight_beyond_its_nodes() -> None:
+def test_a_field_goes_on_ever_slower_beyond_its_nodes() -> None:
     x = np.linspace(0, 1, 6)
     field = AngleField(x, 2 * x, 0.3 * x[:, None] - 0.2 * (2 * x) + 0.1)
-    at = np.array([-0.2, 0.5, 1.3]), np.array([0.4, 2.5, -0.7])
-    assert np.allclose(field.at(*at), 0.3 * at[0] - 0.2 * at[1] + 0.1, atol=1e-12)
+    inside, near = (np.array([0.1, 1.0]), np.array([0.4, 0.0])), (np.array([-1e-4, 0.5]), np.array([0.4, 2.0 + 1e-4]))
+    for at in (inside, near):
+        assert np.allclose(field.at(*at), 0.3 * at[0] - 0.2 * at[1] + 0.1, atol=1e-9)
+    far = field.at(np.array([-5.0, 6.0]), np.array([0.4, 0.4])) - field.at(np.array([0.0, 1.0]), np.array([0.4, 0.4]))
+    assert np.allclose(far, [-0.3 * 0.2, 0.3 * 0.2], atol=1e-9)
 
 
 def test_a_wall_is_kept_clear_of() -> None:

@@ -46,7 +46,8 @@ class AngleField:
         return RectBivariateSpline(self.along, self.step, self.values, kx=3, ky=3, s=0)
 
     def at(self, along: Array, step: Array) -> Array:
-        """Angles at parameters, (k,) rad; beyond the nodes they go on straight.
+        """Angles at parameters, (k,) rad; beyond the nodes they go on ever slower, by what the last slope makes of one
+        gap at most.
 
         Parameters
         ----------
@@ -54,10 +55,10 @@ class AngleField:
         """
         a, s = np.clip(along, *self.along[[0, -1]]), np.clip(step, *self.step[[0, -1]])
         value = self._spline.ev(a, s)
-        for beyond, order in ((along - a, {"dx": 1}), (step - s, {"dy": 1})):
-            some = np.flatnonzero(beyond)
+        for beyond, order, nodes in ((along - a, {"dx": 1}, self.along), (step - s, {"dy": 1}, self.step)):
+            some, gap = np.flatnonzero(beyond), float(nodes[1] - nodes[0])
             if len(some):
-                value[some] += beyond[some] * self._spline.ev(a[some], s[some], **order)
+                value[some] += gap * np.tanh(beyond[some] / gap) * self._spline.ev(a[some], s[some], **order)
         return np.asarray(value)
 
 
