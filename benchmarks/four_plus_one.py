@@ -1,0 +1,116 @@
+"""4+1 axes [zhu2016, Sec. 5.4] against the best fixed axis: `python -m benchmarks.four_plus_one [FACES] [--brute]`.
+
+On three example faces, with the paper's cutter: passes and cutting length of the best 3+2 axis and of 4+1 axes on one
+machine, the clamped angle, how the free axis turns at the programmed feed (its greatest speed and acceleration by the
+planner of feeds, beside what its drive allows), times of both by the same planner, and the judge's verdict.  With
+`--brute` every angle at which either axis can be clamped is counted in steps of half a degree, and what the search
+found is set beside the best of them.
+"""
+
+import sys
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.feed.five_axes import FiveAxisSchedule
+from toolaxis.feed.schedule import Feeds
+from toolaxis.job.timing import feeds_of
+from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.clamping import Clamping
+from toolaxis.orient.four_plus_one import Finder, clamped_range
+from toolaxis.orient.indexed import task
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan
+from toolaxis.tools.assembly import Tool
+
+FACES = ("freeform", "saddle", "hyperbolic_paraboloid")
+MACHINE, TOOL, SCALLOP = "mikron-ucp-710", "torus:12x1", 0.02
+STEP = np.radians(0.5)
+#: Clamped angles whose reckoned length is within this factor of the shortest are counted exactly.
+_NEAR = 1.35
+
+
+def turning(plan: Plan) -> list[tuple[str, float, float, float, float]]:
+    """Name, greatest speed and acceleration of each rotary axis on cuts, and what its drive allows, deg and s."""
+    op, mounting = plan.operations[0], plan.machine
+    assert op.path is not None and mounting is not None
+    feeds: Feeds = feeds_of(plan.inputs)
+    made = FiveAxisSchedule(mounting.machine, op.path, feeds, mounting.table_from_part)
+    most = np.zeros((2, 2))
+    for one in made.stretches():
+        found = made.curve(one) if one.turning and one.kind == Motion.CUT else None
+        if found is not None:
+            _, *state, _ = found.at(np.linspace(0.0, found.duration, 4000))
+            for level, rows in enumerate(state):
+                most[level] = np.maximum(most[level], np.abs(rows[:, 3:] / made.levers).max(axis=0))
+    told = []
+    for k, axis in enumerate(mounting.machine.rotary):
+        assert axis.drive is not None
+        limits = axis.drive.levels(axis.name)
+        speed, rate, top, steep = (float(np.degrees(x)) for x in (most[0, k], most[1, k], limits[0], limits[1]))
+        told.append((axis.name, speed, rate, top, steep))
+    return told
+
+
+def brute(name: str) -> None:
+    """Every clamped angle in steps of half a degree, counted as the search counts, beside what the search finds."""
+    face = ta.load(f"examples/{name}.step").sculptured[0]
+    mounting = Mounting(ta.load_machine(MACHINE))
+    job = task(face, Tool.torus(12, 1), SCALLOP, mounting)
+    began = time.perf_counter()
+    finder = Finder(Clamping(job, mounting))
+    found = finder.found(Orientation(None))  # no fixed axis: the search stands on its own
+    spent, best = time.perf_counter() - began, min(one.count.length for one in finder.known.values() if one is not None)
+    every = Finder(Clamping(job, mounting))
+    rows = []
+    for which, axis in enumerate(mounting.machine.rotary):
+        for angle in clamped_range(axis, STEP):
+            for feed in ("u", "v"):
+                rough = every.search.reckoned(every.search.clamp(which, float(angle)), feed)
+                rows += [] if rough is None else [(rough.length, rough.clamp, feed)]
+    least = min(row[0] for row in rows)
+    near = [row for row in rows if row[0] <= _NEAR * least]
+    whole = [one for one in (every.choice(clamp, feed) for _, clamp, feed in near) if one is not None]
+    top = min(whole, key=lambda one: one.count.length)
+    clamp = top.candidate.clamp
+    print(f"{name}: brute force, {len(rows)} clamped angles and feeds screened, {len(near)} counted: best "
+          f"{top.count.length:.1f} mm with {clamp.machine.rotary[clamp.which].name} at {np.degrees(clamp.angle):.2f} "
+          f"deg, feed {top.candidate.feed}; the search, {len(finder.known)} counted in {spent:.0f} s: {best:.1f} mm, "
+          f"{100 * (best / top.count.length - 1):+.2f} %; first of its ranking: "
+          f"{found[0].count.length:.1f} mm with a moving axis", flush=True)
+
+
+def measured(name: str) -> None:
+    """One face: both plans and what they come to."""
+    rows = []
+    for strategy in ("indexed", "four-plus-one"):
+        began = time.perf_counter()
+        plan = ta.plan(f"examples/{name}.step", TOOL, SCALLOP, machine=MACHINE, strategy=strategy, workers=1)
+        spent, op = time.perf_counter() - began, plan.operations[0]
+        verdict = ta.verify(plan)
+        one = verdict.operations[0]
+        rows.append(plan)
+        print(f"{name}, {strategy}: {op.orientation.passes} passes, cutting length {op.orientation.length:.1f} mm, "
+              f"time {plan.seconds:.1f} s, judge {'passed' if verdict.passed else 'FAILED'}: scallop "
+              f"{one.scallop_max:.5f} mm, gouge {one.gouge_max:.5f} mm; planned in {spent:.0f} s", flush=True)
+    fixed, moving = (plan.operations[0] for plan in rows)
+    print(f"  {moving.orientation.reasons[0]}; {moving.orientation.reasons[1]}; length "
+          f"{100 * (moving.orientation.length / fixed.orientation.length - 1):+.1f} %, time "
+          f"{100 * (rows[1].seconds / rows[0].seconds - 1):+.1f} %")
+    if moving.orientation.lead is not None:
+        for axis, speed, rate, top, most in turning(rows[1]):
+            print(f"  {axis} on cuts: at most {speed:.2f} of {top:.1f} deg/s and {rate:.1f} of {most:.1f} deg/s2")
+
+
+def main(asked: Sequence[str] = ()) -> None:
+    """Measure the faces that are named, all of them without any."""
+    faces = [word for word in asked if not word.startswith("-")]
+    for name in faces or FACES:
+        (brute if "--brute" in asked else measured)(name)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
