@@ -26,6 +26,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.bars import baselines_picture, options_picture
 from toolaxis.report.contacts import contacts_picture
+from toolaxis.report.free_angle import free_angle_picture, turning_of
 from toolaxis.report.hemisphere import hemisphere_picture
 from toolaxis.report.machine import has_machine_picture, machine_picture
 from toolaxis.report.overview import overview_picture
@@ -101,6 +102,9 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
                 _draw_contacts(plan, op, folder)
             if plan.inputs.method.startswith("blade"):
                 draw_blade(plan, op, job, folder)
+            turning = turning_of(plan, op) if plan.inputs.method == "four-plus-one" else None
+            if turning is not None:
+                free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png", dpi=DPI)
             continue
         if op.done:
             widths_picture(width_lines(plan, op, job), (op.face, plan.tool),
