@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import pi
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -32,6 +33,7 @@ from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
+from toolaxis.shape.joined import GREATEST_CORNER
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
@@ -150,7 +152,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         check_bull_nose(cutter, flat_too=False)
         if mounting is None:
             raise InvalidInput("strategy 'multiscale' has the rotary axes of a machine turn least: name a machine")
-    loaded, numbers = with_joined(load(part), faces)
+    sections = strategy.startswith("blade")  # plane sections, to which iso-parametric lines do not matter
+    loaded, numbers = with_joined(load(part), faces, pi if sections else GREATEST_CORNER)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, numbers) for piece in split_at_kinks(face)]

@@ -14,6 +14,7 @@ from toolaxis.job.toolfile import load_holder, load_tool
 from toolaxis.machine.configurations import Machine
 from toolaxis.plan.plan import STRATEGIES, Inputs
 from toolaxis.shape.face import Face
+from toolaxis.shape.joined import GREATEST_CORNER
 from toolaxis.shape.part import Part
 from toolaxis.shape.skins import join, skins
 from toolaxis.tools.assembly import Tool
@@ -261,7 +262,8 @@ def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
     return tuple(part.face(int(number)) for number in dict.fromkeys(numbers))
 
 
-def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None) -> tuple[Part, Any]:
+def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None,
+                corner: float = GREATEST_CORNER) -> tuple[Part, Any]:
     """The part with the faces joined that are asked for as one, and the list of faces that is left for `chosen_faces`.
 
     Parameters
@@ -269,6 +271,8 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
     part : Part
     faces : int, iterable of int and of iterables of int, text or None
         "skins" joins all that can be joined of the sculptured faces, and warns of what cannot.
+    corner : float
+        Greatest angle by which iso-parametric lines may turn across joins that are asked for, rad.
 
     Raises
     ------
@@ -288,7 +292,7 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
     for row in faces:
         if isinstance(row, Iterable) and not isinstance(row, str):
             members = tuple(row)
-            part = join(part, members)
+            part = join(part, members, corner=corner)
             row = members[0]
         rows.append(row)
     return part, rows

@@ -223,7 +223,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     """
     check(document)
     for numbers in document["part"].get("joined", ()):
-        part = join(part, numbers, np.inf)
+        part = join(part, numbers, np.inf, np.inf)
     given = dict(document["inputs"])
     inputs = Inputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
     operations = tuple(_operation_from(record, part, path)

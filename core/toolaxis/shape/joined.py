@@ -33,7 +33,8 @@ _ROUNDING = 1e-9
 GREATEST_CORNER = radians(30.0)
 
 
-def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float = GAP) -> Face:
+def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float = GAP,
+           corner: float = GREATEST_CORNER) -> Face:
     """One face from patches that continue each other smoothly.
 
     Parameters
@@ -44,6 +45,8 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
         From `toolaxis.shape.meeting.meetings`.
     tolerance : float
         By how much the surface may leave the faces at the joins, mm.
+    corner : float
+        Greatest angle by which iso-parametric lines may turn across a join, rad.
 
     Returns
     -------
@@ -81,7 +84,7 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
     made = Face(surface, (), faces[0].flip, faces[0].number, name_of(faces), kind,
                 max(face.tolerance for face in faces) + (moved if moved > _ROUNDING else 0.0), _kinks(members, lines),
                 tuple(members[cell] for face in faces for cell in members if members[cell].face is face))
-    _check_turns(made)
+    _check_turns(made, corner)
     return replace(made, trims=_outline(made, lines))
 
 
@@ -249,7 +252,7 @@ def _kinks(members: dict[Cell, Member], lines: tuple[Array, ...]) -> tuple[tuple
     return tuple(sorted(found[0])), tuple(sorted(found[1]))
 
 
-def _check_turns(face: Face) -> None:
+def _check_turns(face: Face, most: float) -> None:
     """That normals, and iso-parametric lines, turn little across every join."""
     for axis, t in joins(face):
         turn = turn_at(face, axis, t)
@@ -258,10 +261,10 @@ def _check_turns(face: Face) -> None:
                                       f"degrees across a join, {np.degrees(GREATEST_TURN):g} are allowed: machine them "
                                       "face by face")
         corner = corner_at(face, axis, t)
-        if corner > GREATEST_CORNER:
+        if corner > most:
             raise UnsupportedGeometry(f"faces {face.label} cannot be joined: iso-parametric lines, and passes with "
                                       f"them, would turn by {np.degrees(corner):.0f} degrees across a join, "
-                                      f"{np.degrees(GREATEST_CORNER):.0f} are allowed: machine them face by face")
+                                      f"{np.degrees(most):.0f} are allowed: machine them face by face")
 
 
 def joins(face: Face) -> list[tuple[int, float]]:

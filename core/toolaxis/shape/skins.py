@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import clipped, grouped
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.joined import corner_at, joined, joins, name_of
+from toolaxis.shape.joined import GREATEST_CORNER, corner_at, joined, joins, name_of
 from toolaxis.shape.layout import laid_out_from
 from toolaxis.shape.meeting import GAP, Meeting, meeting_along, meetings
 from toolaxis.shape.part import Part
@@ -26,7 +26,7 @@ _WHOLE = 1e-6
 _CORNER = np.radians(5.0)
 
 
-def join(part: Part, faces: Iterable[int], tolerance: float = GAP) -> Part:
+def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float = GREATEST_CORNER) -> Part:
     """The part with some of its faces, which continue each other smoothly, as one.
 
     Parameters
@@ -36,6 +36,9 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP) -> Part:
         Numbers; the first one's u, v and number are those of the joined face.
     tolerance : float
         How far the joined surface may lie beside the faces at the joins, mm.
+    corner : float
+        Greatest angle by which iso-parametric lines may turn across a join, rad: of no matter to passes that do not
+        follow them.
 
     Returns
     -------
@@ -54,7 +57,7 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP) -> Part:
     **Properties**: 1. areas add up; 2. skin and surroundings of a face are the same faces as before.
     """
     numbers = _checked(part, faces)
-    made = joined([part.face(n) for n in numbers], meetings(part, numbers), tolerance)
+    made = joined([part.face(n) for n in numbers], meetings(part, numbers), tolerance, corner)
     first = min(k for k, face in enumerate(part.faces) if face.number in numbers)
     kept = [(k, face) for k, face in enumerate(part.faces) if face.number not in numbers]
     order = [face for _, face in sorted([*kept, (first, made)], key=lambda row: row[0])]
