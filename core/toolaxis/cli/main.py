@@ -125,7 +125,9 @@ def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
 def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub = commands.add_parser("post", help="write an NC program and a setup sheet from a plan",
                               description="Write a plan's operations in the dialect of a control, with a setup sheet.")
-    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+    sub.add_argument("folder", metavar="DIR",
+                     help="folder that toolaxis plan wrote; or a file made elsewhere, APT or the NC program of a "
+                          "five-axis --machine, which --dialect apt writes as an APT file beside it")
     sub.add_argument("--dialect", required=True, metavar="NAME",
                      help="fanuc (G68.2), haas-g268, haas-g254, siemens (CYCLE800), heidenhain (PLANE SPATIAL), "
                           "linuxcnc-twp (G68.2), linuxcnc or iso (a work offset for each orientation), apt (CL files)")

@@ -1,4 +1,4 @@
-"""`toolaxis post`: NC programs and CL files from a plan's folder."""
+"""`toolaxis post`: NC programs and CL files from a plan's folder, and CL files from CL data made elsewhere."""
 
 from argparse import Namespace
 from collections.abc import Callable
@@ -6,11 +6,15 @@ from pathlib import Path
 
 from toolaxis.cad.machines import load_machine
 from toolaxis.cli.output import print_json, say
+from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, staged
 from toolaxis.job.posting import posted, verdict_of
+from toolaxis.job.reading import read_cl
 from toolaxis.job.spec import offset_from
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
+from toolaxis.post.apt import locations_text
+from toolaxis.post.dialects.known import APT
 from toolaxis.post.gcode import Options
 
 
@@ -29,6 +33,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         0, or 1 where an operation of the plan has no axis and is not in the program.
     """
     folder = Path(given.folder)
+    if folder.is_file():
+        return _written_again(given, folder)
     options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
     plan = read_plan(folder)
     verdict = verdict_of(folder)
@@ -49,6 +55,21 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     if missing:
         say(f"toolaxis: not in the program, for want of an axis: {', '.join(missing)}")
     return 1 if missing else 0
+
+
+def _written_again(given: Namespace, file: Path) -> int:
+    """Write CL data that were made elsewhere, an APT file or a program, as an APT file beside them."""
+    if given.dialect != APT:
+        raise InvalidInput(f"{file} holds CL data that were made elsewhere: they are written as APT files, use "
+                           f"--dialect {APT}; dialects of programs take a plan's folder")
+    found = read_cl(file, given.machine or None, offset=offset_from(given.offset) if given.offset else None)
+    target = file.with_suffix(".apt")
+    target = target if target.resolve() != file.resolve() else file.with_name(f"{file.stem}-again.apt")
+    target.write_text(locations_text(found, file.stem), encoding="utf-8")
+    if given.json:
+        print_json({"dialect": APT, "files": [str(target)], "points": len(found.tip)})
+    say(f"toolaxis: {target}: {len(found.tip)} points")
+    return 0
 
 
 def _mounting(given: Namespace, plan: Plan) -> Mounting | None:
