@@ -11,6 +11,8 @@ from toolaxis.contact.section_width import expected_widths, section_parameters, 
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
 from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.roughness_pictures import draw_roughness, study
+from toolaxis.report.roughness import front_picture
 from toolaxis.shape.nearest import nearest
 from toolaxis.verify.removal import removal
 
@@ -54,6 +56,20 @@ def test_strips_are_as_wide_as_expected_and_the_machine_follows(plan) -> None:
     assert len(wide) > 20 and wide.min() > low - 5e-3 and wide.max() < high + 5e-3
     assert len(following(plan.machine.machine, op.path).rotary) >= len(op.path.cl)
     assert any("um allowed" in why for why in op.orientation.reasons)
+
+
+def test_the_picture_shows_what_the_plan_says(plan, tmp_path) -> None:
+    op = plan.operations[0]
+    seen = study(plan, op)
+    assert f"Ra {seen.roughness.mean():.2f}" in op.orientation.reasons[0][:7]
+    assert len(seen.roughness) == 90 and seen.roughness.max() < 1000 * RA
+    assert set(seen.velocities) == {"planned", "20° lead"} and seen.axes == ("C", "B")
+    fastest = {title: np.abs(rates).max() for title, (_, rates) in seen.velocities.items()}
+    assert fastest["planned"] < fastest["20° lead"]
+    draw_roughness(plan, op, tmp_path)
+    assert (tmp_path / f"{op.name}-roughness.png").stat().st_size > 20000
+    front = front_picture([("Sturz", 2.5, 1.4, 42.0), ("", 2.6, 1.2, 0.0), ("", 3.0, 0.8, 4.7)], 1.6)
+    assert [len(ax.lines) for ax in front.axes] == [3, 2]
 
 
 def test_it_is_read_back(plan, tmp_path) -> None:

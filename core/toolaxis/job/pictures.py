@@ -13,6 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.axes import search_task
 from toolaxis.job.blade_pictures import draw_blade
 from toolaxis.job.rooms import tightest
+from toolaxis.job.roughness_pictures import draw_roughness
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.ledger import Ledger
@@ -105,6 +106,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
             turning = turning_of(plan, op) if plan.inputs.method == "four-plus-one" else None
             if turning is not None:
                 free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png", dpi=DPI)
+            if plan.inputs.method == "multiscale":
+                draw_roughness(plan, op, folder)
             continue
         if op.done:
             widths_picture(width_lines(plan, op, job), (op.face, plan.tool),

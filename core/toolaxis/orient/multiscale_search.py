@@ -48,7 +48,7 @@ _SHARE = 0.88
 #: Grid of leans along and across the passes, leans between the least and the greatest, and what is added to the least.
 _GRID, _LEANS, _ROOM = (25, 15), 56, radians(0.4)
 #: Places along passes: their distance, mm, the least and the greatest number.
-_GAP, _PLACES = 1.2, (24, 160)
+_GAP, _PLACES = 1.0, (24, 160)
 #: How often floors of leans are raised where the tool comes too close, by how much, rad, and how often Ra is tightened.
 _RAISED, _RAISE, _TIGHTENED = 6, radians(1.0), 4
 #: How many beginnings are followed, more only where none keeps all; the sum at which rotary axes stand still; and how
@@ -147,6 +147,10 @@ class Multiscale:
         coarse = self._uv(np.linspace(low, high, 65), step, feed)
         length = float(np.linalg.norm(np.diff(self.face.evaluate(coarse).point, axis=0), axis=1).sum())
         places = np.linspace(low, high, int(np.clip(round(length / _GAP), *_PLACES)) + 1)
+        if apart is not None:  # the borders of the face are places too
+            own = np.array([end for end in apart[1:] if low < end < high])
+            places = np.union1d(places[np.abs(places[:, None] - own).min(axis=1, initial=np.inf) > 1e-6 * (high - low)],
+                                own)
         uv = self._uv(places, step, feed)
         inside, gap = np.ones(len(places), dtype=bool), np.zeros(len(places))
         if apart is not None:
