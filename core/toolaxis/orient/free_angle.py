@@ -156,12 +156,15 @@ def smoothest(low: Array, high: Array, along: Array, step: Array) -> Array:
 
 
 def _least_form(form: Array, low: Array, high: Array) -> Array:
-    """The least of a positive definite form x form x between bounds: those that hold are exchanged until none is wrong.
+    """The least of a form x form x, which only constants make zero, between bounds that let no constant through: those
+    that hold are exchanged until none is wrong.
     """
-    x = (low + high) / 2
-    held = np.zeros(len(x), dtype=np.int8)
+    x = np.full(len(low), (float(low.max()) + float(high.min())) / 2)
+    held = np.where(x < low, -1, np.where(x > high, 1, 0)).astype(np.int8)
     for _ in range(_EXCHANGES):
         free = held == 0
+        if free.all():
+            break
         x = np.where(held < 0, low, np.where(held > 0, high, x))
         x[free] = np.linalg.solve(form[np.ix_(free, free)], -form[np.ix_(free, ~free)] @ x[~free])
         slope = form @ x
