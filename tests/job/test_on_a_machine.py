@@ -46,7 +46,9 @@ def test_axes_are_held_and_the_plan_says_where(plan, tmp_path: Path) -> None:
                                                                                      [0, 0, 1, 60], [0, 0, 0, 1]])
     verdict = ta.verify(again)
     assert verdict.passed
-    assert "collision with the machine itself" in verdict_document(again, verdict)["not_checked"]
+    assert verdict_document(again, verdict)["not_checked"] == ["obstacles other than the part"]
+    rooms = verdict.operations[0].clearance
+    assert rooms["machine"].distance >= 1.0 and rooms["index move"].distance >= 1.0, "bodies are judged too"
 
 
 def test_the_judge_refuses_a_part_that_was_moved_out_of_the_travel(plan) -> None:

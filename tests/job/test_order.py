@@ -207,8 +207,10 @@ def test_what_is_in_the_way_on_every_order_is_told_and_not_posted() -> None:
     machine = plan.machine.machine
     roof = Body("roof", "bed", "box", np.array([[-900.0, -900, 740], [900, 900, 760]]))
     made = timed(replace(plan, machine=Mounting(replace(machine, bodies=(*machine.bodies, roof)), PLACE)), reorder=True)
-    assert all(op.done for op in made.operations) and len(made.in_the_way) == 3
-    assert all("on the retract the spindle meets the roof by 10.0 mm at C" in why for why in made.in_the_way)
+    assert all(op.done for op in made.operations) and len(made.in_the_way) == 5
+    assert all("the spindle meets the roof by 10.0 mm at C" in why for why in made.in_the_way)
+    assert sum("before face" in why and "on the retract" in why for why in made.in_the_way) == 3
+    assert "on the approach" in made.in_the_way[3] and made.in_the_way[4].startswith("after face")
     with pytest.raises(ta.InvalidInput, match="the machine meets something between operations: before face"):
         posted(made, "linuxcnc", replace(made.machine, tool_length=TOOL.gauge_length))
 

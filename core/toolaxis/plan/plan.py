@@ -182,7 +182,7 @@ class Plan:
     order : Order, optional
         What the order of operations saves, where it was chosen.
     in_the_way : tuple of str
-        What bodies of the machine meet between operations, in sentences.
+        What bodies of the machine meet between operations, before the first and after the last one, in sentences.
     """
 
     part: Part
