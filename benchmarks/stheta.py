@@ -8,12 +8,14 @@ against quaternions, and -24.5 % of the time of the program without re-schedulin
 """
 
 import time
+from pathlib import Path
 
 import numpy as np
 from benchmarks._blades import FAMILIES, sections
 from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.cad.loading import load
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.feed.axis_motion import AxisMotion, axis_motion
 from toolaxis.feed.five_axes import five_axis_time
 from toolaxis.feed.schedule import Feeds
@@ -21,13 +23,20 @@ from toolaxis.machine.catalogue import load_machine
 from toolaxis.numeric.corners import corner
 from toolaxis.orient.blade import Layer, Scheduled, Swing, reschedule
 from toolaxis.orient.blade_baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.orient.blade_layers import along_blade
+from toolaxis.orient.blade_path import swing_of_path
+from toolaxis.orient.blade_plan import blade
 from toolaxis.orient.blade_section import base_of, section
+from toolaxis.orient.indexed import task
+from toolaxis.shape.skins import join
+from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
 RADIUS, LAYERS, SPEED = 3.0, 25, 50.0
 FINE, COARSE, TIMED = 6000, 400, 3
 MACHINE = load_machine("four-axis-a")
+EXAMPLE = Path(__file__).parents[1] / "examples" / "blisk.step"
 #: The part stands with its z along X.
 TURN = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 UP = Swing(np.array([0.0, 0.0, 1.0]))
@@ -164,6 +173,24 @@ def exact() -> None:
     print(f"exact corner: off by {off:.1e}")
 
 
+def blisk() -> None:
+    """A blade of the blisk of [zhu2016] Fig. 25, its four faces as one: alone on its hub, and between others."""
+    part = join(load(EXAMPLE), (1, 163, 3, 161), corner=np.pi)
+    tool = Tool.ball(6, stickout=110, holder=[(12.5, 0), (12.5, 60)])
+    alone = {"skin": [part.face(n) for n in (4, 159, 160, 162)], "surroundings": [part.face(5)]}
+    for title, around in (("alone on its hub", alone), ("between its neighbours", {"part": part})):
+        begun = time.perf_counter()
+        found, made = blade(task(part.face(1), tool, 0.1, direction="climb", **around))
+        taken = time.perf_counter() - begun
+        print(f"blisk blade, {tool.name}, scallop 0.1 mm, {title}: {found.outcome}, {taken:.1f} s", flush=True)
+        if made is not None:
+            swing = swing_of_path(made, along_blade(part.face(1), "u"))
+            angle = swing.angles(made.axis[made.kind == Motion.CUT])
+            back = int((np.diff(angle) * np.sign(angle[-1] - angle[0]) < -1e-9).sum())
+            print(f"  {found.passes} layers, {found.length:.0f} mm, gouge {found.gouge:.4f} mm, reversals {back}")
+        print("  " + "; ".join(found.reasons))
+
+
 def main() -> None:
     """All families."""
     exact()
@@ -172,6 +199,7 @@ def main() -> None:
           f"{'time s':>8}   at {SPEED:g} mm/s; times asked for {4 * SPEED:g} mm/s, {TIMED} layers")
     for name in FAMILIES:
         family(name)
+    blisk()
 
 
 def short() -> None:

@@ -2,24 +2,27 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmarks._blades import loft, sections
 
+from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import rotation
 from toolaxis.orient.blade import Layer, Swing, plane_of, reschedule, swing_of
-from toolaxis.orient.blade_layers import Ring, closed_parameter
+from toolaxis.orient.blade_layers import Ring, along_blade, closed_parameter
 from toolaxis.orient.blade_plan import BladeSearch, blade
 from toolaxis.orient.blade_room import Room
 from toolaxis.orient.blade_section import base_of, section
 from toolaxis.orient.indexed import task
 from toolaxis.orient.moving import prove_moving
 from toolaxis.shape.face import Face
+from toolaxis.shape.skins import join
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.verdict import Task as Judged
 from toolaxis.verify.verdict import judge
@@ -200,3 +203,21 @@ def test_a_closed_face_tells_its_parameter(turbine):
     turned = Face.from_bspline(turbine.surface.control[..., :3].transpose(1, 0, 2), (3, 3),
                                (turbine.surface.knots_v, turbine.surface.knots_u), flip=True)
     assert closed_parameter(turned) == "v"
+
+
+def test_a_blade_of_a_blisk_closes_where_its_faces_are_joined():
+    part = load(Path(__file__).parents[2] / "examples" / "blisk.step")
+    with pytest.raises(UnsupportedGeometry, match="would turn by 41 degrees"):
+        join(part, (1, 163, 3, 161))
+    with pytest.raises(InvalidInput, match="does not close around a blade"):
+        closed_parameter(part.face(1))
+    face = join(part, (1, 163, 3, 161), corner=np.pi).face(1)
+    assert closed_parameter(face) == "u"
+    ring = Ring(face, "u", along_blade(face, "u"), 3.0)
+    low, high = ring.span
+    assert high - low > 40
+    along = ring.places(1e-3)
+    found = reschedule([Layer(ring.at(along, np.full(len(along), z))[2]) for z in np.linspace(low, high, 5)],
+                       Swing(ring.direction), curve="least")
+    assert min(one.wide.width for one in found) > np.radians(90)
+    assert max(one.peak / one.bound for one in found) < 3

@@ -23,8 +23,8 @@ from toolaxis.post.gcode import Dialect, Lines, Options, Program, bare_program, 
 
 Array = NDArray[np.float64]
 
-#: Smallest number of rotary axes that tool centre point control moves.
-_AXES = 2
+#: Numbers in words.
+_WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,12 +58,15 @@ class TipControl(ABC):
         Digits of rotary angles, degrees, or of components of the axis.
     notes : tuple of str
         Sentences for the setup sheet.
+    least_axes : int
+        Rotary axes that it needs.
     """
 
     dialect: ClassVar[Dialect]
     title: ClassVar[str]
     axis_digits: ClassVar[int]
     notes: ClassVar[tuple[str, ...]] = ()
+    least_axes: ClassVar[int] = 2
 
     @abstractmethod
     def begin(self, program: Program, course: Course) -> Lines:
@@ -98,9 +101,9 @@ class TipControl(ABC):
         InvalidInput
         """
         driven = sum(not axis.by_hand for axis in program.machine.rotary)
-        if driven < _AXES:
+        if driven < self.least_axes:
             raise InvalidInput(f"the tool axis of the plan moves and {program.machine.name} drives {driven} rotary "
-                               f"axes: {self.title} needs two")
+                               f"axes: {self.title} needs {_WORDS[self.least_axes]}")
 
 
 def moves(plan: Plan) -> bool:

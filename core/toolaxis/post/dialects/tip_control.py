@@ -47,6 +47,7 @@ class SiemensTip(TipControl):
     dialect = Siemens()
     title = "Siemens TRAORI"
     axis_digits = 7
+    least_axes = 1
     notes = (_NOTE, "The rotary axes are turned to the first axis before TRAORI; the control goes on from there in the "
              "same solution. The program is for those angles, in the comments.")
 
@@ -99,6 +100,7 @@ class HeidenhainTip(TipControl):
     dialect = Heidenhain()
     title = "Heidenhain M128"
     axis_digits = 4
+    least_axes = 1
     notes = (_NOTE, "The tool retracts along its axis by M140 MB MAX before the axes turn.",
              "M128 keeps the tip in its place: the tool length in the table is that to the tip.")
 
