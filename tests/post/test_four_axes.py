@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from benchmarks._blades import loft
 
 import toolaxis as ta
-from benchmarks._blades import loft
 from toolaxis.errors import InvalidInput
 from toolaxis.job.posting import posted
 from toolaxis.job.reading import read_cl
@@ -39,5 +39,5 @@ def test_a_program_with_one_rotary_axis_says_the_path(plan, dialect, tmp_path):
 
 
 def test_fanuc_needs_two(plan):
-    with pytest.raises(InvalidInput, match="drives 1 rotary axes: Fanuc G43.4 needs two"):
+    with pytest.raises(InvalidInput, match=r"drives 1 rotary axes: Fanuc G43\.4 needs two"):
         posted(plan, "fanuc", mounting(), Options())
