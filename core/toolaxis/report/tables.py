@@ -104,7 +104,7 @@ def plan_table(plan: Plan) -> Table:
                ("outcome", "left")]
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
-    points = _POINTS if plan.inputs.method in ("sturz", "four-plus-one") else ""
+    points = _POINTS if plan.inputs.method in ("sturz", "four-plus-one", "blade", "blade-keys") else ""
     return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, reckoning(plan), _order(plan)))))
 
 
