@@ -46,6 +46,7 @@
     if (title) layout.title = {...layout.title, text: title.replace(/[:;,] /g, found => found[0] + "<br>"), font: {size: 12}};
     layout.margin = {...layout.margin, l: Math.min(layout.margin.l, 45), r: 5};
     layout.font = {...layout.font, size: 11};
+    if (layout.scene) layout.legend = {...layout.legend, maxheight: 0.3, font: {size: 11}};
     return layout;
   }
 

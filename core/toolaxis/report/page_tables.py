@@ -83,6 +83,8 @@ def orientation_rows(plan: Plan) -> Rows:
     notes = ["Z points from the tip to the spindle; all in the part's frame. The origin is the plan's datum."]
     if plan.machine is None:
         notes.append("Machine angles: no machine was given.")
+    elif any(group[0].orientation.lead is not None for group in groups.values()):
+        notes.append("Where the axis moves, so do the machine's angles: toolaxis post writes how far.")
     if any(len(group) > 1 for group in groups.values()):
         notes.append("X is that of the first operation; each has its own in plan.json.")
     return _numbers("orientations and work coordinate systems", headings, rows, notes)

@@ -31,6 +31,8 @@ _COARSE, _LINES = 1 / 4000, 1 / 10000
 _MOST_POINTS = 150_000
 #: How far away the light stands: the viewer takes no more, and lights triangles from the other side than it is told.
 _LIGHT = -1e5
+#: Diagonal of what is drawn, in the viewer's unit: it fills the view.
+_LARGE = 2.6
 #: Decimals of coordinates, mm.
 _DIGITS = 3
 
@@ -95,15 +97,24 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene
     traces += [_places(name, found) for name, found in worst.items() if found]
     traces.append(_datum(plan.datum, 0.08 * size))
     made = go.Figure([trace for trace in traces if trace is not None])
-    made.update_layout(_layout(unit(back), up))
+    made.update_layout(_layout(unit(back), up, _ranges(made)))
     return Scene(made, drawn.off, apart)
 
 
-def _layout(back: Array, up: Array) -> dict[str, Any]:
-    hidden = {"visible": False}
-    eye = 1.05 * back
-    return {"scene": {"xaxis": hidden, "yaxis": hidden, "zaxis": hidden, "aspectmode": "data", "dragmode": "turntable",
-                      "camera": {"eye": _xyz(eye), "up": _xyz(up), "projection": {"type": "orthographic"}}},
+def _ranges(made: go.Figure) -> Array:
+    """Lower and upper ends of everything drawn, (2, 3) mm."""
+    ends = [np.array([[pick(trace[name]) for name in "xyz"] for pick in (np.nanmin, np.nanmax)]) for trace in made.data]
+    return np.array([np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)])
+
+
+def _layout(back: Array, up: Array, ranges: Array) -> dict[str, Any]:
+    margin = 0.01 * float(np.linalg.norm(ranges[1] - ranges[0]))
+    low, high = ranges[0] - margin, ranges[1] + margin
+    sides = {f"{name}axis": {"visible": False, "range": [round(float(a), 3), round(float(b), 3)]}
+             for name, a, b in zip("xyz", low, high, strict=True)}
+    camera = {"eye": _xyz(1.25 * back), "up": _xyz(up), "projection": {"type": "orthographic"}}
+    return {"scene": {**sides, "aspectmode": "manual", "aspectratio": _xyz(_LARGE * unit(high - low)),
+                      "dragmode": "turntable", "camera": camera},
             "margin": {"l": 0, "r": 0, "t": 0, "b": 0}, "paper_bgcolor": "white", "template": "none",
             "legend": {"orientation": "h", "y": 0.0, "yanchor": "top", "font": {"size": 12}, "itemsizing": "constant"}}
 
