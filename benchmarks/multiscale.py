@@ -1,7 +1,7 @@
 """Strip width and roughness together: the numbers of [dong2023], and its experiment on another freeform face.
 
-The paper's cutter (R 5, r 3 mm, four teeth), feed (800 mm/min) and speed (4800/min) on the middle 50 x 35 mm of
-examples/freeform.step, whose radii of curvature begin at 83 mm; the paper's own surface is not published.  Passes are
+The paper's cutter (R 5, r 3 mm, four teeth), feed (800 mm/min) and speed (4800/min) on the middle 37 x 28 mm of
+examples/freeform.step, whose radii of curvature begin at 90 mm; the paper's own surface is not published.  Passes are
 laid so that Sturz milling at 20 degrees has the mean Ra of its Table 1, 1.425 um.  On the very same passes the rotary
 axes of a BC table-table turn least while all strips are at least so wide: the whole front of strip width, Ra and
 turning.  Ra is evaluated at 90 places over 4 mm, by the passes' profiles and by the judge, which removes material at

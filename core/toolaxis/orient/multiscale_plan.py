@@ -98,15 +98,19 @@ def words(search: Multiscale, one: Found) -> tuple[str, ...]:
     """
     wide, (low, high) = one.widths, search.wish.widths
     lean = np.concatenate([lane.lane.leans(lane.axes) for lane in one.lanes])
-    fastest = max(float(np.abs(lane.spline.velocities(lane.lane.places, lane.lane.durations)).max())
-                  for lane in one.lanes)
+    rates = np.abs(np.concatenate([lane.spline.velocities(lane.lane.places, lane.lane.durations)
+                                   for lane in one.lanes]))
+    most = np.array([axis.drive.velocity if axis.drive else np.inf for axis in search.mounting.machine.rotary])
+    slow = float((rates > most).any(axis=1).mean())
+    slower = (f"rotary axes would pass their velocity on {100 * slow:.1f} % of the passes: the control feeds slower "
+              "there",) if slow > 0 else ()
     return (f"Ra {1000 * one.roughness.mean():.3f} um in the mean and {1000 * one.roughness.max():.3f} um at most of "
             f"{len(one.uv)} places, {1000 * search.roughness:g} um allowed",
             f"section strip width {wide.min():.3f} to {wide.max():.3f} mm at a height of {search.wish.scallop:g} mm, "
             f"{low:.4f} to {high:.4f} mm expected",
             f"lean {degrees(lean.min()):.2f} to {degrees(lean.max()):.2f} deg; rotary axes turn by "
-            f"{degrees(fastest):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squared velocities sum to "
-            f"{one.cost:.4g} (rad/s)^2", CHECKED)
+            f"{degrees(float(rates.max())):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squared velocities "
+            f"sum to {one.cost:.4g} (rad/s)^2", *slower, CHECKED)
 
 
 def constant_lead(search: Multiscale, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:
