@@ -109,7 +109,7 @@ def words(search: Multiscale, one: Found) -> tuple[str, ...]:
             f"section strip width {wide.min():.3f} to {wide.max():.3f} mm at a height of {search.wish.scallop:g} mm, "
             f"{low:.4f} to {high:.4f} mm expected",
             f"lean {degrees(lean.min()):.2f} to {degrees(lean.max()):.2f} deg; rotary axes turn by "
-            f"{degrees(float(rates.max())):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squared velocities "
+            f"{degrees(float(rates.max())):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squares "
             f"sum to {one.cost:.4g} (rad/s)^2", *slower, CHECKED)
 
 
