@@ -171,7 +171,7 @@ def _least_form(form: Array, low: Array, high: Array) -> Array:
         new = np.where(free, np.where(x < low - _TOUCH, -1, np.where(x > high + _TOUCH, 1, 0)),
                        np.where(held * slope > 0, 0, held))
         if (new == held).all():
-            return np.clip(x, low, high)
+            return np.asarray(np.clip(x, low, high), dtype=float)
         held = new.astype(np.int8)
     return _by_descent(form, low, high)
 
