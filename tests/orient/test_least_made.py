@@ -8,6 +8,7 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.orient.indexed import Task, best_axis, task
+from toolaxis.orient.least_made import _left as least_made_left
 from toolaxis.orient.least_made import least_made
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.worth import FEEDS
@@ -73,6 +74,15 @@ def test_many_passes_keep_the_order_of_their_counts(lens: Face) -> None:
     found = [replace(one, passes=40.0) for one in candidates(job)]
     assert least_made(job.worth, found, job.made) is found
     assert least_made(job.worth, found[:1], job.made) == found[:1]
+
+
+def test_what_stays_is_charged_once_beside_what_is_made(lens: Face) -> None:
+    """Passes made leave out already what stays: with it they come to the value by the count."""
+    job = task(lens, TOOL, H)
+    one = candidates(job)[0]
+    left = replace(one, unreached=0.3, value=one.length * job.worth.charge(one.length, 0.3))
+    assert least_made_left(job.worth, one) == pytest.approx(0, abs=1e-9)
+    assert 0.7 * one.length + least_made_left(job.worth, left) == pytest.approx(left.value, rel=1e-12)
 
 
 def test_what_cannot_be_made_goes_behind_what_can(lens: Face) -> None:

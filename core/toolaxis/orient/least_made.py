@@ -47,10 +47,16 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
         if one.value > ((1 + _DOUBTED) * found[0].value if timed else min(values, default=np.inf)):
             break
         few.append(one)
-        values.append(_taken(worth, one, made) * worth.charge(one.length, one.unreached))
+        values.append(_taken(worth, one, made) + _left(worth, one))
     tied = [k for k, value in enumerate(values) if not timed and value <= (1 + _TIE) * min(values)]
     order = [*tied, *(int(k) for k in np.argsort(values, kind="stable") if k not in tied)]
     return [few[k] for k in order] + found[len(few):]
+
+
+def _left(worth: Worth, one: Candidate) -> float:
+    """What is charged for what stays; passes made leave it out already."""
+    charge = worth.charge(one.length, one.unreached)
+    return one.value / charge * (charge - (1 - one.unreached))
 
 
 def _taken(worth: Worth, one: Candidate, made: Callable[[Array, str], ToolPath]) -> float:
