@@ -85,6 +85,13 @@ def test_what_stays_is_charged_once_beside_what_is_made(lens: Face) -> None:
     assert 0.7 * one.length + least_made_left(job.worth, left) == pytest.approx(left.value, rel=1e-12)
 
 
+def test_no_more_is_left_for_the_sake_of_whole_passes(lens: Face) -> None:
+    job = task(lens, TOOL, H)
+    found = candidates(job)
+    more = [*found[:2], replace(found[2], unreached=0.1)]
+    assert least_made(job.worth, more, job.made)[2] is more[2]
+
+
 def test_what_cannot_be_made_goes_behind_what_can(lens: Face) -> None:
     job = task(lens, TOOL, H)
     found = candidates(job)

@@ -27,8 +27,8 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
     """Candidates with those first that may be the best one, in the order of what their passes take when made.
 
     For the objective "time" these are the ones of nearly the least estimate.  For others, where the best of few passes
-    is sought, those that count less than the best one so far takes; ties stay in their order.  A face of many passes
-    keeps the order of the counts.
+    is sought, those that count less than the best one so far takes and leave no more to clean-up than the first; ties
+    stay in their order.  A face of many passes keeps the order of the counts.
 
     Parameters
     ----------
@@ -43,14 +43,15 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
         return found
     few: list[Candidate] = []
     values: list[float] = []
-    for one in found[:_TIMED if timed else _MADE]:
+    fair = [one for one in found if timed or one.unreached <= found[0].unreached]
+    for one in fair[:_TIMED if timed else _MADE]:
         if one.value > ((1 + _DOUBTED) * found[0].value if timed else min(values, default=np.inf)):
             break
         few.append(one)
         values.append(_taken(worth, one, made) + _left(worth, one))
     tied = [k for k, value in enumerate(values) if not timed and value <= (1 + _TIE) * min(values)]
     order = [*tied, *(int(k) for k in np.argsort(values, kind="stable") if k not in tied)]
-    return [few[k] for k in order] + found[len(few):]
+    return [few[k] for k in order] + [one for one in found if all(one is not other for other in few)]
 
 
 def _left(worth: Worth, one: Candidate) -> float:
