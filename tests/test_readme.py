@@ -31,7 +31,7 @@ def commands() -> list[str]:
 
 def test_every_command_runs(tmp_path: Path) -> None:
     found = commands()
-    assert [line.split()[1] for line in found] == ["inspect", "plan", "verify", "post"]
+    assert [line.split()[1] for line in found] == ["inspect", "plan", "verify", "post", "report"]
     for line in found:
         words = [str(ROOT / word) if word.startswith("examples/") else word for word in line.split()[1:]]
         done = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", *words], cwd=tmp_path, capture_output=True,
@@ -39,6 +39,7 @@ def test_every_command_runs(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
     assert (tmp_path / "out" / "saddle" / "verdict.json").exists()
     assert (tmp_path / "out" / "saddle" / "program-fanuc.nc").exists()
+    assert (tmp_path / "out" / "saddle" / "report.html").exists()
 
 
 def test_the_python_example_runs_and_passes() -> None:

@@ -19,7 +19,7 @@ from toolaxis.tools.assembly import Tool
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bosses": "bosses",
-        "11_blisk": "blisk", "12_impeller": "impeller", "13_skin": "skin"}
+        "11_blisk": "blisk", "12_impeller": "impeller", "13_skin": "skin", "14_blade": "blade"}
 PATCHES = ("waves", "outline", "boss", "bosses")
 ROTORS = ("blisk", "impeller")
 
@@ -67,7 +67,8 @@ def test_a_script_makes_what_is_committed(script, parts, tmp_path, monkeypatch):
     again, committed = load(read_shape(str(tmp_path / f"{name}.step"))[0]), parts[name]
     assert len(again.faces) == len(committed.faces)
     for one, other in zip(again.faces, committed.faces, strict=True):
-        assert one.surface.control == pytest.approx(other.surface.control, abs=1e-6)
+        # The kernel fits fillets to 1e-4 mm; where it ends differs by some 5e-6 mm from one processor to another.
+        assert one.surface.control == pytest.approx(other.surface.control, abs=2e-5)
         assert (one.kind, one.flip, len(one.trims)) == (other.kind, other.flip, len(other.trims))
         assert one.area == pytest.approx(other.area, rel=1e-6)
 
@@ -84,8 +85,8 @@ def test_a_part_is_one_closed_valid_solid(name, shapes, parts):
 @pytest.mark.parametrize("name", MADE.values())
 def test_cutter_and_scallop_height_stand_beside_the_part(name):
     known = facts(name)
-    assert Tool.parse(known["tool"]).kind == "torus"
-    assert known["scallop"] == 0.02
+    kind, scallop = ("ball", 0.05) if name == "blade" else ("torus", 0.02)
+    assert Tool.parse(known["tool"]).kind == kind and known["scallop"] == scallop
     for axis in known.get("published", {}).get("axes", []):
         assert np.linalg.norm(axis) == pytest.approx(1, abs=1e-5)
 

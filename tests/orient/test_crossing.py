@@ -128,6 +128,6 @@ def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.F
         return laid(self, axis, feed)
 
     monkeypatch.setattr(Task, "laid", _laid)
-    found = ta.best_axis(sheet, TOOL, 0.1)
+    found = ta.best_axis(sheet, TOOL, 0.01)  # many passes: the order is that of the counts
     assert found.outcome == "feasible" and not np.array_equal(found.axis, axes[0])
     assert any("strip width is [0, 0]" in reason for reason in found.reasons)

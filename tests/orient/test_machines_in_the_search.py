@@ -42,7 +42,7 @@ def test_an_axis_stands_on_the_machine_s_steps(wave: ta.Face) -> None:
     angles = held.solutions(found.axis)
     assert len(angles) and np.allclose(held.axis_at(angles[0]), found.axis, atol=1e-12)
     assert np.allclose(angles / radians(5.0), np.round(angles / radians(5.0)), atol=1e-9)
-    free = best_axis(wave, TOOL, 0.2)
+    free = best_axis(wave, TOOL, 0.2, limits=Cone(np.array([0, 0, 1.0]), radians(60)))  # the flank's lobe is narrow
     assert found.length == pytest.approx(free.length, rel=0.1) and found.length >= 0.99 * free.length
 
 

@@ -54,7 +54,10 @@ class FreecadFace:
 
 
 class FreecadShape:
-    """A shape of the kernel as the contract asks it; the volume that FreeCAD shows is integrated coarsely."""
+    """A shape of the kernel as the contract asks it, the volume from fine triangles.
+
+    The volume that FreeCAD shows is integrated coarsely: 4 % too small on a thin blade.
+    """
 
     accuracy = 5e-4
 
@@ -64,7 +67,12 @@ class FreecadShape:
 
     @property
     def volume(self):
-        return self.solids[0].Volume if self.solids else None
+        if not self.solids:
+            return None
+        solid = self.solids[0]
+        points, triangles = solid.tessellate(2e-5 * solid.BoundBox.DiagonalLength)
+        corners = np.array([tuple(point) for point in points])[np.array(triangles)] - self.centre
+        return float(np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
 
     @property
     def centre(self):

@@ -78,7 +78,7 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     return Verdict(tuple(found))
 
 
-def _task(plan: Plan, op: Operation, last: Operation | None) -> Task:
+def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Task:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
     around = grouped(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),

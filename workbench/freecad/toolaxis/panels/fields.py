@@ -269,6 +269,20 @@ class FaceList:
 
     def __init__(self, widget):
         self.widget = widget
+        self._slots = []
+
+    def on_change(self, slot):
+        """Call a slot without arguments whenever faces come or go.
+
+        Parameters
+        ----------
+        slot : callable
+        """
+        self._slots.append(slot)
+
+    def _changed(self):
+        for slot in self._slots:
+            slot()
 
     @property
     def faces(self):
@@ -278,7 +292,8 @@ class FaceList:
     @faces.setter
     def faces(self, faces):
         self.widget.clear()
-        self.add(faces)
+        if not self.add(faces):
+            self._changed()
 
     def add(self, faces):
         """Add what is not there yet; how many were added.
@@ -295,12 +310,17 @@ class FaceList:
                 item = QtWidgets.QListWidgetItem(f"{thing.Label}: {sub}", self.widget)
                 item.setData(_DATA, (thing, sub))
                 added += 1
+        if added:
+            self._changed()
         return added
 
     def remove_marked(self):
         """Remove the marked entries."""
-        for item in self.widget.selectedItems():
+        marked = self.widget.selectedItems()
+        for item in marked:
             self.widget.takeItem(self.widget.row(item))
+        if marked:
+            self._changed()
 
     def remove_object(self, name):
         """Remove the faces of an object that is about to be deleted; how many there were.

@@ -64,9 +64,7 @@ class PlanForm:
         for spin in (*self.middle, self.spindle):
             spin.valueChanged.connect(lambda _: slot())
         self.avoid.widget.itemChanged.connect(lambda _: slot())
-        for model in (self.faces.widget.model(),):
-            model.rowsInserted.connect(lambda *_: slot())
-            model.rowsRemoved.connect(lambda *_: slot())
+        self.faces.on_change(slot)
 
     def _show_what_counts(self, *_):
         kind, limits = KINDS[self.kind.currentIndex()], self.limits.currentIndex()
