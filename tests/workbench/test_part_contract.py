@@ -54,9 +54,9 @@ class FreecadFace:
 
 
 class FreecadShape:
-    """A shape of the kernel as the contract asks it, the volume from fine triangles.
+    """A shape of the kernel as the contract asks it; the volume that FreeCAD shows is integrated coarsely.
 
-    The volume that FreeCAD shows is integrated coarsely: 4 % too small on a thin blade.
+    On a thin blade it is 4 % too small: where triangles tell that, finer ones give the volume.
     """
 
     accuracy = 5e-4
@@ -69,8 +69,12 @@ class FreecadShape:
     def volume(self):
         if not self.solids:
             return None
+        shown, rough = self.solids[0].Volume, self._by_triangles(1e-3)
+        return shown if abs(shown - rough) < 0.02 * abs(rough) else self._by_triangles(2e-5)
+
+    def _by_triangles(self, share):
         solid = self.solids[0]
-        points, triangles = solid.tessellate(2e-5 * solid.BoundBox.DiagonalLength)
+        points, triangles = solid.tessellate(share * solid.BoundBox.DiagonalLength)
         corners = np.array([tuple(point) for point in points])[np.array(triangles)] - self.centre
         return float(np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
 
