@@ -51,10 +51,10 @@ class Regions(Sequence[Face]):
         Its feed direction.
     lengths : tuple of float
         Its reckoned length, mm: cutting, `LINK` for each pass, and what clean-up is charged.
-    seconds : tuple of float
-        Its reckoned time where the division goes by time; else empty.
     curve : (m, 2) array
         Number of sub-surfaces and the least cost reckoned for it, mm or s; inf where there is no division.
+    seconds : tuple of float
+        The reckoned time of each where the division goes by time; else empty.
     radius : float
         Outer distance of the rings where the face is divided around bosses, inf where by the nearest boss alone, mm; 0
         where by iso-parametric cuts alone.

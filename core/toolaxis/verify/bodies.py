@@ -235,7 +235,7 @@ def least_room(rig: Rig, joints: Array, needed: float, pairs: Sequence[tuple[Thi
         `uncertainty` too great.
     """
     steps = np.abs(np.diff(joints, axis=0))
-    table, _ = len(rig.machine.table), len(rig.machine.head)
+    table = len(rig.machine.table)
     turns = steps[:, 3:3 + table].sum(axis=1) * rig.reach[0] + steps[:, 3 + table:].sum(axis=1) * rig.reach[1]
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(joints[:, :3], axis=0), axis=1) + turns)])
     worst = Clearance("", FAR, "", (0.0, 0.0, 0.0), -1, 0.0)

@@ -23,11 +23,12 @@ def machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
     dict of str to Clearance
         By `KINDS`; empty where bodies, the part's place or rotary angles are not known.
     """
-    if task.machine is None or task.place is None or task.tool_length is None or not task.machine.bodies \
-            or len(task.rotary) != len(task.machine.rotary) or machine_faults(task.machine, task.tips, task.axes, None,
-                                                                              None):
+    machine = task.machine
+    if machine is None or not machine.bodies or task.place is None or task.tool_length is None:
         return {}
-    rig = Rig(task.machine, task.place, task.tool_length, task.profile, task.outlines,
+    if len(task.rotary) != len(machine.rotary) or machine_faults(machine, task.tips, task.axes, None, None):
+        return {}
+    rig = Rig(machine, task.place, task.tool_length, task.profile, task.outlines,
               (*task.targets, *task.skin, *task.touching, *task.surroundings))
     if not rig.judged:
         return {}
