@@ -16,9 +16,10 @@ from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.zone import Zone
 from toolaxis.report.bars import baselines_picture, options_picture
+from toolaxis.report.colouring import coloured
 from toolaxis.report.hatching import COLOUR
 from toolaxis.report.hemisphere import equal_area, hemisphere_picture
-from toolaxis.report.overview import coloured, overview_picture
+from toolaxis.report.overview import overview_picture
 from toolaxis.report.plots import (
     WidthStudy,
     cutting_lines,

@@ -1,12 +1,9 @@
 """The whole plan in one picture: the part coloured by sub-surface, its passes, and an arrow for each axis."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -14,35 +11,16 @@ from scipy.spatial import cKDTree
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.report.colouring import COLOURS, coloured
 from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
-from toolaxis.report.plots import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    bare,
-    cutting_lines,
-    figure,
-    scale_bar,
-)
+from toolaxis.report.plots import bare, cutting_lines, figure, scale_bar
 from toolaxis.report.raster import Canvas, camera, face_splats, mean_direction, visible_runs
 
 Array = NDArray[np.float64]
 
-_YELLOW = "#F0E442"
 #: With more sub-surfaces than this, arrows are shorter.
 _MANY = 8
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
-
-
-def _pale(name: str) -> tuple[float, float, float]:
-    red, green, blue = to_rgb(name)
-    return 0.45 + 0.55 * red, 0.45 + 0.55 * green, 0.45 + 0.55 * blue
-
-
-_COLOURS = tuple(_pale(name) for name in (SKY, ORANGE, GREEN, _YELLOW, PURPLE, BLUE, VERMILION))
 
 
 def overview_picture(plan: Plan) -> Figure:
@@ -71,7 +49,7 @@ def overview_picture(plan: Plan) -> Figure:
     for face in plan.part.faces:
         if face.number not in whole:
             canvas.splat(*face_splats(face, seen), _PART)
-    colours = {op.number: _COLOURS[k] for op, k in zip(operations, coloured(operations), strict=True)}
+    colours = {op.number: COLOURS[k] for op, k in zip(operations, coloured(operations), strict=True)}
     for op in plan.operations:
         canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
@@ -95,34 +73,6 @@ def overview_picture(plan: Plan) -> Figure:
     scale_bar(ax, seen)
     bare(ax)
     return made
-
-
-def coloured(operations: Sequence[Operation]) -> list[int]:
-    """A number for each sub-surface, below 7, so that those that touch have different ones where that many allow it.
-
-    Parameters
-    ----------
-    operations : sequence of Operation
-    """
-    borders = [_border(op) for op in operations]
-    chosen: list[int] = []
-    for k, (tree, points) in enumerate(borders):
-        near = 0.01 * operations[k].face.diagonal
-        beside = {chosen[other] for other in range(k)
-                  if (borders[other][0].query(points, distance_upper_bound=near)[0] <= near).any()
-                  or (tree.query(borders[other][1], distance_upper_bound=near)[0] <= near).any()}
-        order = [(k + step) % len(_COLOURS) for step in range(len(_COLOURS))]
-        chosen.append(next((colour for colour in order if colour not in beside), order[0]))
-    return chosen
-
-
-def _border(op: Operation) -> tuple[cKDTree, Array]:
-    """Points along the outline, about as many on each edge, and a tree of them."""
-    share = np.linspace(0.0, 1.0, 24, endpoint=False)[:, None]
-    points = [op.face.evaluate(start + share * (end - start)).point
-              for loop in op.face.outline for start, end in zip(loop, np.roll(loop, -1, axis=0), strict=True)]
-    rows = np.concatenate(points)
-    return cKDTree(rows), rows
 
 
 def view_onto(middle: Array) -> tuple[Array, Array]:

@@ -14,8 +14,9 @@ from toolaxis.numeric.thinning import thinned
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.report.colouring import coloured
 from toolaxis.report.hatching import zone_faces
-from toolaxis.report.overview import coloured, root_of, view_onto
+from toolaxis.report.overview import root_of, view_onto
 from toolaxis.report.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, cutting_lines
 from toolaxis.report.raster import mean_direction
 from toolaxis.report.triangles import outline_loops, triangles
