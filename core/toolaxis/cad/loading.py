@@ -82,6 +82,8 @@ def _from_several(items: list[Any]) -> Part:
     if all(isinstance(item, Face) for item in items):
         return Part.from_faces(items)
     families = {type(item).__module__.split(".")[0] for item in items}
+    if families == {"build123d"}:  # its faces know the solid that they were picked from
+        return _from_library(items, "build123d")
     if families <= {"cadquery", "build123d", "OCP"}:
         from toolaxis.cad.shapes import part_from_shapes
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,7 @@ def _pale(name: str) -> tuple[float, float, float]:
 
 #: The same paler, so that lines stand out on them; red, green and blue from 0 to 1.
 COLOURS = tuple(map(_pale, _NAMES))
+_NO_AXIS = (0.56, 0.56, 0.56)
 
 
 def coloured(operations: Sequence[Operation]) -> list[int]:
@@ -49,3 +51,17 @@ def _border(op: Operation) -> tuple[cKDTree, Array]:
               for loop in op.face.outline for start, end in zip(loop, np.roll(loop, -1, axis=0), strict=True)]
     rows = np.concatenate(points)
     return cKDTree(rows), rows
+
+
+def colours_of(plan: Plan) -> dict[int, tuple[float, float, float]]:
+    """The colour of each operation's sub-surface by its number: grey where it has no path, that of the original for a
+    turned copy.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    copies = {} if plan.blades is None else plan.blades.copies
+    own = [op for op in plan.operations if op.number not in copies]
+    found = {op.number: COLOURS[k] for op, k in zip(own, coloured(own) if own else (), strict=True)}
+    return {op.number: found[copies.get(op.number, op.number)] if op.done else _NO_AXIS for op in plan.operations}
