@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from toolaxis.path.estimate import estimate as estimate
     from toolaxis.path.isoparametric import passes as passes
     from toolaxis.path.sampling import sample_points as sample_points
+    from toolaxis.plan.sub_surface import SubSurface as SubSurface
     from toolaxis.shape.face import Face as Face
     from toolaxis.shape.part import Part as Part
     from toolaxis.shape.skins import join as join
@@ -49,7 +50,7 @@ _HOME = {
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
     "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",
-    "batch": "batch.run", "read_cl": "job.reading",
+    "batch": "batch.run", "read_cl": "job.reading", "SubSurface": "plan.sub_surface",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

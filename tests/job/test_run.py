@@ -9,8 +9,8 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.planning import Target, by_axis
 from toolaxis.job.spec import chosen_faces, parse_faces
+from toolaxis.job.targets import Target, by_axis
 from toolaxis.machine.limits import parse_limits
 from toolaxis.orient.indexed import Task
 from toolaxis.plan.plan import Plan

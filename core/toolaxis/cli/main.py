@@ -70,6 +70,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--orientations", type=_count, metavar="N|auto",
                      help="at most N different axes in all, shared by the sub-surfaces of all faces; auto: as many as "
                           "the curve of cutting length over their number bends at")
+    sub.add_argument("--division", default="", metavar="FILE",
+                     help="sub-surfaces given by hand, with the axes and feeds to keep: a JSON file of them, a "
+                          "plan.json, or the folder of a plan")
     sub.add_argument("--machine", metavar="NAME|FILE",
                      help="only axes that this machine holds: a name from resources/machines, a TOML or .fcm file")
     sub.add_argument("--offset", metavar="X,Y,Z",

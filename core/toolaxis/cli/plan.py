@@ -43,7 +43,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         strategy=given.strategy, roughness=_roughness(given),
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
                         rapid=spec.inputs.rapid, compare=given.compare,
-                        orientations=spec.orientations, workers=given.workers, progress=progress)
+                        orientations=spec.orientations, division=given.division or None, workers=given.workers,
+                        progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")

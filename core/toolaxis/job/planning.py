@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from toolaxis.job.axes import Remembering, frame_of, judged
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import Pattern, shared_out
 from toolaxis.job.rooms import with_rooms
+from toolaxis.job.targets import Target, by_axis, given_targets, held, with_given
 from toolaxis.job.timing import feeds_of, timed
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
@@ -39,6 +39,7 @@ from toolaxis.partition.regions import regions as regions_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -56,28 +57,6 @@ _SEARCHES = {"ball": "normal"}
 _MOVING: dict[str, Callable[[Task], tuple[Orientation, ToolPath | None]]] = {
     "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys"),
     "four-plus-one": four_plus_one, "multiscale": multiscale}
-
-
-class Target(NamedTuple):
-    """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, and the axes
-    that others share."""
-
-    face: Face
-    axis: Array | None = None
-    shared: bool = False
-    others: tuple[Array, ...] = ()
-
-
-def by_axis(targets: list[Target]) -> list[Target]:
-    """Sub-surfaces in an order in which each axis is set once: that of the first one with each axis.
-
-    Parameters
-    ----------
-    targets : list of Target
-        Each with an axis.
-    """
-    names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
-    return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
 
 
 def quicker(divided: Plan, whole: Plan) -> Plan:
@@ -118,6 +97,8 @@ class Job:
     whole : tuple of Face
         Faces that are machined undivided after the others.
     machine : Mounting or None
+    division : tuple of SubSurface
+        Sub-surfaces given by hand; faces that have some are not divided otherwise.
     """
 
     part: Part
@@ -131,6 +112,7 @@ class Job:
     workers: int = 1
     whole: tuple[Face, ...] = ()
     machine: Mounting | None = None
+    division: tuple[SubSurface, ...] = ()
 
     def by(self, method: str) -> "Job":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
@@ -154,7 +136,7 @@ class Job:
             faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]
             found = followed(found, zoned(self.carried_out(faces, progress), self.workers, progress))
         if compare and found.outcome != "cancelled":
-            plain = replace(one, regions=None, orientations=None, whole=())
+            plain = replace(one, regions=None, orientations=None, whole=(), division=())
             done = tuple(op for op in first.operations if op.done)
             own = [face for face in (*share.divided, *share.whole) if face.number in {op.face.number for op in done}]
             rows = compared(replace(first, operations=done), own,
@@ -174,12 +156,17 @@ class Job:
     def _as_asked(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
+        order = [face.number for face in (*faces, *self.whole)]
+        given = given_targets(self.part, self.division, order)
+        faces = [face for face in faces if face.number not in given]
         try:
-            if self.orientations:
+            targets: list[Target] = []
+            if self.orientations and faces:
                 targets, options = self._sharing(faces, progress)
-            else:
+            elif faces:
                 targets = self._divided(faces, progress)
-            targets += [Target(face) for face in self.whole]
+            targets += [Target(face) for face in self.whole if face.number not in given]
+            targets = with_given(targets, given, [] if self.orientations else order)
             if self.inputs.method == "one":
                 return self._alike(targets, progress)
         except Cancelled:
@@ -261,12 +248,15 @@ class Job:
         inner.report("search for the axis", 0, 1)
         try:
             found, path = Orientation(None), None
-            if axis is not None and target.shared:
+            given = target.given if target.given is not None and target.given.held else None
+            if given is not None and self.inputs.method not in (*_MOVING, "one"):
+                found, path = held(self._task(face, inner), given, lambda task: self._found(task, None))
+            elif axis is not None and target.shared:
                 found, path = self._shared(target, inner)
             if found.axis is None and self.inputs.method == "one":
                 why = found.reasons or ("no axis found that all sub-surfaces allow",)
                 return Operation(number, face, replace(found, reasons=why))
-            if found.axis is None:
+            if found.axis is None and (given is None or self.inputs.method in _MOVING):
                 refused = found.reasons
                 found, path = self._searched(face, axis, inner)
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
@@ -301,7 +291,11 @@ class Job:
             if self.inputs.method == "multiscale":
                 return multiscale(plain._task(face, progress), self.inputs.roughness, self.inputs.feedrate)
             return moving(plain._task(face, progress))
-        job = Remembering(self._task(face, progress))
+        return self._found(self._task(face, progress), start)
+
+    def _found(self, task: Task, start: Array | None) -> tuple[Orientation, ToolPath | None]:
+        """The fixed axis that the method finds for a task, and its passes."""
+        job = Remembering(task)
         found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
         return found, None if found.axis is None else job.path
 

@@ -18,6 +18,7 @@ from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
 from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined
+from toolaxis.job.targets import check_division, not_divided, read_division
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.zones import zoned
@@ -29,7 +30,8 @@ from toolaxis.orient.indexed import METHODS
 from toolaxis.orient.mounted import combined
 from toolaxis.orient.pace import known_machine
 from toolaxis.partition.regions import checked_count
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import STRATEGIES, Inputs, Plan
+from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
@@ -41,7 +43,7 @@ from toolaxis.tools.assembly import Tool
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
-         orientations: int | str | None = None,
+         orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
@@ -70,6 +72,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     orientations : int or "auto", optional
         Greatest number of different axes: faces are divided so that sub-surfaces share them; "auto" tries all numbers,
         gives them as the plan's options and takes the one at the knee; each has its own unless given.
+    division : sequence of SubSurface or str, optional
+        Sub-surfaces given by hand, with the axes and feeds that are to be kept: faces that are named there are not
+        divided otherwise.  A text names a file of them, a plan.json, or the folder of a plan.
     strategy : str
         "indexed": every sub-surface has one fixed axis; "sturz": simultaneous five-axis milling with the best constant
         lead, for comparison or where one fixed axis does not do; "two-point": simultaneous five-axis milling in which a
@@ -141,6 +146,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         known_machine(mounting)
     if strategy != "indexed" and mounting is not None:
         check_five_axes(mounting.machine, strategy)
+    given = read_division(division) if isinstance(division, str) else tuple(division or ())
+    check_division(given, method, method in STRATEGIES)
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
     if strategy == "two-point":
@@ -154,11 +161,11 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
             raise InvalidInput("strategy 'multiscale' has the rotary axes of a machine turn least: name a machine")
     sections = strategy.startswith("blade")  # plane sections, to which iso-parametric lines do not matter
     loaded, numbers = with_joined(load(part), faces, pi if sections else GREATEST_CORNER)
-    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius))
+    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, numbers) for piece in split_at_kinks(face)]
     job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
-              checked_workers(workers), machine=mounting)
+              checked_workers(workers), machine=mounting, division=given)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     with heard(progress):
         return timed(_carried_out(job, targets, (whole, compare), progress), reorder=True)
@@ -182,7 +189,7 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
         return job.empty()
     if not compare or made.outcome == "cancelled":
         return made
-    plain = replace(job, regions=None, orientations=None)
+    plain = replace(job, regions=None, orientations=None, division=())
     return compared(timed(made, reorder=True), faces,
                     lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name)), reorder=True))
 

@@ -42,6 +42,8 @@ class Worth:
         "length", "passes" or "time": what is to be least.
     pace : Pace, optional
         How fast the machine goes; needed for the objective "time".
+    feed : "u" or "v", optional
+        The only feed that may be chosen, where one is asked for.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class Worth:
     allowance: float = 0.0
     objective: str = "length"
     pace: Pace | None = None
+    feed: str | None = None
 
     def __post_init__(self) -> None:
         if self.objective == "time" and self.pace is None:
@@ -104,8 +107,10 @@ class Worth:
         """
         if self.objective == "time":
             assert self.pace is not None
-            return self.pace.seconds(axes, found.passes, found.length)
-        return found.length if self.objective == "length" else found.passes
+            values = self.pace.seconds(axes, found.passes, found.length)
+        else:
+            values = found.length if self.objective == "length" else found.passes
+        return values if self.feed is None else np.where(np.array(FEEDS) == self.feed, values, np.inf)
 
     def value(self, axis: Array, feed: int, passes: float, length: float) -> float:
         """What is to be least for one axis and feed.

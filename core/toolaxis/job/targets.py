@@ -1,0 +1,220 @@
+"""What is planned: sub-surfaces, found or given by hand, each with what is known of its axis."""
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.job.axes import judged
+from toolaxis.orient.indexed import Task
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.sub_surface import SubSurface, division_from
+from toolaxis.shape.face import Face
+from toolaxis.shape.kinks import letters, split_at_kinks
+from toolaxis.shape.part import Part
+
+Array = NDArray[np.float64]
+
+#: How reasons begin that tell what was given by hand, and why an axis that was given does not serve.
+LOCKED, REFUSED_LOCK, REFUSED_HINT = "locked by hand: ", "locked axis refused: ", "axis kept so far refused: "
+#: Share of a face that may lie in two sub-surfaces, or of a sub-surface outside its face, by how finely it is looked.
+_SLACK, _GRID = 0.01, 48
+
+
+class Target(NamedTuple):
+    """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, the axes
+    that others share, and what of it was given by hand."""
+
+    face: Face
+    axis: Array | None = None
+    shared: bool = False
+    others: tuple[Array, ...] = ()
+    given: SubSurface | None = None
+
+
+def by_axis(targets: list[Target]) -> list[Target]:
+    """Sub-surfaces in an order in which each axis is set once: that of the first one with each axis.
+
+    Parameters
+    ----------
+    targets : list of Target
+        Each with an axis.
+    """
+    names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
+    return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
+
+
+def read_division(path: str | Path) -> tuple[SubSurface, ...]:
+    """The division in a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A JSON file as `toolaxis.plan.sub_surface.division_document` writes it, a plan.json, or the folder of one.
+
+    Raises
+    ------
+    InvalidInput
+        When it cannot be read, or is neither.
+    """
+    file = Path(path)
+    file = file / "plan.json" if file.is_dir() else file
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as reason:
+        raise InvalidInput(f"the division {path} cannot be read: {reason}") from reason
+    return division_from(document)
+
+
+def given_targets(part: Part, division: Sequence[SubSurface], numbers: Iterable[int]) -> dict[int, list[Target]]:
+    """Targets for the faces whose division is given, by the faces' numbers.
+
+    Parameters
+    ----------
+    part : Part
+    division : sequence of SubSurface
+        Those of other faces are left aside.
+    numbers : iterable of int
+        The faces that are planned.
+
+    Raises
+    ------
+    InvalidInput
+        When a border leaves its face, or sub-surfaces of a face overlap.
+    """
+    wanted = set(numbers)
+    chosen = sorted((one for one in division if one.face in wanted), key=lambda one: one.face)
+    found: dict[int, list[Target]] = {}
+    for number, group in groupby(chosen, key=lambda one: one.face):
+        rows = list(group)
+        whole = part.face(number)
+        named = [(one, _piece(whole, one, k, len(rows))) for k, one in enumerate(rows)]
+        _check_apart(whole, [piece for _, piece in named])
+        found[number] = [Target(smooth, one.axis, given=one) for one, piece in named
+                         for smooth in split_at_kinks(piece)]
+    return found
+
+
+def not_divided(part: Part, division: Sequence[SubSurface]) -> tuple[str, ...]:
+    """Warnings about faces that their given sub-surfaces do not cover.
+
+    Parameters
+    ----------
+    part : Part
+    division : sequence of SubSurface
+    """
+    notes = []
+    for number, group in groupby(sorted(division, key=lambda one: one.face), key=lambda one: one.face):
+        whole, rows = part.face(number), list(group)
+        if all(one.region for one in rows):
+            left = 1 - sum(whole.trimmed(one.region).area for one in rows) / whole.area
+            if left > _SLACK:
+                notes.append(f"{100 * left:.1f} % of face {number} lies in none of the sub-surfaces that are given: "
+                             "it is not machined")
+    return tuple(notes)
+
+
+def _piece(whole: Face, one: SubSurface, k: int, count: int) -> Face:
+    """A sub-surface as a face; its border on the face's."""
+    label = one.label or (str(whole.number) + letters(k) if count > 1 else str(whole.number))
+    if not one.region:
+        return whole.trimmed(whole.trims, label)
+    piece = whole.trimmed(one.region, label)
+    (u0, u1), (v0, v1) = whole.surface.domain
+    slack = 1e-9 * np.array([u1 - u0, v1 - v0])
+    low, high = np.array([u0, v0]) - slack, np.array([u1, v1]) + slack
+    uv = piece.grid(_GRID, _GRID)
+    off = any(((loop < low) | (loop > high)).any() for loop in piece.trims)
+    if off or (len(uv) and not whole.contains(uv).mean() >= 1 - _SLACK):
+        raise InvalidInput(f"sub-surface {label} leaves face {whole.number}: draw its border on the face")
+    return piece
+
+
+def _check_apart(whole: Face, pieces: Sequence[Face]) -> None:
+    uv = whole.grid(_GRID, _GRID)
+    held = np.array([piece.contains(uv) for piece in pieces])
+    if len(uv) and (held.sum(axis=0) > 1).mean() > _SLACK + 2 * len(pieces) / _GRID**2:
+        pairs = held.astype(int) @ held.T.astype(int)
+        np.fill_diagonal(pairs, 0)
+        i, j = map(int, np.unravel_index(int(pairs.argmax()), pairs.shape))
+        raise InvalidInput(f"sub-surfaces {pieces[i].label} and {pieces[j].label} overlap: let each place of face "
+                           f"{whole.number} lie in one of them")
+
+
+def with_given(targets: Sequence[Target], given: dict[int, list[Target]], order: Sequence[int]) -> list[Target]:
+    """All targets in the order of the faces.
+
+    Parameters
+    ----------
+    targets : sequence of Target
+        Of the faces whose division is not given, in their order.
+    given : dict of int to list of Target
+    order : sequence of int
+        Numbers of all faces.
+    """
+    place = {number: k for k, number in reversed(list(enumerate(order)))}
+    every = [*targets, *(one for number in given for one in given[number])]
+    return sorted(every, key=lambda one: place.get(one.face.number, len(place))) if given else list(targets)
+
+
+def held(task: Task, given: SubSurface, search: Callable[[Task], tuple[Orientation, ToolPath | None]],
+         ) -> tuple[Orientation, ToolPath | None]:
+    """The orientation of a sub-surface of which axis or feed are given, and the passes that were proven.
+
+    Parameters
+    ----------
+    task : Task
+    given : SubSurface
+    search : callable
+        What searches an axis where none is given, or the one that is given may not be used and is not locked.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    feed = given.feed or None
+    notes = (f"{LOCKED}feed {feed}",) if feed else ()
+    bound = task if feed is None else replace(task, worth=replace(task.worth, feed=feed))
+    if given.axis is not None:
+        found, path = judged(bound, given.axis, feed)
+        if given.locked:
+            words = f"{LOCKED}axis" + (f" and feed {feed}" if feed else "")
+            refused = tuple(f"{REFUSED_LOCK}{one}" for one in found.reasons)
+            return replace(found, reasons=(words, *found.reasons) if path is not None else refused), path
+        if path is not None:
+            return replace(found, reasons=(*notes, *found.reasons)), path
+        notes = (*notes, *(f"{REFUSED_HINT}{one}" for one in found.reasons))
+    found, path = search(bound)
+    return replace(found, reasons=(*notes, *found.reasons)), path
+
+
+def check_division(division: Sequence[SubSurface], method: str, moving: bool) -> None:
+    """Check that a method can keep what is given.
+
+    Parameters
+    ----------
+    division : sequence of SubSurface
+    method : str
+    moving : bool
+        Whether the method moves the axis.
+
+    Raises
+    ------
+    InvalidInput
+        When an axis or a feed is given and the method chooses them by other rules.
+    """
+    if not (moving or method == "one"):
+        return
+    for one in division:
+        if one.held and (one.locked or one.feed):
+            what = "moves the axis" if moving else "takes one axis for all sub-surfaces"
+            raise InvalidInput(f"method {method!r} {what} and a sub-surface of face {one.face} has a lock: leave out "
+                               "either the method or the lock")
