@@ -3,7 +3,7 @@
 With b the square of the path speed at stations s, an axis q(s) has the acceleration q_s b'/2 + q_ss b and the jerk
 sqrt(b) (q_s b''/2 + 3/2 q_ss b' + q_sss b).  The first is held between neighbouring stations, the second at each, both
 by differences.  Next to both ends b is that of a constant jerk from rest, b ~ s^(4/3), so one unknown stands for all
-stations there.  Every Newton step solves a system of five diagonals.
+stations there.  Every Newton step solves a system of five diagonals; `barrier_compiled` sets it up where it can.
 """
 
 from dataclasses import dataclass
@@ -11,6 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solveh_banded
+
+from toolaxis.feed.barrier_compiled import barrier_system, barrier_value, solved
+from toolaxis.numeric import compiled
 
 Array = NDArray[np.float64]
 
@@ -110,6 +113,54 @@ def _time(problem: SpeedProblem, b: Array) -> tuple[float, Array, Array]:
 
 
 def _value(problem: SpeedProblem, b: Array, weight: float) -> float:
+    """Weighted time less the logarithms of all that is left of the limits; infinite where one is not kept."""
+    if compiled.available:
+        return barrier_value(problem.stations, problem.most, problem.acceleration, problem.jerk, b, weight)
+    return value_numpy(problem, b, weight)
+
+
+def _system(problem: SpeedProblem, b: Array, weight: float) -> tuple[Array, Array]:
+    """Gradient (n,) and upper diagonals (3, n) of the barrier at b."""
+    if compiled.available:
+        gradient, bands = np.zeros(len(b)), np.zeros((3, len(b)))
+        barrier_system(problem.stations, problem.most, problem.acceleration, problem.jerk, b, weight, gradient, bands)
+        return gradient, bands
+    return system_numpy(problem, b, weight)
+
+
+def _step(bands: Array, gradient: Array) -> Array:
+    """Newton's step, (n,): the solution of the system, whose bands are spent."""
+    if compiled.available:
+        spent, step = bands.copy(), -gradient
+        if solved(spent, step):
+            return step
+    try:
+        return np.asarray(solveh_banded(bands, -gradient, check_finite=False))
+    except LinAlgError:
+        bands[2] *= 1 + 1e-9
+        return np.asarray(solveh_banded(bands, -gradient, check_finite=False))
+
+
+def _newton(problem: SpeedProblem, b: Array, weight: float) -> tuple[Array, float]:
+    """One damped step, and the decrease that it promised."""
+    gradient, bands = _system(problem, b, weight)
+    step = _step(bands, gradient)
+    promise = -float((gradient * step).sum())
+    begin, size = _value(problem, b, weight), 1.0
+    while size > 1e-6 and not _value(problem, b + size * step, weight) <= begin - 1e-4 * size * promise:
+        size /= 2
+    return (b + size * step, promise) if size > 1e-6 else (b, 0.0)
+
+
+def value_numpy(problem: SpeedProblem, b: Array, weight: float) -> float:
+    """What `barrier_value` gives.
+
+    Parameters
+    ----------
+    problem : SpeedProblem
+    b : (n,) array
+    weight : float
+    """
     if not problem.feasible(b):
         return float("inf")
     first, second = problem.forms(b)
@@ -117,8 +168,14 @@ def _value(problem: SpeedProblem, b: Array, weight: float) -> float:
     return weight * _time(problem, b)[0] - float(logs + np.log1p(-second * second * b[:, None]).sum())
 
 
-def _newton(problem: SpeedProblem, b: Array, weight: float) -> tuple[Array, float]:
-    """One damped step, and the decrease that it promised."""
+def system_numpy(problem: SpeedProblem, b: Array, weight: float) -> tuple[Array, Array]:
+    """What `barrier_system` adds to zeros.
+
+    Parameters
+    ----------
+    problem, b, weight
+        As for `value_numpy`.
+    """
     _, gradient, bands = _time(problem, b)
     gradient, bands = weight * gradient, weight * bands
     room = problem.most - b
@@ -127,16 +184,7 @@ def _newton(problem: SpeedProblem, b: Array, weight: float) -> tuple[Array, floa
     first, second = problem.forms(b)
     _add_acceleration(problem, first, gradient, bands)
     _add_jerk(problem, b, second, gradient, bands)
-    try:
-        step = solveh_banded(bands, -gradient, check_finite=False)
-    except LinAlgError:
-        bands[2] *= 1 + 1e-9
-        step = solveh_banded(bands, -gradient, check_finite=False)
-    promise = float(-gradient @ step)
-    begin, size = _value(problem, b, weight), 1.0
-    while size > 1e-6 and not _value(problem, b + size * step, weight) <= begin - 1e-4 * size * promise:
-        size /= 2
-    return (b + size * step, promise) if size > 1e-6 else (b, 0.0)
+    return gradient, bands
 
 
 def _add_acceleration(problem: SpeedProblem, form: Array, gradient: Array, bands: Array) -> None:

@@ -16,6 +16,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
+from toolaxis.numeric.compiled import compiled
 from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]
@@ -163,25 +164,39 @@ def _divided(tips: Array, axes: Array, arrival: NDArray[np.int64],
 def _followed(machine: Machine, axes: Array, place: ArrayLike | None, begin: Array) -> Array:
     """Rotary angles from the first ones on, at each axis those of the solution that is nearest to the last, (n, m)."""
     found = rotary_angles(machine, axes, table_from_part=place)
-    joints, free = found.joints.tolist(), found.free.tolist()
-    ranges = [(axis.low - _ROUNDING, axis.high + _ROUNDING) for axis in machine.rotary]
-    out, last = np.empty((len(axes), len(ranges))), begin.tolist()
-    for k, (solutions, loose) in enumerate(zip(joints, free, strict=True)):
-        best, least = None, inf
-        for angles in solutions if found.reached[k] else ():
-            row = [w + 2 * pi * round((here - w) / (2 * pi)) for w, here in zip(angles, last, strict=True)]
-            if loose:
-                row[0] = last[0]
-            if all(low <= angle <= high for angle, (low, high) in zip(row, ranges, strict=True)):
-                size = max(abs(angle - here) for angle, here in zip(row, last, strict=True))
-                if size < least:
-                    best, least = row, size
-        if best is None:
-            raise InvalidInput(f"rotary axes of {machine.name} cannot follow the tool axis to "
-                               f"{np.round(axes[k], 4).tolist()} inside their ranges: choose another machine, offset "
-                               "or strategy")
-        out[k] = last = best
+    ranges = np.array([(axis.low - _ROUNDING, axis.high + _ROUNDING) for axis in machine.rotary]).reshape(-1, 2)
+    out = np.empty((len(axes), len(ranges)))
+    lost = _follow(np.ascontiguousarray(found.joints), found.reached, found.free, ranges, np.asarray(begin), out)
+    if lost >= 0:
+        raise InvalidInput(f"rotary axes of {machine.name} cannot follow the tool axis to "
+                           f"{np.round(axes[lost], 4).tolist()} inside their ranges: choose another machine, offset "
+                           "or strategy")
     return out
+
+
+@compiled
+def _follow(joints: Array, reached: NDArray[np.bool_], free: NDArray[np.bool_], ranges: Array, begin: Array,
+            out: Array) -> int:
+    """Fill in what `_followed` gives from solutions (n, k, m) and ranges (m, 2); return where none is left, else -1."""
+    last, row = begin.copy(), begin.copy()
+    for i in range(len(joints)):
+        least = inf
+        for k in range(joints.shape[1] if reached[i] else 0):
+            size, inside = 0.0, True
+            for axis in range(len(last)):
+                row[axis] = joints[i, k, axis]
+                row[axis] += 2 * pi * np.rint((last[axis] - row[axis]) / (2 * pi))
+                if axis == 0 and free[i]:
+                    row[axis] = last[axis]
+                size = max(size, abs(row[axis] - last[axis]))
+                inside = inside and ranges[axis, 0] <= row[axis] <= ranges[axis, 1]
+            if inside and size < least:
+                least = size
+                out[i] = row
+        if least == inf:
+            return i
+        last[:] = out[i]
+    return -1
 
 
 def levers(machine: Machine, along: Following, tool_length: float = 0.0, table_from_part: ArrayLike | None = None,
