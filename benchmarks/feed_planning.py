@@ -48,8 +48,9 @@ def line(machine: Machine, feed: float, count: int, moving: bool) -> str:
         start = time.perf_counter()
         found = five_axis_time(machine, tried, feeds)[0] if moving else machining_time(machine, tried, feeds)
         best, seconds = min(best, time.perf_counter() - start), found.total
-    return (f"  {'moving' if moving else 'fixed'} axis {feed:5.0f} mm/min {count:7d} points: {seconds:8.1f} s to machine, "
-            f"planned in {best:7.3f} s ({best / count * 1e6:6.1f} us a point), {100 * best / seconds:5.2f} % of it")
+    return (f"  {'moving' if moving else 'fixed'} axis {feed:5.0f} mm/min {count:7d} points: {seconds:8.1f} s to "
+            f"machine, planned in {best:7.3f} s ({best / count * 1e6:6.1f} us a point), "
+            f"{100 * best / seconds:5.2f} % of it")
 
 
 def main() -> None:
