@@ -10,7 +10,8 @@ import pytest
 import toolaxis as ta
 
 NAMES = ("Tool", "Face", "load", "place", "strip_width", "gouge", "clearance", "sample_points", "estimate", "count",
-         "passes", "best_axis", "plan", "verify", "batch", "drop_cutter", "join", "read_cl", "SubSurface")
+         "passes", "best_axis", "plan", "verify", "batch", "drop_cutter", "join", "read_cl", "SubSurface",
+         "export", "to_trimesh")
 HEAVY = ("matplotlib", "scipy", "numba", "OCP", "cadquery", "build123d", "rich")
 
 

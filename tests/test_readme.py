@@ -63,6 +63,6 @@ def test_every_link_leads_to_a_file(name: str) -> None:
 
 def test_every_option_that_is_named_exists() -> None:
     shown = "".join(subprocess.run([sys.executable, "-m", "toolaxis.cli.main", command, "--help"], capture_output=True,
-                                   text=True, check=True).stdout for command in ("plan", "post", "batch"))
+                                   text=True, check=True).stdout for command in ("plan", "post", "batch", "export"))
     for option in set(re.findall(r"--[a-z]+", TEXT)) - {"--help"}:
         assert option in shown

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from toolaxis.errors import MissingBackend as MissingBackend
     from toolaxis.errors import ToolAxisError as ToolAxisError
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
+    from toolaxis.job.exporting import export as export
+    from toolaxis.job.exporting import to_trimesh as to_trimesh
     from toolaxis.job.judge import verify as verify
     from toolaxis.job.reading import read_cl as read_cl
     from toolaxis.job.run import plan as plan
@@ -50,7 +52,8 @@ _HOME = {
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
     "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",
-    "batch": "batch.run", "read_cl": "job.reading", "SubSurface": "plan.sub_surface",
+    "batch": "batch.run", "read_cl": "job.reading", "SubSurface": "plan.sub_surface", "export": "job.exporting",
+    "to_trimesh": "job.exporting",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

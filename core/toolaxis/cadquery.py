@@ -8,7 +8,7 @@
     show_object(txq.assembly(plan, part))
 
 `part.faces(...).toolAxes(tool, scallop, ...)` plans the selected faces as `toolaxis.plan` does, `part.passEdges(plan)`
-puts the passes on the stack, and `part.workCoordinates(plan, "op01-face1")` is a workplane at that work coordinate system.
+puts the passes on the stack, and `part.workCoordinates(plan, "op01-face1")` is a workplane at those coordinates.
 """
 
 from typing import Any

@@ -43,6 +43,13 @@ class Piece:
         return face_shape(self.operation.face)
 
     @property
+    def local_face(self) -> Any:
+        """The same in work coordinates."""
+        frame = self.operation.frame
+        assert frame is not None
+        return face_shape(self.operation.face.transformed(np.linalg.inv(frame.part_from_work)))
+
+    @property
     def done(self) -> bool:
         """Whether there are passes and a work coordinate system."""
         return self.operation.path is not None and self.operation.frame is not None

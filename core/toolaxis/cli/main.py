@@ -36,6 +36,7 @@ def parser() -> argparse.ArgumentParser:
     _add_verify(commands)
     _add_post(commands)
     _add_report(commands)
+    _add_export(commands)
     _add_batch(commands)
     return top
 
@@ -153,6 +154,18 @@ def _add_report(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html)")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.report")
+
+
+def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("export", help="write a plan for other programs, as STEP or glTF",
+                              description="Write a plan as a STEP assembly (part, sub-surfaces as faces, passes at "
+                                          "named placements) or as glTF (meshes and lines).")
+    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+    sub.add_argument("--out", metavar="FILE", help="the file, .step or .glb (default: DIR/plan.step)")
+    sub.add_argument("--colour", default="sub-surface", choices=("sub-surface", "scallop", "gouge"),
+                     help="colours of sub-surfaces in .glb: one each (default), or a map of toolaxis verify")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.export")
 
 
 def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:

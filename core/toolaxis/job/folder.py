@@ -23,8 +23,8 @@ from toolaxis.shape.part import Part
 
 PLAN = "plan.json"
 #: What a folder may hold of an earlier plan; the rest in it is the user's and stays.
-_OURS = (PLAN, "verdict.json", "verdict-maps.npz", "report.html", "part.*", "obstacle-*.*", "op*.apt", "program-*.*",
-         "setup-*.md", "*.png")
+_OURS = (PLAN, "plan.step", "plan.glb", "verdict.json", "verdict-maps.npz", "report.html", "part.*", "obstacle-*.*",
+         "op*.apt", "program-*.*", "setup-*.md", "*.png")
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,9 @@ _MARKS = {"chosen": ("star", VERMILION, 17), "other lobes": ("diamond", "#ffffff
           "mean normal": ("cross", BLUE, 11)}
 #: Levels of a map: up to 1.5 times the limit evenly, then up to the greatest value by equal ratios.
 _EVEN, _RATIOS = 180, 72
-_FACTOR = 1.02
+#: What the judge lets pass, as a factor of the limit, and the colours of a map from nothing up to that.
+SLACK = 1.02
+SCALE = ("#00224E", "#2A3F6D", "#575D6D", "#7D7C78", "#A59C74", "#D2C060", "#FDEA45")
 _TITLE = {"font": {"size": 15}, "x": 0.0, "xanchor": "left", "xref": "container", "pad": {"l": 8}}
 _TOOL = {"cutter": "#F5CC59", "shank": "#BFBFC7", "holder": "#8C94A3", "shank (not given)": "#E2E2E6"}
 
@@ -181,9 +183,8 @@ def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
 
 def _scale() -> list[list[Any]]:
     """Colours up to the limit, then one that says that it is exceeded; up to 1.2 times the limit in all."""
-    edge = round(_FACTOR / 1.2, 5)
-    tones = ("#00224E", "#2A3F6D", "#575D6D", "#7D7C78", "#A59C74", "#D2C060", "#FDEA45")
-    return [*([round(edge * k / 6, 5), tone] for k, tone in enumerate(tones)), [edge, VERMILION], [1.0, VERMILION]]
+    edge = round(SLACK / 1.2, 5)
+    return [*([round(edge * k / 6, 5), tone] for k, tone in enumerate(SCALE)), [edge, VERMILION], [1.0, VERMILION]]
 
 
 def widths_chart(lines: Sequence[tuple[Array, Array]], frame: tuple[Array, Array], origin: Array, name: str) -> Chart:
