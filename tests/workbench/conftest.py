@@ -28,7 +28,7 @@ INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeC
 ONCE = ("test_same_plan.py",)
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
-STARTER = "import sys, FreeCAD, Path, pytest; sys.exit(pytest.main(sys.argv[1:]))"
+STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
 
 if INSIDE:
     import FreeCAD  # noqa: F401  before any test's `import Part`, which crashes alone

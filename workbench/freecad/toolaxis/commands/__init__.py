@@ -5,12 +5,13 @@ def register():
     """Make the commands known to FreeCAD; their names in the order of the toolbar."""
     import FreeCADGui
 
+    from .jobs import MakeJobs
     from .plan import PlanOrientations
     from .recompute import Recompute
     from .verify import Verify
 
     commands = {"ToolAxis_PlanOrientations": PlanOrientations(), "ToolAxis_Verify": Verify(),
-                "ToolAxis_Recompute": Recompute()}
+                "ToolAxis_Recompute": Recompute(), "ToolAxis_MakeJobs": MakeJobs()}
     known = FreeCADGui.listCommands()
     for name, command in commands.items():
         if name not in known:

@@ -1,0 +1,279 @@
+"""FreeCAD's own CAM jobs from operations: what its post-processor writes lies on the CL data, and nothing half-made."""
+
+import re
+import sys
+import types
+
+import FreeCAD
+import numpy as np
+import pytest
+from FreeCAD import Placement, Rotation, Vector
+from freecad.toolaxis import bridge, cam_jobs, cam_setup
+from freecad.toolaxis.cam import tool_from
+from freecad.toolaxis.cam_jobs import jobs_of, make_jobs
+from freecad.toolaxis.cam_tools import add_bit
+from freecad.toolaxis.objects.belongings import frame_of
+from freecad.toolaxis.objects.frames import kind_of_frame
+from freecad.toolaxis.places import matrix_of
+
+from toolaxis.cad.freecad import shape_of
+from toolaxis.errors import InvalidInput
+from toolaxis.tools.assembly import Tool
+
+TURNED = Placement(Vector(100, -20, 5), Rotation(Vector(1, 2, 3), 50))
+WORD = re.compile(r"([XYZF])(-?\d+\.\d+)")
+DIGIT = 0.001
+
+
+def names(document):
+    return sorted(thing.Name for thing in document.Objects)
+
+
+def posted(job):
+    """What FreeCAD's own post-processor for LinuxCNC writes."""
+    from Path.Post.Processor import PostProcessorFactory
+
+    job.PostProcessor, job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
+    return PostProcessorFactory.get_post_processor(job, "linuxcnc").export()[0][1]
+
+
+def motions(text, label):
+    """Where the motions of one operation of a program end, (n, 3), their codes and feed rates."""
+    lines = text.partition(f"(begin operation: {label})")[2].partition("(finish operation")[0].splitlines()
+    at, rows, codes, rates = {}, [], [], []
+    for line in lines:
+        code = line.split(" ")[0]
+        if code in ("G0", "G1"):
+            at |= {word: float(value) for word, value in WORD.findall(line)}
+            rows.append([at.get(name, np.nan) for name in "XYZ"])
+            codes.append(code)
+            rates.append(at.get("F"))
+    return np.array(rows), codes, rates
+
+
+def check_on_cl(text, made, op, placement, motion):
+    """The program of an operation, turned back by the plane that its job stands in, is the planned path."""
+    matrix = matrix_of(placement)
+    points, codes, rates = motions(text, made.Label)
+    tips = op.path.cl @ motion[:3, :3].T + motion[:3, 3]
+    assert len(points) == len(tips) + 3, "up, across and down before, up after"
+    wanted = (tips - matrix[:3, 3]) @ matrix[:3, :3]
+    assert np.abs(points[2:-1] - wanted).max() <= DIGIT / 2 + 1e-9
+    back = points[2:-1] @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.linalg.norm(back - tips, axis=1).max() <= DIGIT / 2 * np.sqrt(3) + 1e-9
+    assert np.array_equal([code == "G0" for code in codes[3:-1]], op.path.rapid[1:])
+    assert codes[:3] == ["G0"] * 3 and codes[-1] == "G0"
+    assert points[0, 2] == points[1, 2] == points[-1, 2] > points[2:-1, 2].max()
+    assert np.array_equal(points[1, :2], points[2, :2]) and set(rates[3:]) <= {None, 1000.0, 10000.0}
+
+
+def planned(document, parts, thing, name, lean=(0.15, 0.1, 0.05), **given):
+    """An operation with the plan behind it, its axis near the middle normal."""
+    shape = shape_of(thing)
+    face = shape.Faces[int(name.rsplit("Face", 1)[1]) - 1]
+    inputs = parts.inputs_for((thing, name), **given)
+    plan = parts.quick_plan(inputs, Vector(*(np.array(face.normalAt(0.5, 0.5)) + lean)))
+    assert plan.operations[0].done, plan.operations[0].orientation.reasons
+    return bridge.apply(document, inputs, plan)[0], plan.operations[0]
+
+
+def turned(document, parts):
+    thing = parts.block(document)
+    thing.Placement = TURNED
+    return thing, thing, "Face"
+
+
+def contained(document, parts):
+    thing = parts.block(document)
+    outer = document.addObject("App::Part", "Outer")
+    outer.addObject(thing)
+    thing.Placement, outer.Placement = Placement(Vector(1, 2, 3), Rotation()), TURNED
+    return thing, outer, "Face"
+
+
+def linked(document, parts):
+    thing = parts.block(document)
+    link = document.addObject("App::Link", "Link")
+    link.LinkedObject, link.Placement = thing, TURNED
+    return link, link, "Face"
+
+
+@pytest.mark.parametrize("stand", [turned, contained, linked], ids=lambda make: make.__name__)
+def test_the_posted_program_lies_on_the_cl_data(stand, document, parts):
+    thing, mover, prefix = stand(document, parts)
+    document.recompute()
+    name = prefix + parts.sculptured_name(thing.getLinkedObject(True))[4:]
+    operation, op = planned(document, parts, thing, name)
+    before = mover.Placement
+    mover.Placement = Placement(Vector(-7, 30, 11), Rotation(Vector(0, 1, 2), 75)).multiply(before)
+    document.recompute()
+    motion = matrix_of(mover.Placement.multiply(before.inverse()))
+    job, = make_jobs(document, operation)
+    frame = frame_of(operation).Placement
+    check_on_cl(posted(job), job.Operations.Group[0], op, frame, motion)
+    model, shape = job.Model.Group[0], shape_of(thing)
+    for own, face in zip(model.Shape.Faces, shape.Faces, strict=True):
+        assert frame.multVec(own.CenterOfMass).distanceToPoint(face.CenterOfMass) < 1e-6
+    box, stock = model.Shape.BoundBox, job.Stock.Shape.BoundBox
+    assert stock.XMin <= box.XMin and stock.ZMax >= box.ZMax and stock.DiagonalLength < 1.5 * box.DiagonalLength
+    assert job.Operations.Group[0].OrientedFrom == operation and jobs_of(operation) == [job]
+    assert not [one.Name for one in document.Objects if "Invalid" in one.State]
+
+
+def test_each_orientation_is_a_job_and_shares_it(document, parts):
+    first, second = parts.block(document, "First"), parts.block(document, "Second")
+    second.Placement.Base = Vector(0, 60, 0)
+    document.recompute()
+    name = parts.sculptured_name(first)
+    made = [planned(document, parts, first, name, (0.1, 0.0, 0.0)),
+            planned(document, parts, second, name, (0.0, 0.2, 0.0), feedrate=800.0),
+            planned(document, parts, second, name, (0.1, 0.0, 0.0), feedrate=600.0)]
+    jobs = make_jobs(document, [operation for operation, _ in made])
+    assert [job.Fixtures for job in jobs] == [["G54"], ["G55"]]
+    held = [[one.OrientedFrom for one in job.Operations.Group] for job in jobs]
+    assert held == [[made[0][0], made[2][0]], [made[1][0]]]
+    shared = jobs[0]
+    assert [tc.ToolNumber for tc in shared.Tools.Group] == [1, 2] and len(shared.Model.Group) == 2
+    assert [tc.HorizFeed.Value * 60 for tc in shared.Tools.Group] == pytest.approx([1000, 600])
+    text, frame = posted(shared), frame_of(made[0][0]).Placement
+    assert "M6 T1" in text and "M6 T2" in text and "M3 S10000" in text
+    for job_op, (_, op) in zip(shared.Operations.Group, (made[0], made[2]), strict=True):
+        matrix = matrix_of(frame)
+        points, _, rates = motions(text, job_op.Label)
+        assert np.abs(points[2:-1] - (op.path.cl - matrix[:3, 3]) @ matrix[:3, :3]).max() <= DIGIT / 2 + 1e-9
+        assert (1000.0 if op is made[0][1] else 600.0) in rates
+    assert "\nG55" in posted(jobs[1])
+
+
+def test_the_safe_height_is_above_what_is_avoided(document, parts):
+    thing, clamp = parts.block(document), document.addObject("Part::Box", "Clamp")
+    clamp.Placement.Base, clamp.Height = Vector(60, 0, 0), 90
+    document.recompute()
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing), obstacles=(clamp,))
+    job, = make_jobs(document, [operation])
+    points, *_ = motions(posted(job), job.Operations.Group[0].Label)
+    corners = [frame_of(operation).Placement.inverse().multVec(vertex.Point).z for vertex in clamp.Shape.Vertexes]
+    assert points[0, 2] >= max(corners) + job.SetupSheet.ClearanceHeightOffset.Value - DIGIT
+
+
+def test_one_undo_step_and_back(document, parts):
+    document.UndoMode = 1
+    thing = parts.block(document)
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
+    before, steps = names(document), document.UndoCount
+    make_jobs(document, [operation])
+    after = names(document)
+    assert document.UndoCount == steps + 1
+    document.undo()
+    assert names(document) == before
+    document.redo()
+    assert names(document) == after
+
+
+def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
+    thing = parts.block(document)
+    operation, op = planned(document, parts, thing, parts.sculptured_name(thing))
+    job, = make_jobs(document, [operation])
+    job.PostProcessor, job.PostProcessorArgs, job.Fixtures = "grbl", "--no-header", ["G58"]
+    count, lines = len(document.Objects), len(job.Operations.Group[0].Gcode)
+    operation.Scallop = 0.5
+    document.recompute()
+    assert operation.Stale
+    inputs = bridge.inputs_of(operation)
+    bridge.apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
+    again, = make_jobs(document, [operation])
+    assert len(document.Objects) == count and len(again.Operations.Group[0].Gcode) < lines
+    assert (again.PostProcessor, again.PostProcessorArgs, again.Fixtures) == ("grbl", "--no-header", ["G58"])
+
+
+def test_what_a_user_put_into_a_job_stays(document, parts):
+    import Path.Op.Custom as Custom
+
+    thing = parts.block(document)
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
+    job, = make_jobs(document, [operation])
+    mine = Custom.Create("Mine", parentJob=job)
+    again, = make_jobs(document, [operation])
+    assert again.Name != job.Name and job.Operations.Group == [mine]
+    assert jobs_of(operation) == [again]
+
+
+def test_bad_operations_are_refused_in_a_sentence(document, parts):
+    thing = parts.block(document)
+    name = parts.sculptured_name(thing)
+    nowhere = parts.planned(document, (thing, name), axis=Vector(0, 0, -1))[0]
+    operation, _ = planned(document, parts, thing, name)
+    with pytest.raises(InvalidInput, match="no operation with passes"):
+        make_jobs(document, nowhere)
+    assert len(make_jobs(document, [nowhere, operation])) == 1, "those without an axis are left out"
+    before = names(document)
+    operation.Scallop = 0.2
+    with pytest.raises(InvalidInput, match=r"is stale \(scallop was changed\): recompute it"):
+        make_jobs(document, operation)
+    with pytest.raises(InvalidInput, match="none of Tool Axis"):
+        make_jobs(document, thing)
+    assert names(document) == before
+
+
+def test_nothing_half_made_stays(document, parts, monkeypatch):
+    thing = parts.block(document)
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
+    before = names(document)
+
+    def fails(*_):
+        raise InvalidInput("the disk is full")
+
+    monkeypatch.setattr(cam_setup, "blocks", fails)
+    with pytest.raises(InvalidInput, match="the disk is full"):
+        make_jobs(document, operation)
+    assert names(document) == before
+    document.recompute()
+    assert not operation.Stale
+
+
+@pytest.mark.parametrize("text", ["torus:12x1", "ball:8", "flat:20", "torus:6x3", "tapered:6x3x4"])
+def test_a_cutter_comes_back_from_its_bit(text, document):
+    FreeCAD.setActiveDocument(document.Name)
+    tool = Tool.parse(text, stickout=70.0)
+    back = tool_from(add_bit(document, tool, text))
+    if tool.kind != "tapered" or back.kind == "tapered":
+        assert (back.radius, back.corner_radius, back.half_angle) == pytest.approx(
+            (tool.radius, tool.corner_radius, tool.half_angle))
+        assert back.flute_length == pytest.approx(tool.flute_length)
+    else:
+        assert (back.kind, back.radius) == ("ball", 3.0), "FreeCAD 1.0 has no tapered cutters"
+
+
+def test_work_planes_are_used_where_jobs_have_them(document, parts, monkeypatch):
+    """By the interface of FreeCAD's coming Path.Main.Workplane, which no FreeCAD that can be had yet has."""
+    import Path.Op.Custom as Custom
+
+    def create(job, label=None, placement=None, **_):
+        plane = document.addObject(kind_of_frame(document), "Workplane")
+        plane.Label = label
+        plane.addProperty("App::PropertyPlacement", "Stands")
+        plane.Stands = placement
+        return plane
+
+    thing = parts.block(document)
+    name = parts.sculptured_name(thing)
+    made = [planned(document, parts, thing, name, (lean, 0.0, 0.0)) for lean in (0.1, 0.2)]
+    monkeypatch.setitem(sys.modules, "Path.Main.Workplane", types.SimpleNamespace(createWorkplane=create))
+    monkeypatch.setattr(cam_jobs, "_has_planes", lambda: True)
+    jobs = make_jobs(document, [operation for operation, _ in made])
+    assert len(jobs) == 2, "operations with given passes that take no plane: a job for each orientation"
+    assert not [one.Name for one in document.Objects if one.Name.startswith("Workplane")]
+    plain = Custom.Create
+
+    def with_plane(*args, **given):
+        operation = plain(*args, **given)
+        operation.addProperty("App::PropertyLink", "Workplane")
+        return operation
+
+    monkeypatch.setattr(Custom, "Create", with_plane)
+    job, = make_jobs(document, [operation for operation, _ in made])
+    assert len(job.Operations.Group) == 2
+    text = posted(job)
+    for one, (operation, op) in zip(job.Operations.Group, made, strict=True):
+        assert one.Workplane.Stands.isSame(frame_of(operation).Placement, 1e-9)
+        check_on_cl(text, one, op, one.Workplane.Stands, np.eye(4))

@@ -1,0 +1,205 @@
+"""CAM jobs from operations: FreeCAD's own jobs with stock, tools and our passes, ready for its post-processors.
+
+Where jobs have work planes there is one job with a shared plane for each orientation.  Else there is one job for each
+orientation, its model turned into the frame of the plane, so that +Z is the tool axis there.
+"""
+
+from contextlib import contextmanager
+from importlib.util import find_spec
+
+import FreeCAD
+
+from .arguments import document_of, operation_of
+from .cam_setup import Passes, add_passes, bare_job, safe_height, tool_of
+from .objects.transaction import one_step
+from .places import placement_from
+
+translate = FreeCAD.Qt.translate
+
+#: Work offsets in the order in which jobs of one call take them; FreeCAD's own list of fixtures.
+OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", *(f"G59.{k}" for k in range(1, 10)))
+#: Angle below which two axes are one orientation, rad.
+_ONE = 1e-7
+_KEPT = ("PostProcessor", "PostProcessorArgs", "PostProcessorOutputFile", "Fixtures")
+
+
+def make_jobs(document, operations):
+    """Make CAM jobs of operations, as one undo step; jobs that were made of the same ones before are replaced.
+
+    Parameters
+    ----------
+    document : App.Document
+    operations : App.DocumentObject or sequence of them
+        Those without an axis are left out.
+
+    Returns
+    -------
+    list of App.DocumentObject
+        One job for each orientation, in the order in which they come up first; a single one where jobs have work
+        planes.
+
+    Raises
+    ------
+    InvalidInput
+        When an operation is stale, or there is none with passes; the document is then as it was.
+    """
+    from toolaxis.errors import InvalidInput
+
+    document = document_of(document)
+    several = operations if isinstance(operations, list | tuple) else [operations]
+    operations = [operation_of(one) for one in several]
+    document.recompute()
+    ready = [_ready(operation) for operation in operations if operation.Motions or operation.Stale]
+    if not ready:
+        raise InvalidInput("there is no operation with passes: select faces and run Plan Orientations first")
+    with one_step(document, translate("ToolAxis", "Make CAM jobs")), _active(document):
+        kept = _take_away(document, [one.operation for one in ready])
+        groups = _by_axis(ready)
+        jobs = (_on_planes(document, groups) if _has_planes() else None) or [
+            _job(document, group, offset) for group, offset in zip(groups, _offsets(len(groups)), strict=True)]
+        for job, one in zip(jobs, groups, strict=False):
+            for name, value in kept.get(one[0].operation.Name, {}).items():
+                setattr(job, name, value)
+        document.recompute()
+    return jobs
+
+
+def jobs_of(operation):
+    """The CAM jobs that hold passes of an operation.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    return [job for job, _ in _made(operation.Document, [operation_of(operation)])]
+
+
+def _ready(operation):
+    """An operation checked and read."""
+    from toolaxis.errors import InvalidInput
+
+    from .bridge import inputs_of
+    from .staleness import why_stale
+    from .standing import Standing
+
+    reasons = why_stale(operation)
+    if reasons:
+        raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
+    inputs, standing = inputs_of(operation), Standing.of(operation)
+    return Passes(operation, inputs, inputs.assembled(), standing.path, standing.matrix, inputs.job().rapid)
+
+
+def _by_axis(ready):
+    """Operations with one axis together, in the order in which the axes come up."""
+    import numpy as np
+
+    groups = []
+    for one in ready:
+        same = next((group for group in groups
+                     if np.linalg.norm(np.cross(group[0].matrix[:3, 2], one.matrix[:3, 2])) < _ONE
+                     and group[0].matrix[:3, 2] @ one.matrix[:3, 2] > 0), None)
+        if same is None:
+            groups.append([one])
+        else:
+            same.append(one)
+    return groups
+
+
+def _offsets(count):
+    """A work offset for each job: the ones of FreeCAD's list, the last for what is left over."""
+    return [OFFSETS[min(k, len(OFFSETS) - 1)] for k in range(count)]
+
+
+def _has_planes():
+    """Whether jobs of this FreeCAD hold work planes."""
+    import Path.Main.Job  # noqa: F401  its package
+
+    return find_spec("Path.Main.Workplane") is not None
+
+
+def _on_planes(document, groups):
+    """One job with a work plane for each orientation; None where this FreeCAD cannot hold our passes so."""
+    import Path.Main.Workplane as Workplanes
+
+    everything = [one for group in groups for one in group]
+    job, controllers = bare_job(document, everything, FreeCAD.Placement())
+    planes = []
+    try:
+        for number, group in enumerate(groups, 1):
+            label, plane = translate("ToolAxis", "Orientation {}").format(number), placement_from(group[0].matrix)
+            planes.append(Workplanes.createWorkplane(job, label=label, placement=plane))
+            height = safe_height(job, everything, plane, FreeCAD.Placement())
+            for one in group:
+                made = add_passes(job, controllers[tool_of(one)], one, (plane, height))
+                if not hasattr(made, "Workplane"):
+                    raise ValueError("operations with given passes have no work plane")
+                made.Workplane = planes[-1]
+    except ValueError as reason:  # the job's machine does not turn, or the operation takes no plane
+        FreeCAD.Console.PrintLog(f"Tool Axis: {reason}\n")
+        _remove_job(job)
+        for name in [one.Name for one in planes]:
+            if document.getObject(name) is not None:
+                document.removeObject(name)
+        return None
+    return [job]
+
+
+def _job(document, group, offset):
+    """One job for operations with one axis, its model turned so that the axis is +Z."""
+    plane = placement_from(group[0].matrix)
+    job, controllers = bare_job(document, group, plane)
+    job.Fixtures = [offset]
+    height = safe_height(job, group, plane, plane)
+    for one in group:
+        add_passes(job, controllers[tool_of(one)], one, (plane, height))
+    return job
+
+
+def _made(document, operations):
+    """Jobs and their operations that were made of some of ours."""
+    names = {one.Name for one in operations}
+    found = []
+    for job in document.Objects:
+        group = getattr(getattr(job, "Operations", None), "Group", ())
+        found += [(job, made) for made in group
+                  if getattr(made, "OrientedFrom", None) is not None and made.OrientedFrom.Name in names]
+    return found
+
+
+def _take_away(document, operations):
+    """Remove what was made of some operations before; what is kept of their jobs, by the operations' names."""
+    found = _made(document, operations)
+    kept = {made.OrientedFrom.Name: {name: getattr(job, name) for name in _KEPT} for job, made in found}
+    gone = {made.Name for _, made in found}
+    for job in {job.Name: job for job, _ in found}.values():
+        own = job.Operations.Group
+        if all(made.Name in gone for made in own):
+            _remove_job(job)
+        else:
+            for made in [made for made in own if made.Name in gone]:
+                document.removeObject(made.Name)
+    return kept
+
+
+def _remove_job(job):
+    """Remove a job with all that it holds, as FreeCAD does when a user deletes it, and copies that only it used."""
+    document = job.Document
+    bases = [base for model in job.Model.Group for base in getattr(model, "Objects", ())]
+    copies = [base.Name for base in bases if base.TypeId == "Part::Feature" and base.Name.startswith("Copy")]
+    job.Proxy.onDelete(job)
+    document.removeObject(job.Name)
+    for name in copies:
+        if document.getObject(name) is not None and not document.getObject(name).InList:
+            document.removeObject(name)
+
+
+@contextmanager
+def _active(document):
+    """Make a document the active one meanwhile: FreeCAD's CAM makes its objects there."""
+    before = FreeCAD.ActiveDocument
+    FreeCAD.setActiveDocument(document.Name)
+    try:
+        yield
+    finally:
+        if before is not None and before.Name in FreeCAD.listDocuments():
+            FreeCAD.setActiveDocument(before.Name)
