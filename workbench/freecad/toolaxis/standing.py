@@ -65,16 +65,27 @@ class Standing:
         tool : toolaxis.tools.assembly.Tool
         inputs : toolaxis.plan.plan.Inputs
         """
-        from toolaxis.machine.setup import WorkCoordinates
         from toolaxis.plan.operation import Operation
         from toolaxis.plan.plan import Plan
 
-        m = self.matrix
-        frame = WorkCoordinates(m[:3, 3], m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3])
-        made = Operation(1, self._face(part), self.orientation, self.path, frame)
-        return Plan(part, tool, inputs, (made,), tuple(bodies), m[:3, 3], "complete")
+        made = Operation(1, self.face(part), self.orientation, self.path, self.frame)
+        return Plan(part, tool, inputs, (made,), tuple(bodies), self.frame.origin, "complete")
 
-    def _face(self, part):
+    @property
+    def frame(self):
+        """The frame of the plane as the library's work coordinate system, in the document's space."""
+        from toolaxis.machine.setup import WorkCoordinates
+
+        m = self.matrix
+        return WorkCoordinates(m[:3, 3], m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3])
+
+    def face(self, part):
+        """The sub-surface.
+
+        Parameters
+        ----------
+        part : toolaxis.shape.part.Part
+        """
         import numpy as np
 
         from toolaxis.shape.kinks import split_at_kinks

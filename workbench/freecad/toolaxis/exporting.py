@@ -1,0 +1,240 @@
+"""Operations of a document out as files: what the commands plan, post and report write, whole or not at all."""
+
+from dataclasses import dataclass, replace
+
+from .arguments import operation_of, progress_of
+
+#: What operations of one folder have in common, and how it is called in messages.
+_SHARED = {"tool": "tools", "stickout": "stick-outs", "shank": "shanks", "holder": "holders",
+           "scallop": "scallop heights", "allowance": "allowances", "limits": "limits of the axis",
+           "objective": "objectives", "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
+_JUDGED = {"passed": "passed", "failed": "FAILED"}
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is written besides plan.json and the CL files.
+
+    Attributes
+    ----------
+    dialect : str
+        Of the program; empty for none.
+    machine : str
+        Name or file of the machine that the program is for; empty for none.
+    offset : (3,) sequence of float, optional
+        Where the origin of the document stands on the machine's table, mm.
+    report : bool
+        Whether the page is written.
+    """
+
+    dialect: str = ""
+    machine: str = ""
+    offset: tuple | None = None
+    report: bool = False
+
+
+def export(operations, folder, wish=None, progress=None):
+    """Write operations into a folder as the command does.
+
+    Parameters
+    ----------
+    operations : App.DocumentObject or sequence of them
+    folder : str or Path
+        Files of an earlier plan in it are replaced, others stay.
+    wish : Wish, optional
+    progress : toolaxis.progress.Progress, optional
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+
+    Raises
+    ------
+    ToolAxisError
+        In one sentence; the folder is then as it was.
+    """
+    several = operations if isinstance(operations, list | tuple) else [operations]
+    return task([operation_of(one) for one in several], folder, wish)(progress_of(progress))
+
+
+def task(operations, folder, wish=None):
+    """The writing of operations, as a computation apart from the document.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+    folder : str or Path
+    wish : Wish, optional
+
+    Returns
+    -------
+    callable
+        Takes a `toolaxis.progress.Progress` and returns the names of the files; for any thread.
+
+    Raises
+    ------
+    InvalidInput
+        When an operation is stale or has no part any more, or operations do not go together.
+    """
+    from pathlib import Path
+
+    gather, verdict = plan_task(operations), _verdict(operations)
+    wish = Wish() if wish is None else wish
+
+    def compute(progress):
+        return _write(gather(progress), Path(folder), wish, (verdict, progress))
+
+    return compute
+
+
+def plan_task(operations):
+    """The plan that stands in a document, as a computation apart from it.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+
+    Returns
+    -------
+    callable
+        Takes a `toolaxis.progress.Progress` and returns a `toolaxis.plan.plan.Plan`; for any thread.
+
+    Raises
+    ------
+    InvalidInput
+        When an operation is stale or has no part any more, or operations do not go together.
+    """
+    from .reading import Source
+    from .standing import Standing
+
+    inputs = [_inputs(operation) for operation in operations]
+    together = _together(operations, inputs)
+    source = Source.of(together)
+    numbers = _numbers(together, inputs)
+    stands = [Standing.of(operation) if operation.Motions else None for operation in operations]
+    kept = [(operation.AxisMap, operation.Details) for operation in operations]
+    tool, job = together.assembled(), together.job()
+
+    def compute(progress):
+        from toolaxis.plan.plan import Plan, outcome_of
+
+        part, bodies = source.read(progress)
+        made = [_operation(k, part, (standing, number, texts)) for k, (standing, number, texts)
+                in enumerate(zip(stands, numbers, kept, strict=True), 1)]
+        return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made))
+
+    return compute
+
+
+def _inputs(operation):
+    """The inputs of an operation that holds."""
+    from toolaxis.errors import InvalidInput
+
+    from .bridge import inputs_of
+    from .staleness import why_stale
+
+    reasons = why_stale(operation)
+    if reasons:
+        raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before it is written")
+    return inputs_of(operation)
+
+
+def _together(operations, inputs):
+    """One job for all operations; refused where they differ in what a plan has once."""
+    from toolaxis.errors import InvalidInput
+
+    if not inputs:
+        raise InvalidInput("there is no operation: select faces and run Plan Orientations first")
+    first = inputs[0]
+    for operation, one in zip(operations, inputs, strict=True):
+        for name, words in _SHARED.items():
+            if getattr(one, name) != getattr(first, name):
+                raise InvalidInput(f"'{operations[0].Label}' and '{operation.Label}' have different {words}: select "
+                                   "those that go together, and write each kind into a folder of its own")
+    things = {thing.Name for one in inputs for thing in one.things}
+    obstacles = {body.Name: body for one in inputs for body in one.obstacles if body.Name not in things}
+    faces = dict.fromkeys(face for one in inputs for face in one.faces)
+    return replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+
+
+def _numbers(together, inputs):
+    """The number of each operation's face, counted through all parts."""
+    from toolaxis.cad.freecad import shape_of
+
+    from .reading import numbered
+
+    found = numbered(together, [shape_of(thing) for thing in together.things])
+    of = {(thing.Name, name): number for number, (thing, name, _) in found.items()}
+    return [of[one.faces[0][0].Name, one.faces[0][1]] for one in inputs]
+
+
+def _operation(number, part, stands):
+    """An operation of the library from what stands in the document."""
+    import json
+
+    from toolaxis.plan.document import orientation_from
+    from toolaxis.plan.operation import Operation
+
+    from .standing import Standing
+
+    standing, face, (axis_map, text) = stands
+    details = json.loads(text)
+    own = str(details["face"])
+    suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
+    details = details | {"face": face, "label": f"{face}{suffix}"}
+    if standing is None:
+        lost = Standing(None, None, None, details)
+        return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))
+    standing = replace(standing, details=details)
+    return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
+
+
+def _datum(made, source):
+    """The origin that all work coordinate systems share."""
+    import numpy as np
+
+    frames = [op.frame for op in made if op.frame is not None]
+    return frames[0].origin if frames else np.array(source.datum)
+
+
+def _verdict(operations):
+    """What is known of operations, as the setup sheet says it."""
+    found = {operation.Verdict for operation in operations if operation.Motions}
+    return _JUDGED.get(found.pop(), "not judged yet: run toolaxis verify") if len(found) == 1 else (
+        "FAILED" if "failed" in found else "not judged yet: run toolaxis verify")
+
+
+def _write(plan, folder, wish, told):
+    """Make all files beside the folder, then move them there."""
+    from toolaxis.job.folder import staged, write_plan
+
+    verdict, progress = told
+    with staged(folder) as stage:
+        inner = stage.folder / folder.resolve().name  # the page is called by its folder
+        inner.mkdir()
+        progress.report("writing the plan", 0, 1)
+        write_plan(plan, inner)
+        if wish.dialect:
+            for name, text in _program(plan, wish, folder.resolve().name, verdict).items():
+                (inner / name).write_text(text, encoding="utf-8")
+        if wish.report:
+            from toolaxis.job.reporting import report
+
+            report(inner, None, progress)
+        names = sorted(path.name for path in inner.iterdir())
+        for name in names:
+            (inner / name).rename(stage.folder / name)
+        inner.rmdir()
+        stage.publish()
+    return names
+
+
+def _program(plan, wish, name, verdict):
+    """The files of a program."""
+    from toolaxis.cad.machines import load_machine
+    from toolaxis.job.posting import posted
+    from toolaxis.machine.mounting import Mounting
+
+    mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None
+    return posted(plan, wish.dialect, mounting, name=name, verdict=verdict)
