@@ -192,7 +192,7 @@ def test_index_moves_go_around_what_is_in_the_way() -> None:
     wall = Body("wall", "C", "box", np.array([[150.0, -160, 0], [160, 160, 160]]))
     free, walled = (timed(replace(plan, machine=Mounting(replace(machine, linear=linear, bodies=bodies), PLACE)), True)
                     for bodies in ((), (*machine.bodies, wall)))
-    assert walled.in_the_way == () and all(op.done for op in walled.operations)
+    assert walled.in_the_way == () and walled.outcome == "complete" and all(op.done for op in walled.operations)
     assert walled.order.seconds >= free.order.seconds - 1e-9
     mounting = replace(walled.machine, tool_length=TOOL.gauge_length)
     around = Surroundings(TOOL, (forest((FACE,)),), 1.0)
@@ -207,7 +207,7 @@ def test_what_is_in_the_way_on_every_order_is_told_and_not_posted() -> None:
     machine = plan.machine.machine
     roof = Body("roof", "bed", "box", np.array([[-900.0, -900, 740], [900, 900, 760]]))
     made = timed(replace(plan, machine=Mounting(replace(machine, bodies=(*machine.bodies, roof)), PLACE)), reorder=True)
-    assert all(op.done for op in made.operations) and len(made.in_the_way) == 5
+    assert all(op.done for op in made.operations) and len(made.in_the_way) == 5 and made.outcome == "incomplete"
     assert all("the spindle meets the roof by 10.0 mm at C" in why for why in made.in_the_way)
     assert sum("before face" in why and "on the retract" in why for why in made.in_the_way) == 3
     assert "on the approach" in made.in_the_way[3] and made.in_the_way[4].startswith("after face")

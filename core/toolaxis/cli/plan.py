@@ -111,7 +111,7 @@ def _told(made: Plan, given: Namespace) -> int:
         say(f"toolaxis: warning: {made.orientations} axes instead of {asked}: for some sub-surfaces no shared "
             "axis passed the proof, and one was searched; plan.json says why")
     for why in made.in_the_way:
-        say(f"toolaxis: warning: {why}")
+        say(f"toolaxis: between operations: {why}")
     for op in made.operations:
         if made.blades is not None and op.number in made.blades.copies:
             continue

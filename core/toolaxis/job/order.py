@@ -42,7 +42,8 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     """A plan whose operations stand at rotary angles that its machine can take, and in the quickest order if asked for.
 
     Operations with one axis follow each other.  Where bodies of the machine are known, angles at which they meet part,
-    tool or each other are left out, and so are index moves on which they do; what no order avoids is told.
+    tool or each other are left out, and so are index moves on which they do; what no order avoids is told, and makes the
+    plan incomplete.
 
     Parameters
     ----------
@@ -72,7 +73,8 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     before = _without_trouble(steps, rows, (mounting, around), listed)
     if reorder and len(rows) > 1:
         best = _without_trouble(steps, rows, (mounting, around), None)
-        chosen = best if best.tour.cost < before.tour.cost - 1e-6 else before
+        rank = [(bool(way.troubles), way.tour.cost) for way in (best, before)]
+        chosen = best if rank[0] < (rank[1][0], rank[1][1] - 1e-6) else before
     else:
         chosen, best = before, before
     chosen = replace(chosen, troubles=(*chosen.troubles, *_at_the_ends(mounting, rows, chosen, around)))
@@ -256,4 +258,5 @@ def _put(plan: Plan, rows: Sequence[list[_State]], way: _Way, order: Order | Non
     made = tuple(replace(op, number=numbers[op.number], rotary=tuple(stood[id(op)].tolist()) if id(op) in stood else ())
                  for op in operations)
     blades = None if plan.blades is None else plan.blades.renumbered(numbers)
-    return replace(plan, operations=made, blades=blades, order=order, in_the_way=way.troubles)
+    outcome = "incomplete" if way.troubles and plan.outcome == "complete" else plan.outcome
+    return replace(plan, operations=made, blades=blades, outcome=outcome, order=order, in_the_way=way.troubles)

@@ -121,8 +121,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     Returns
     -------
     Plan
-        Its outcome is "complete", "incomplete" (a sub-surface has no axis; its reasons say why) or "cancelled"
-        (operations done so far).
+        Its outcome is "complete", "incomplete" (a sub-surface has no axis, its reasons say why, or the machine meets
+        something between operations) or "cancelled" (operations done so far).
 
     Raises
     ------

@@ -170,7 +170,7 @@ class Plan:
         Origin of every work coordinate system, mm.
     outcome : str
         "complete" (every sub-surface has an axis, fillets at the roots of blades and faces that are left to a clean-up
-        tool as a whole apart), "incomplete" (one or more have none) or "cancelled".
+        tool as a whole apart, and nothing is in the way between operations), "incomplete" or "cancelled".
     options : tuple of Option
         Cutting length, or time, against the number of different axes, where that was asked for.
     baselines : tuple of Baseline
