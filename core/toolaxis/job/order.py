@@ -42,8 +42,8 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     """A plan whose operations stand at rotary angles that its machine can take, and in the quickest order if asked for.
 
     Operations with one axis follow each other.  Where bodies of the machine are known, angles at which they meet part,
-    tool or each other are left out, and so are index moves on which they do; what no order avoids is told, and makes the
-    plan incomplete.
+    tool or each other are left out, and so are index moves on which they do; what no order avoids is told, and makes
+    the plan incomplete.
 
     Parameters
     ----------
