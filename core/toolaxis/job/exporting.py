@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from toolaxis.errors import InvalidInput, MissingBackend
+from toolaxis.job.contacts import with_contacts
 from toolaxis.job.folder import read_plan, sha256_of, staged
 from toolaxis.job.views import read_views
 from toolaxis.plan.plan import Plan
@@ -64,7 +65,7 @@ def export(plan: Plan | str | PathLike[str], file: str | PathLike[str], *, colou
     name = "plan"
     if not isinstance(plan, Plan):
         folder = Path(plan)
-        plan, name, views = read_plan(folder), folder.resolve().name, read_views(folder)
+        plan, name, views = with_contacts(read_plan(folder)), folder.resolve().name, read_views(folder)
     else:
         views = _views(plan, verdict)
     with staged(target.absolute().parent) as stage:

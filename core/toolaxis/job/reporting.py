@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.axes import search_task
+from toolaxis.job.contacts import widths_along, with_contacts
 from toolaxis.job.folder import PLAN, read_json, read_plan, sha256_of, staged
 from toolaxis.job.timing import feeds_of
 from toolaxis.job.views import NAME as MAPS
@@ -67,6 +67,7 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
         raise InvalidInput(f"the page {target} is a folder: give a file name with --out")
     with heard(progress):
         plan = read_plan(folder)
+        plan = with_contacts(plan, frozenset(op.number for op in _drawn(plan)))
         text = page(plan, _beside(plan, folder, progress), folder.resolve().name)
     with staged(target.parent) as stage:
         (stage.folder / target.name).write_text(text, encoding="utf-8")
@@ -76,20 +77,18 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
 
 def _beside(plan: Plan, folder: Path, progress: Progress) -> Any:
     """Everything that the page shows besides the plan."""
-    from toolaxis.job.pictures import width_lines
     from toolaxis.report.html import Beside
 
     verdict = read_verdict(folder)
     names = {op.name for op in plan.operations}
     views = {} if verdict is None else {name: view for name, view in read_views(folder).items() if name in names}
-    copies = {} if plan.blades is None else plan.blades.copies
-    fixed = [op for op in plan.operations
-             if op.done and op.number not in copies and op.orientation.lead is None]
+    fixed = [op for op in _drawn(plan) if op.done and op.orientation.lead is None]
     widths: dict[str, Any] = {}
     feeds: dict[str, Curve] = {}
     for index, op in enumerate(fixed):
         progress.report("strip widths", index, len(fixed))
-        lines = width_lines(plan, op, search_task(plan, op, Progress(None, progress.cancelled)))
+        progress.check()
+        lines = widths_along(plan, op)
         step = -(-sum(len(width) for _, width in lines) // _MOST_WIDTHS) if lines else 1
         widths[op.name] = [(line[::step], width[::step]) for line, width in lines]
         found = _feed(plan, op)
@@ -98,6 +97,12 @@ def _beside(plan: Plan, folder: Path, progress: Progress) -> Any:
     progress.report("page", 0, 1)
     source = read_json(folder / PLAN)["part"]["source"] or ""
     return Beside(verdict, views, widths, feeds, _files(folder), source, _still(plan))
+
+
+def _drawn(plan: Plan) -> list[Operation]:
+    """The operations whose passes are drawn: no turned copies."""
+    copies = {} if plan.blades is None else plan.blades.copies
+    return [op for op in plan.operations if op.number not in copies]
 
 
 def _feed(plan: Plan, op: Operation) -> "Curve | None":

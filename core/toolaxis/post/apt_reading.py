@@ -62,6 +62,21 @@ def _goto(number: int, arguments: str, multax: bool, last: Array | None) -> Arra
     return row
 
 
+def _table(arguments: list[str]) -> Array | None:
+    """Points and unit axes of GOTO statements, (n, 6); None where one does not have six good numbers."""
+    if any(words.count(",") != 5 for words in arguments):
+        return None
+    try:
+        table = np.array(",".join(arguments).split(","), dtype=float).reshape(-1, 6)
+    except ValueError:
+        return None
+    size = np.linalg.norm(table[:, 3:], axis=1, keepdims=True)
+    if not (np.isfinite(table).all() and (np.abs(size - 1) < 1e-3).all()):
+        return None
+    table[:, 3:] /= size
+    return table
+
+
 def _first_number(arguments: str) -> float | None:
     """The first of the words that is a number."""
     for word in arguments.split(","):
@@ -136,6 +151,20 @@ class _Reading:
         elif first not in _IGNORED:
             raise InvalidInput(f"CL line {number}: {word} is not understood: only straight motion (GOTO) can be judged")
 
+    def take_run(self, numbers: list[int], arguments: list[str]) -> None:
+        """Take in GOTO statements that follow each other: at once where each is whole, else one by one."""
+        table = _table(arguments)
+        if table is None:
+            for number, words in zip(numbers, arguments, strict=True):
+                self._take_goto(number, words, False)
+            return
+        table[:, :3] *= self.scale
+        self.told = True
+        self.kinds += [Motion.LINK if self.rapid else self.motion, *[self.motion] * (len(table) - 1)]
+        self.rates += [np.inf if self.rapid else self.feedrate, *[self.feedrate] * (len(table) - 1)]
+        self.rows += list(table)
+        self.rapid = self.ended = False
+
     def _take_goto(self, number: int, arguments: str, relative: bool) -> None:
         last = self.rows[-1] if self.rows else None
         if relative:
@@ -200,8 +229,19 @@ def read_apt(text: str) -> CutterLocations:
     Words that move nothing are passed over.  Arcs, cycles, and words that shift or turn coordinates are refused.
     """
     reading, number = _Reading(), 0
+    numbers: list[int] = []
+    points: list[str] = []
     for number, statement in _statements(text):
+        if statement.startswith("GOTO/"):
+            numbers.append(number)
+            points.append(statement[5:])
+            continue
+        if points:
+            reading.take_run(numbers, points)
+            numbers, points = [], []
         reading.take(number, statement)
+    if points:
+        reading.take_run(numbers, points)
     if not reading.ended:
         raise InvalidInput(f"CL file ends without FINI after {len(reading.rows)} points, at line {number}: it was cut "
                            "short")

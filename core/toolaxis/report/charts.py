@@ -6,6 +6,7 @@ A chart is a plotly figure and, where it has pictures of cells, these as indices
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from html import escape
 from typing import Any
 
@@ -46,14 +47,14 @@ class Chart:
 
     Attributes
     ----------
-    figure : plotly Figure
+    figure : plotly Figure, or the mapping that it would be written as
     cells : tuple of dict
         For traces that are pictures: "traces" (their numbers), "shape", "index" (base64 of unsigned little-endian
         numbers), "bytes" (of each), "values" (one table for each trace) and "texts" (what the pointer reads; None where
         that is the value).
     """
 
-    figure: go.Figure
+    figure: go.Figure | dict[str, Any]
     cells: tuple[dict[str, Any], ...] = field(default=())
 
 
@@ -62,6 +63,13 @@ def _plain(figure: go.Figure, **more: Any) -> go.Figure:
                           "legend": {"orientation": "h", "y": -0.16, "yanchor": "top"},
                           "hoverlabel": {"align": "left"}, **more})
     return figure
+
+
+@cache
+def _plain_layout() -> dict[str, Any]:
+    """The layout of `_plain` as a mapping: where there are hundreds of figures, plotly's own take too long."""
+    found: dict[str, Any] = _plain(go.Figure()).to_plotly_json()["layout"]
+    return found
 
 
 def _cells(index: NDArray[Any], traces: Sequence[int], values: Sequence[Sequence[float | None]],
@@ -162,23 +170,26 @@ def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
     index = np.searchsorted(levels, np.where(np.isfinite(cells), cells, 0.0), side="left")
     index = np.where(np.isposinf(cells), len(levels), np.where(np.isnan(cells), len(levels) + 1, index))
     values = [round(1000 * float(level), 3) for level in levels]
-    made = go.Figure()
     place = {"x0": round(float(view.corner[0] + 0.5 * view.cell), 4), "dx": round(view.cell, 6),
              "y0": round(float(view.corner[1] + 0.5 * view.cell), 4), "dy": round(view.cell, 6)}
     label = "scallop left" if what == "scallop" else "gouge"
     said = f"<b>{label} at most %{{z:.3g}} µm</b><br>X %{{x:.2f}}, Y %{{y:.2f}} mm<extra></extra>"
-    made.add_heatmap(**place, zmin=0.0, zmax=round(1200 * limit, 6), colorscale=_scale(), name=label,
-                     hovertemplate=said, colorbar={"title": {"text": "µm", "side": "right"}, "thickness": 14})
-    made.add_heatmap(**place, zmin=0, zmax=1, colorscale=[[0, GREY], [1, GREY]], showscale=False,
-                     hovertemplate="<b>not reached</b><br>X %{x:.2f}, Y %{y:.2f} mm<extra></extra>", name="not reached")
+    traces = [{"type": "heatmap", **place, "zmin": 0.0, "zmax": round(1200 * limit, 6), "colorscale": _scale(),
+               "name": label, "hovertemplate": said,
+               "colorbar": {"title": {"text": "µm", "side": "right"}, "thickness": 14}},
+              {"type": "heatmap", **place, "zmin": 0, "zmax": 1, "colorscale": [[0, GREY], [1, GREY]],
+               "showscale": False, "name": "not reached",
+               "hovertemplate": "<b>not reached</b><br>X %{x:.2f}, Y %{y:.2f} mm<extra></extra>"}]
     greatest = f"greatest {1000 * most:.2f} µm" if finite.size else "nothing was reached"
     lost = bool(np.isposinf(cells).any())
-    _plain(made, title={"text": f"{escape(name)}: {label}, {greatest}, allowed {1000 * limit:g} µm"
-                                + ("; grey: not reached" if lost else ""), **_TITLE},
-           xaxis={"title": {"text": "X of the work coordinate system, mm"}, "constrain": "domain"}, height=520,
-           yaxis={"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"})
+    title = f"{escape(name)}: {label}, {greatest}, allowed {1000 * limit:g} µm"
+    title += "; grey: not reached" if lost else ""
+    layout = {**_plain_layout(), "title": {"text": title, **_TITLE}, "height": 520,
+              "xaxis": {"title": {"text": "X of the work coordinate system, mm"}, "constrain": "domain"},
+              "yaxis": {"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"}}
     none: list[float | None] = [None] * len(values)
-    return Chart(made, (_cells(index, (0, 1), ([*values, None, None], [*none, 1, None])),))
+    tables = ([*values, None, None], [*none, 1, None])
+    return Chart({"data": traces, "layout": layout}, (_cells(index, (0, 1), tables),))
 
 
 def _scale() -> list[list[Any]]:

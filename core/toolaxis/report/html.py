@@ -131,7 +131,7 @@ def _template() -> jinja2.Template:
 
 def _json(chart: Chart) -> str:
     """A chart as JSON that may stand in a script element."""
-    figure = json.loads(plotly.io.to_json(chart.figure, engine="json", remove_uids=True))
+    figure = json.loads(plotly.io.to_json(chart.figure, validate=False, engine="json", remove_uids=True))
     text = json.dumps({"figure": figure, "cells": chart.cells}, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 

@@ -15,6 +15,7 @@ from toolaxis.report.colouring import COLOURS, coloured
 from toolaxis.report.hatching import hatch, hatch_patch, zone_faces
 from toolaxis.report.plots import bare, cutting_lines, figure, scale_bar
 from toolaxis.report.raster import Canvas, camera, face_splats, mean_direction, visible_runs
+from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 
@@ -53,9 +54,8 @@ def overview_picture(plan: Plan) -> Figure:
     for op in plan.operations:
         canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
-    for op in plan.operations:
-        left = not op.done and outcome_of([op], plan.blades) == "complete"
-        hatch(canvas, (op.face,) if left else zone_faces(op), 0.01 * op.face.diagonal)
+    for diagonal, faces in _left(plan).items():
+        hatch(canvas, faces, 0.01 * diagonal)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
@@ -73,6 +73,15 @@ def overview_picture(plan: Plan) -> Figure:
     scale_bar(ax, seen)
     bare(ax)
     return made
+
+
+def _left(plan: Plan) -> dict[float, list[Face]]:
+    """What is left to clean-up, by the size of the sub-surface that it is part of: turned copies together."""
+    found: dict[float, list[Face]] = {}
+    for op in plan.operations:
+        left = not op.done and outcome_of([op], plan.blades) == "complete"
+        found.setdefault(round(op.face.diagonal, 3), []).extend((op.face,) if left else zone_faces(op))
+    return found
 
 
 def view_onto(middle: Array) -> tuple[Array, Array]:
