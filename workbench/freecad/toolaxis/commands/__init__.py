@@ -6,12 +6,14 @@ def register():
     import FreeCADGui
 
     from .jobs import MakeJobs
+    from .machine import ChooseMachine
     from .plan import PlanOrientations
     from .recompute import Recompute
     from .verify import Verify
 
     commands = {"ToolAxis_PlanOrientations": PlanOrientations(), "ToolAxis_Verify": Verify(),
-                "ToolAxis_Recompute": Recompute(), "ToolAxis_MakeJobs": MakeJobs()}
+                "ToolAxis_Recompute": Recompute(), "ToolAxis_MakeJobs": MakeJobs(),
+                "ToolAxis_Machine": ChooseMachine()}
     known = FreeCADGui.listCommands()
     for name, command in commands.items():
         if name not in known:

@@ -1,0 +1,139 @@
+"""Machines of documents: which there are, both solutions of an axis, and the way of the machine between operations."""
+
+import FreeCAD
+import numpy as np
+import pytest
+from FreeCAD import Vector
+from freecad.toolaxis import machines
+from freecad.toolaxis.objects.machine import machine_of, place_machine
+from freecad.toolaxis.panels.machinemotion import Journey, corners, meeting, places
+
+import toolaxis as ta
+from toolaxis.errors import InvalidInput
+from toolaxis.machine.catalogue import library
+from toolaxis.machine.kinematics import forward
+from toolaxis.machine.standing import beside_part
+
+TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30, holder=[(10, 0), (10, 40)])
+TEXT = "machine:bc-table-table@0,0,20"
+AXES = np.array([[0.3, 0.1, 0.9], [-0.2, 0.5, 0.7]])
+TIPS = np.array([[5.0, 4.0, 10.0], [15.0, 12.0, 9.0], [8.0, 2.0, 11.0]])
+
+
+@pytest.fixture(scope="module")
+def mounted():
+    return machines.mounting(TEXT, TOOL)
+
+
+def test_the_library_and_the_users_folder_are_offered(tmp_path):
+    assert set(library()) <= set(machines.available())
+    (tmp_path / "mine.toml").write_text(library()["ab-trunnion"].read_text())
+    preferences = FreeCAD.ParamGet(machines.PREFERENCES)
+    preferences.SetString("MachinesFolder", str(tmp_path))
+    try:
+        assert machines.available()["mine"] == str(tmp_path / "mine.toml")
+        assert machines.mounting(machines.text_of(machines.available()["mine"]), TOOL).machine.name.startswith("A, B")
+    finally:
+        preferences.RemString("MachinesFolder")
+    assert "mine" not in machines.available()
+
+
+def test_a_text_comes_back(mounted):
+    assert machines.text_of("bc-table-table", (0, 0, 20)) == TEXT
+    name, offset = machines.read_text(TEXT)
+    assert name == "bc-table-table" and list(offset) == [0, 0, 20]
+    assert machines.read_text("machine:x") == ("x", None)
+    assert machines.limits_from("cone:0,0,1,60", TOOL) == "cone:0,0,1,60" and machines.limits_from("", TOOL) is None
+    assert machines.limits_from(TEXT, TOOL).machine.name == mounted.machine.name
+    for bad, words in (("machine:", "name no machine"), ("machine:nothing", "neither a file nor"),
+                       ("machine:bc-table-table@1,2", "three numbers")):
+        with pytest.raises(InvalidInput, match=words):
+            machines.mounting(bad, TOOL)
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_both_solutions_hold_the_axis(mounted, axis):
+    ways = machines.ways_to_hold(mounted, axis, TIPS)
+    assert len(ways) == 2 and np.abs(ways[0].rotary - ways[1].rotary).max() > 0.1
+    for way in ways:
+        assert not way.reason and "B" in way.text(mounted.machine)
+        assert np.degrees(np.arccos(mounted.axis_at(way.rotary) @ axis / np.linalg.norm(axis))) < 1e-3
+
+
+def test_what_speaks_against_a_solution_is_said(mounted):
+    tilted = machines.mounting("machine:ab-trunnion@0,0,20", TOOL)
+    assert "beyond its range" in machines.ways_to_hold(tilted, [0.9, 0.0, 0.4], TIPS)[0].reason
+    far = machines.mounting("machine:bc-table-table@900,0,20", TOOL)
+    assert "leaves its travel by" in machines.ways_to_hold(far, AXES[0], TIPS)[0].reason
+    deep = machines.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    way = machines.ways_to_hold(deep, AXES[0], TIPS)[0]
+    assert "the spindle meets the table by" in way.reason and way.meeting == ("spindle", "table")
+    assert machines.ways_to_hold(machines.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
+    rows = machines.in_order(mounted, [(axis, TIPS) for axis in AXES])
+    assert all(taken >= 0 for _, taken in rows)
+    first, second = (ways[taken].rotary for ways, taken in rows)
+    others = [np.abs(way.rotary - first).max() for way in rows[1][0]]
+    assert np.abs(second - first).max() == pytest.approx(min(others))
+
+
+@pytest.fixture(scope="module")
+def journey(mounted):
+    rotary = [machines.ways_to_hold(mounted, axis, TIPS)[0].rotary for axis in AXES]
+    return Journey.through(mounted, list(zip(TIPS[:2], rotary, strict=True)))
+
+
+def test_the_stations_are_the_tips_with_their_axes(mounted, journey):
+    tips, axes = forward(mounted.machine, journey.joints, mounted.tool_length, mounted.table_from_part)
+    assert np.abs(tips - TIPS[:2]).max() < 1e-9
+    assert np.abs(axes - AXES / np.linalg.norm(AXES, axis=1)[:, None]).max() < 1e-4
+
+
+def test_rotary_axes_turn_only_up_there(journey):
+    rows = np.array([journey.at(way) for way in np.linspace(0, 1, 201)])
+    assert np.array_equal(rows[0], journey.joints[0]) and np.array_equal(rows[-1], journey.joints[1])
+    step = np.diff(rows, axis=0)
+    other = np.abs(step[:, [0, 1, 3, 4]]).max(axis=1) > 1e-12
+    assert (rows[:-1][other, 2] == journey.top).all() and (rows[1:][other, 2] == journey.top).all()
+    assert np.abs(step).max(axis=0) == pytest.approx(np.abs(step).max(axis=0)) and (rows[:, 2] <= journey.top).all()
+    assert other.sum() > 50
+
+
+def test_bodies_stand_where_the_machine_carries_them(mounted, journey):
+    """What Z carries moves with the tool; what the axis next to the part carries stands still."""
+    for way in (0.0, 0.3, 0.5, 1.0):
+        joints = journey.at(way)
+        found = places(mounted, joints)
+        tip, axis = forward(mounted.machine, joints[None], mounted.tool_length, mounted.table_from_part)
+        gauge = found["Z"] @ [*mounted.machine.gauge, 1.0]
+        assert np.abs(gauge[:3] - (tip[0] + mounted.tool_length * axis[0])).max() < 1e-9
+        assert np.abs(found["C"] - places(mounted, journey.joints[0])["C"]).max() < 1e-9
+        assert np.abs(found["bed"][:3, :3] @ [0, 0, 1] - axis[0]).max() < 1e-9
+    assert meeting(mounted, journey.joints[0]) == (set(), 0.0)
+
+
+@pytest.mark.parametrize("name", ["bc-table-table", "nutating-head", "mikron-ucp-710", "dmg-dmu-60t"])
+def test_corners_are_those_of_the_body(name):
+    ways = np.random.default_rng(1).normal(size=(200, 3))
+    for body in ta.load_machine(name).bodies:
+        points = corners(body)
+        theirs = (body.convex.support(ways) * ways).sum(axis=1)
+        ours = (points @ ways.T).max(axis=0)
+        assert (ours <= theirs + 1e-9).all() and (ours >= theirs - 0.01 * np.ptp(points)).all()
+        assert beside_part(ta.load_machine(name), body) in (True, False)
+
+
+def test_a_machine_in_a_document_is_one_step(document, parts):
+    document.UndoMode = 1
+    thing = parts.block(document)
+    operation = parts.planned(document, (thing, parts.sculptured_name(thing)))[0]
+    before, steps = len(document.Objects), document.UndoCount
+    made = place_machine(document, "ab-trunnion", (1, 2, 3), [(operation, ["A 1\u00b0  B 2\u00b0"])])
+    assert machine_of(document) == made and made.Offset == Vector(1, 2, 3) and document.UndoCount == steps + 1
+    assert operation.RotaryAngles == ["A 1\u00b0  B 2\u00b0"] and made.Axes[3] == "B: -30\u00b0 \u2026 30\u00b0"
+    again = place_machine(document, "bc-table-table", (0, 0, 0), [])
+    assert again == made and made.Machine == "bc-table-table" and len(document.Objects) == before + 1
+    with pytest.raises(InvalidInput, match="neither a file nor"):
+        place_machine(document, "nothing", (0, 0, 0), [])
+    document.undo()
+    document.undo()
+    assert machine_of(document) is None and not operation.Stale

@@ -1,0 +1,92 @@
+"""The machine of a document: which one, where the document stands on its table, and the angles of each operation."""
+
+import FreeCAD
+
+from .properties import Property, Proxy, assign, ensure
+from .transaction import one_step
+
+translate = FreeCAD.Qt.translate
+
+_GROUP = "Machine"
+_ANGLES = (Property("StringList", "RotaryAngles", _GROUP,
+                    "Where the rotary axes stand, both solutions, the one that is taken first", True),)
+
+
+class Machine(Proxy):
+    """Keeps a machine; computes nothing.
+
+    Parameters
+    ----------
+    thing : App::FeaturePython
+    """
+
+    Type = "ToolAxisMachine"
+    properties = (
+        Property("String", "Machine", _GROUP, "Name in the library, or file", True),
+        Property("Vector", "Offset", _GROUP, "Where the document's origin stands on the table, all axes at zero", True),
+        Property("String", "Source", _GROUP, "Where its numbers are from", True),
+        Property("StringList", "Assumed", _GROUP, "Which of its numbers are assumed", True),
+        Property("StringList", "Axes", _GROUP, "Its axes with their ranges", True))
+
+    def execute(self, thing):
+        """Nothing to compute."""
+
+
+def machine_of(document):
+    """The machine of a document; None without one.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+    return next((thing for thing in document.Objects
+                 if getattr(getattr(thing, "Proxy", None), "Type", "") == Machine.Type), None)
+
+
+def place_machine(document, name, offset, found):
+    """Put a machine into a document, or another in its place, as one undo step; operations gain their angles.
+
+    Parameters
+    ----------
+    document : App.Document
+    name : str
+        Of the machine in the library, or its file.
+    offset : (3,) sequence of float
+        mm
+    found : sequence of (App.DocumentObject, list of str)
+        Operations with the texts of their angles.
+
+    Returns
+    -------
+    App.DocumentObject
+    """
+    from toolaxis.cad.machines import load_machine
+
+    machine = load_machine(name)
+    with one_step(document, translate("ToolAxis", "Machine")):
+        thing = machine_of(document)
+        if thing is None:
+            thing = document.addObject("App::FeaturePython", "Machine")
+            Machine(thing)
+            if FreeCAD.GuiUp:
+                from ..views.machine import MachineView
+
+                MachineView(thing.ViewObject)
+        thing.Label = translate("ToolAxis", "Machine {}").format(machine.name)
+        assign(thing, Machine=name, Offset=FreeCAD.Vector(*offset), Source=machine.source,
+               Assumed=list(machine.assumed), Axes=[_range(axis) for axis in (*machine.linear, *machine.rotary)])
+        for operation, texts in found:
+            ensure(operation, _ANGLES)
+            assign(operation, RotaryAngles=texts)
+        thing.purgeTouched()
+    return thing
+
+
+def _range(axis):
+    """An axis with its range, in mm or degrees."""
+    from math import degrees, isfinite
+
+    turning = hasattr(axis, "point")
+    unit, ends = ("\u00b0" if turning else " mm"), (axis.low, axis.high)
+    texts = [f"{degrees(end) if turning else end:g}{unit}" if isfinite(end) else "\u221e" for end in ends]
+    return f"{axis.name}: {texts[0]} \u2026 {texts[1]}"

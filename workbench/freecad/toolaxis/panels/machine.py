@@ -1,0 +1,302 @@
+"""The task panel of Machine: pick one, see its angles for every operation, and watch it go from one to the next."""
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from PySide import QtCore, QtGui, QtWidgets
+
+from .. import RESOURCES
+from ..machines import available, in_order, mounting, text_of
+from ..objects.machine import machine_of, place_machine
+from ..tasks import Work, sentence
+from .fields import load_form, tell
+from .machinemotion import Journey, meeting
+from .machinescene import MachineScene
+from .panel import Panel
+
+translate = FreeCAD.Qt.translate
+
+#: Interval of the animation, ms, and the time from one operation to the next, s.
+_FRAME, _SECONDS = 40, 2.5
+#: Width of the operations' names in the table, pixels.
+_NAMES = 110
+
+
+class MachinePanel(Panel):
+    """FreeCAD calls accept and getStandardButtons.
+
+    Parameters
+    ----------
+    document : App.Document
+    operations : sequence of App.DocumentObject
+        Operations with passes.
+    """
+
+    def __init__(self, document, operations):
+        super().__init__(document, load_form("machine"))
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "machine.svg")))
+        self.operations = list(operations)
+        self.scene = MachineScene(document)
+        self.found = self.journey = None
+        self.stations = []
+        self.timer = QtCore.QTimer(self.form)
+        self.timer.setInterval(_FRAME)
+        self._fill()
+        self._connect()
+        self._follow()
+        self._changed()
+
+    def getStandardButtons(self):
+        """OK and Cancel."""
+        return QtWidgets.QDialogButtonBox.Ok | QtWidgets.QDialogButtonBox.Cancel
+
+    def accept(self):
+        """Put the machine into the document, with the angles of the operations, as one undo step."""
+        if self.found is None:
+            return False
+        mounted, rows, _ = self.found
+        texts = [(operation, _texts(mounted.machine, ways, taken))
+                 for operation, (ways, taken) in zip(self.operations, rows, strict=True)]
+        try:
+            place_machine(self.document, self.machine, self.offset, texts)
+        except Exception as reason:
+            tell(self.form.message, sentence(reason), bad=True)
+            return False
+        self._close()
+        return True
+
+    @property
+    def machine(self):
+        """Name or file of the machine that is picked."""
+        return self.form.machine.currentData() or ""
+
+    @property
+    def offset(self):
+        """Where the document's origin stands on the table, mm."""
+        return tuple(spin.value() for spin in self._spins)
+
+    @property
+    def _spins(self):
+        return self.form.offsetX, self.form.offsetY, self.form.offsetZ
+
+    def _fill(self):
+        self.form.machine.setMinimumContentsLength(12)
+        self.form.machine.setSizeAdjustPolicy(QtWidgets.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        for spin in self._spins:
+            spin.setMinimumWidth(50)
+            spin.setSizePolicy(QtWidgets.QSizePolicy.Ignored, QtWidgets.QSizePolicy.Fixed)
+        self.form.angles.setMinimumWidth(200)
+        for shown, name in available().items():
+            self.form.machine.addItem(shown, name)
+        standing = machine_of(self.document)
+        if standing is not None:
+            self._pick(standing.Machine)
+            for spin, value in zip(self._spins, standing.Offset, strict=True):
+                spin.setValue(value)
+
+    def _pick(self, name):
+        """Choose a machine by name or file; a file that is not in the list is added."""
+        index = self.form.machine.findData(name)
+        if index < 0:
+            self.form.machine.addItem(name, name)
+            index = self.form.machine.count() - 1
+        self.form.machine.setCurrentIndex(index)
+
+    def _connect(self):
+        form = self.form
+        form.machine.currentIndexChanged.connect(self._changed)
+        for spin in self._spins:
+            spin.setKeyboardTracking(False)
+            spin.valueChanged.connect(self._changed)
+        form.browse.clicked.connect(self._browse)
+        form.angles.cellClicked.connect(self._clicked)
+        form.slide.valueChanged.connect(self._slide)
+        form.still.toggled.connect(lambda _: self._slide(form.slide.value()))
+        form.play.clicked.connect(self._play)
+        self.timer.timeout.connect(self._tick)
+
+    def _browse(self):
+        name, _ = QtWidgets.QFileDialog.getOpenFileName(self.form, translate("ToolAxis", "Machine file"), "",
+                                                        "TOML, FreeCAD (*.toml *.fcm)")
+        if name:
+            self._pick(name)
+
+    # computing
+
+    def _changed(self, *_):
+        """Another machine or place: look at all operations anew."""
+        from ..bridge import inputs_of
+        from ..standing import Standing
+
+        self._leave()
+        self.timer.stop()
+        self.found = self.journey = None
+        self.scene.clear()
+        try:
+            stands = [Standing.of(operation) for operation in self.operations]
+            tools = [inputs_of(operation).assembled() for operation in self.operations]
+        except Exception as reason:
+            self._not_found(sentence(reason))
+            return
+        text = text_of(self.machine, self.offset)
+        self.work = Work(lambda progress: _looked_at(text, stands, tools))
+        self.work.done.connect(lambda found: self._looked(found, stands))
+        self.work.failed.connect(self._not_found)
+        tell(self.form.message, translate("ToolAxis", "Looking at all operations"))
+        self._show()
+        self.work.start()
+
+    def _not_found(self, message):
+        self.work = None
+        self.form.angles.setRowCount(0)
+        self.form.about.setText("")
+        tell(self.form.message, message, bad=True)
+        self._show()
+
+    def _looked(self, found, stands):
+        self.work, self.found = None, found
+        mounted, rows, tools = found
+        machine = mounted.machine
+        assumed = ", ".join(machine.assumed)
+        self.form.about.setText(translate("ToolAxis", "{}: {}. Assumed: {}.").format(
+            machine.name, machine.source or "-", assumed or "-"))
+        self._fill_table(machine, rows)
+        lost = [self.operations[k].Label for k, (_, taken) in enumerate(rows) if taken < 0]
+        self.stations = [(k, max(taken, 0)) for k, (ways, taken) in enumerate(rows) if ways]
+        if self.stations:
+            self.scene.show(mounted, tools[self.stations[0][0]])
+            self._travel(stands)
+        if lost:
+            tell(self.form.message, translate("ToolAxis", "Not held by this machine: {}").format(", ".join(lost)), True)
+        elif not mounted.judges_travel:
+            tell(self.form.message, translate("ToolAxis", "Every axis can be held. Travels are not looked at: the tool "
+                                                          "has no holder."))
+        else:
+            tell(self.form.message, translate("ToolAxis", "Every axis can be held. OK puts the machine into the "
+                                                          "document."))
+        self._show()
+
+    def _travel(self, stands):
+        """Show the machine on its way through the operations."""
+        mounted, rows, _ = self.found
+        self.journey = Journey.through(mounted, [(_middle(stands[k].path), rows[k][0][way].rotary)
+                                                 for k, way in self.stations])
+        self.stands = stands
+        self.form.slide.setMaximum(max(1000 * (len(self.stations) - 1), 1))
+        blocked = self.form.slide.blockSignals(True)
+        self.form.slide.setValue(0)
+        self.form.slide.blockSignals(blocked)
+        self._slide(0)
+        self.scene.look()
+
+    def _fill_table(self, machine, rows):
+        table = self.form.angles
+        count = max(1, *(len(ways) for ways, _ in rows))
+        table.setColumnCount(count)
+        table.setRowCount(len(rows))
+        table.setHorizontalHeaderLabels([translate("ToolAxis", "Solution {}").format(k + 1) for k in range(count)])
+        table.setVerticalHeaderLabels([operation.Label for operation in self.operations])
+        for row, (ways, taken) in enumerate(rows):
+            if not ways:
+                table.setItem(row, 0, QtWidgets.QTableWidgetItem(translate("ToolAxis", "no position reaches it")))
+            for column, way in enumerate(ways):
+                shown = way.text(machine).replace("  ", "\n")
+                item = QtWidgets.QTableWidgetItem(shown + (f"\n{way.reason}" if way.reason else ""))
+                font = QtGui.QFont(item.font())
+                font.setBold(column == taken)
+                item.setFont(font)
+                item.setToolTip(way.reason or way.text(machine))
+                table.setItem(row, column, item)
+        table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
+        table.verticalHeader().setMaximumWidth(_NAMES)
+        table.resizeRowsToContents()
+
+    def _show(self):
+        form, moving = self.form, self.journey is not None and len(self.journey.joints) > 1
+        form.play.setEnabled(moving)
+        form.slide.setEnabled(moving)
+        form.still.setEnabled(self.journey is not None)
+        form.angles.setEnabled(self.found is not None)
+        form.play.setText(translate("ToolAxis", "Pause") if self.timer.isActive() else translate("ToolAxis", "Play"))
+
+    # moving
+
+    def _slide(self, value):
+        if self.journey is None:
+            return
+        mounted = self.found[0]
+        joints = self.journey.at(value / 1000)
+        red, depth = meeting(mounted, joints)
+        self.scene.stand(joints, red, self.form.still.isChecked())
+        at = mounted.at(joints[3:]).removeprefix(" at ")
+        linear = "  ".join(f"{axis.name} {x:.1f}" for axis, x in zip(mounted.machine.linear, joints[:3], strict=True))
+        text = f"{linear}  {at}"
+        if red:
+            text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(", ".join(sorted(red)), f"{depth:.1f}")
+        tell(self.form.pointer, text, bool(red))
+
+    def _clicked(self, row, column):
+        """Show one solution of one operation, also one that cannot be held."""
+        if self.found is None or column >= len(self.found[1][row][0]):
+            return
+        self.timer.stop()
+        if (row, column) in self.stations:
+            self.form.slide.setValue(1000 * self.stations.index((row, column)))
+            return
+        mounted, rows, _ = self.found
+        joints = Journey.through(mounted, [(_middle(self.stands[row].path), rows[row][0][column].rotary)]).joints[0]
+        red, _ = meeting(mounted, joints)
+        self.scene.stand(joints, red, self.form.still.isChecked())
+        tell(self.form.pointer, f"{rows[row][0][column].text(mounted.machine)}: {rows[row][0][column].reason}",
+             bool(rows[row][0][column].reason))
+
+    def _play(self):
+        if self.timer.isActive():
+            self.timer.stop()
+        else:
+            if self.form.slide.value() >= self.form.slide.maximum():
+                self.form.slide.setValue(0)
+            self.timer.start()
+        self._show()
+
+    def _tick(self):
+        slide = self.form.slide
+        slide.setValue(slide.value() + round(1000 * _FRAME / 1000 / _SECONDS))
+        if slide.value() >= slide.maximum():
+            self.timer.stop()
+            self._show()
+
+    # what happens to the document meanwhile
+
+    def object_deleted(self, name):
+        """An operation is about to be deleted: go on without it."""
+        if any(operation.Name == name for operation in self.operations):
+            self.operations = [operation for operation in self.operations if operation.Name != name]
+            QtCore.QTimer.singleShot(0, lambda: None if self.over else self._changed())
+
+    def _forget_view(self):
+        self.scene.forget()
+
+    def _let_go(self):
+        self.timer.stop()
+        self.scene.clear()
+
+
+def _looked_at(text, stands, tools):
+    """The machine, the solutions of all operations, and their tools; runs off the GUI thread."""
+    mounted = mounting(text, tools[0])
+    return mounted, in_order(mounted, [(stand.matrix[:3, 2], stand.path.cl) for stand in stands]), tools
+
+
+def _middle(path):
+    """A tip in the middle of the cuts."""
+    from toolaxis.cldata.toolpath import Motion
+
+    cuts = path.cl[np.asarray(path.kind) == Motion.CUT]
+    return cuts[len(cuts) // 2] if len(cuts) else path.cl[0]
+
+
+def _texts(machine, ways, taken):
+    """The angles of an operation as its property holds them, the solution that is taken first."""
+    order = sorted(range(len(ways)), key=lambda k: k != taken)
+    return [ways[k].text(machine) + (f" ({ways[k].reason})" if ways[k].reason else "") for k in order]

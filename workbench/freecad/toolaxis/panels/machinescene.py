@@ -1,0 +1,165 @@
+"""A machine around the part in the 3D view: table, trunnion, head and tool as they stand, what meets in red."""
+
+from contextlib import suppress
+
+import numpy as np
+from pivy import coin
+
+from .machinemotion import corners, places
+from .preview import _coloured, _revolved, solids, view_of
+
+_TABLE, _HEAD, _RED = (0.45, 0.55, 0.68), (0.72, 0.62, 0.42), (0.90, 0.05, 0.05)
+_CLEAR = {True: 0.45, False: 0.6}
+
+
+class MachineScene:
+    """Bodies of a machine in the scene of a document's 3D view; they are no objects.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+
+    def __init__(self, document):
+        self.name = document.Name
+        self.root = self.view = self.mounted = None
+        self.bed = np.eye(4)
+
+    def show(self, mounted, tool):
+        """Put a machine and a tool into the view.
+
+        Parameters
+        ----------
+        mounted : toolaxis.machine.mounting.Mounting
+        tool : toolaxis.tools.assembly.Tool
+        """
+        from toolaxis.machine.standing import beside_part
+
+        self.clear()
+        self.view, self.mounted = view_of(self.name), mounted
+        if self.view is None:
+            return
+        self.root = coin.SoSeparator()
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        self.root.addChild(style)
+        self.bodies = []
+        for body in mounted.machine.bodies:
+            beside = beside_part(mounted.machine, body)
+            node = _coloured(_TABLE if beside else _HEAD, _CLEAR[beside])
+            transform = coin.SoMatrixTransform()
+            node.insertChild(transform, 0)
+            for child in _hull(corners(body)):
+                node.addChild(child)
+            self.root.addChild(node)
+            self.bodies.append((body, transform, node.getChild(2), _TABLE if beside else _HEAD))
+        self.tool = coin.SoMatrixTransform()
+        node = coin.SoSeparator()
+        node.addChild(self.tool)
+        for solid in solids(tool):
+            node.addChild(_revolved(*solid))
+        self.root.addChild(node)
+        self.view.getSceneGraph().addChild(self.root)
+
+    def stand(self, joints, red, still):
+        """Move everything to joint coordinates.
+
+        Parameters
+        ----------
+        joints : (3 + m,) array
+        red : set of str
+            Names of bodies that meet something.
+        still : bool
+            Whether the camera stays with the machine's bed; else with the part.
+        """
+        from toolaxis.machine.kinematics import forward
+
+        if self.root is None:
+            return
+        found = places(self.mounted, joints)
+        for body, transform, material, colour in self.bodies:
+            transform.matrix.setValue(*_matrix(found[body.carried]))
+            material.diffuseColor.setValue(*(_RED if body.name in red else colour))
+        tip, axis = forward(self.mounted.machine, joints[None], float(self.mounted.tool_length or 0.0),
+                            self.mounted.table_from_part)
+        self.tool.matrix.setValue(*_matrix(_upright(tip[0], axis[0])))
+        if still:
+            self._follow(found["bed"] @ np.linalg.inv(self.bed))
+        self.bed = found["bed"]
+
+    def _follow(self, motion):
+        """Carry the camera along with a rigid motion."""
+        camera = self.view.getCameraNode()
+        place, turn = np.array(camera.position.getValue().getValue()), camera.orientation.getValue()
+        camera.position.setValue(*(motion[:3, :3] @ place + motion[:3, 3]).tolist())
+        moved = coin.SbRotation(coin.SbMatrix(*_matrix(np.block([[motion[:3, :3], np.zeros((3, 1))],
+                                                                 [np.zeros((1, 3)), np.ones((1, 1))]]))))
+        camera.orientation.setValue(turn * moved)
+
+    def look(self):
+        """Turn the view so that the machine is seen as a whole, from its front."""
+        if self.root is None:
+            return
+        way = self.bed[:3, :3] @ np.array([0.55, -1.0, 0.55])
+        camera, up = self.view.getCameraNode(), self.bed[:3, 2]
+        camera.orientation.setValue(_looking(-way, up))
+        viewport = coin.SbViewportRegion(*self.view.getSize())
+        camera.viewAll(self.root, viewport)
+
+    def clear(self):
+        """Take everything out of the view."""
+        if self.root is not None:
+            with suppress(Exception):  # the view may be gone already
+                self.view.getSceneGraph().removeChild(self.root)
+        self.forget()
+
+    def forget(self):
+        """Let go without touching the view."""
+        self.root = self.view = self.mounted = None
+        self.bed = np.eye(4)
+
+
+def _matrix(matrix):
+    """A rigid motion as Coin has it: for rows, transposed."""
+    return np.asarray(matrix, dtype=float).T.ravel().tolist()
+
+
+def _upright(tip, axis):
+    """The rigid motion that puts a tool's tip and axis into place."""
+    from toolaxis.numeric.vectors import perpendicular, unit
+
+    z = unit(axis)
+    x = perpendicular(z)[0]
+    matrix = np.eye(4)
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = x, np.cross(z, x), z, tip
+    return matrix
+
+
+def _looking(way, up):
+    """The rotation of a camera that looks along a way."""
+    from toolaxis.numeric.vectors import unit
+
+    z = -unit(np.asarray(way, dtype=float))
+    x = unit(np.cross(up, z))
+    matrix = np.eye(4)
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = x, np.cross(z, x), z
+    return coin.SbRotation(coin.SbMatrix(*_matrix(matrix)))
+
+
+def _hull(points):
+    """The nodes of the hull of points, seen from outside."""
+    from scipy.spatial import ConvexHull
+
+    whole = ConvexHull(points)
+    middle, faces = points.mean(axis=0), []
+    for corner, plane in zip(whole.simplices, whole.equations, strict=True):
+        a, b, c = points[corner]
+        outward = np.cross(b - a, c - a) @ plane[:3] > 0 if np.isfinite(middle).all() else True
+        faces += [*(corner if outward else corner[::-1]).tolist(), -1]
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering, hints.creaseAngle = coin.SoShapeHints.COUNTERCLOCKWISE, 0.4
+    rows = coin.SoCoordinate3()
+    rows.point.setValues(0, len(points), np.asarray(points, dtype=float).tolist())
+    mesh = coin.SoIndexedFaceSet()
+    mesh.coordIndex.setValues(0, len(faces), faces)
+    return hints, rows, mesh
