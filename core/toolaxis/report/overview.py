@@ -54,8 +54,8 @@ def overview_picture(plan: Plan) -> Figure:
     for op in plan.operations:
         canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
-    for diagonal, faces in _left(plan).items():
-        hatch(canvas, faces, 0.01 * diagonal)
+    for faces, size in _left(plan):
+        hatch(canvas, faces, 0.01 * size)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
@@ -75,13 +75,15 @@ def overview_picture(plan: Plan) -> Figure:
     return made
 
 
-def _left(plan: Plan) -> dict[float, list[Face]]:
-    """What is left to clean-up, by the size of the sub-surface that it is part of: turned copies together."""
-    found: dict[float, list[Face]] = {}
+def _left(plan: Plan) -> list[tuple[list[Face], float]]:
+    """What is left to clean-up of an operation and its turned copies together, and the size of its sub-surface, mm."""
+    copies = {} if plan.blades is None else plan.blades.copies
+    found: dict[int, tuple[list[Face], float]] = {}
     for op in plan.operations:
         left = not op.done and outcome_of([op], plan.blades) == "complete"
-        found.setdefault(round(op.face.diagonal, 3), []).extend((op.face,) if left else zone_faces(op))
-    return found
+        together, _ = found.setdefault(copies.get(op.number, op.number), ([], op.face.diagonal))
+        together.extend((op.face,) if left else zone_faces(op))
+    return list(found.values())
 
 
 def view_onto(middle: Array) -> tuple[Array, Array]:
