@@ -12,10 +12,12 @@ _LENGTH = (_UNITS.Length, 1.0, "a finite length in mm, such as 0.02 or FreeCAD.U
 _NUMBERS = {"scallop": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
-_TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\""}
+_TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",
+          "method": "\"sphere\""}
+_COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
-_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS)
+_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES)
 
 
 def _refused(text):
@@ -56,24 +58,26 @@ def document_of(document):
     return document
 
 
-def operation_of(operation):
+def operation_of(operation, whole=False):
     """An operation, where it is one and still there.
 
     Parameters
     ----------
     operation : App.DocumentObject
+    whole : bool
+        Whether it may be a whole plan too.
 
     Raises
     ------
     InvalidInput
         When it is something else, or was deleted.
     """
-    from .objects import is_operation
+    from .objects import is_operation, is_plan
 
     if not isinstance(operation, FreeCAD.DocumentObject):
         raise _refused(f"operation is {_shown(operation)}: {_OPERATION}")
     _check_there("operation", operation)
-    if not is_operation(operation):
+    if not is_operation(operation) and not (whole and is_plan(operation)):
         raise _refused(f"operation is {operation.Label}, which is none of Tool Axis: {_OPERATION}")
     return operation
 
@@ -208,6 +212,10 @@ def fields_of(document, given):
             found[name] = _outline(name, value)
         elif name in _TEXTS:
             found[name] = _text(name, value)
+        elif name in _COUNTS:
+            found[name] = _count(name, value)
+        elif name in _SWITCHES:
+            found[name] = bool(value)
         else:
             found[name] = _things(document, name, value)
     return found
@@ -246,6 +254,13 @@ def _outline(name, value):
         if not all(map(isfinite, row)):
             raise _refused(f"{name}[{k}] is {row}: radius and height must be finite, in mm")
     return rows
+
+
+def _count(name, value):
+    from toolaxis.partition.regions import checked_count
+
+    checked_count(value, "orientations" if name == "orientations" else "sub-surfaces")
+    return value
 
 
 def _text(name, value):

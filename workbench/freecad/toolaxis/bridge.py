@@ -1,110 +1,15 @@
 """Documents to and from the library's job: inputs, the computation apart from any document, and its results."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from .arguments import document_of, faces_of, fields_of, operation_of, progress_of, tool_of
 from .cam import tool_from as tool_from
 from .defaults import defaults as defaults
+from .inputs import Inputs as Inputs
+from .inputs import inputs_of as inputs_of
+from .objects import is_plan, plan_of
 from .results import apply as apply
 from .results import keep_verdict as keep_verdict
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """What a job in a document is given; mm, and degrees inside the short forms.
-
-    Attributes
-    ----------
-    faces : tuple of (object, "Face7")
-        What is machined.
-    tool : str
-        Short form of the cutter.
-    shank, holder : tuple of (radius, z)
-        Outlines, the shank's from the tip and the holder's from its own lower face; empty where not known.
-    stickout : float
-        Length from the tip to the holder.
-    scallop, allowance : float
-    limits : str
-        Limits of the axis in their short form, in the document's space; empty for none.
-    obstacles : tuple of objects
-        Bodies to avoid.
-    objective, direction : str
-    feedrate, spindle : float
-        mm/min, rev/min
-    """
-
-    faces: tuple = ()
-    tool: str = "torus:12x1"
-    shank: tuple = ()
-    holder: tuple = ()
-    stickout: float = 60.0
-    scallop: float = 0.02
-    allowance: float = 0.0
-    limits: str = ""
-    obstacles: tuple = ()
-    objective: str = "length"
-    direction: str = "zigzag"
-    feedrate: float = 1000.0
-    spindle: float = 10000.0
-
-    def __post_init__(self):
-        for name in ("shank", "holder"):
-            rows = tuple((float(radius), float(z)) for radius, z in getattr(self, name) or ())
-            object.__setattr__(self, name, rows)
-        for name in ("faces", "obstacles"):
-            object.__setattr__(self, name, tuple(getattr(self, name) or ()))
-
-    @property
-    def things(self):
-        """The objects whose faces are machined, each once."""
-        return tuple({(thing.Document.Name, thing.Name): thing for thing, _ in self.faces}.values())
-
-    def assembled(self):
-        """The whole tool.
-
-        Raises
-        ------
-        InvalidInput
-            When the sizes make none.
-        """
-        from toolaxis.tools.assembly import Tool
-
-        body = {name: [list(row) for row in getattr(self, name)] for name in ("shank", "holder") if getattr(self, name)}
-        return Tool.parse(self.tool, stickout=self.stickout, **body)
-
-    def job(self):
-        """The same as the library knows it.
-
-        Raises
-        ------
-        InvalidInput
-            When a value is out of range.
-        """
-        from toolaxis.plan.plan import Inputs as JobInputs
-
-        return JobInputs(self.scallop, self.allowance, objective=self.objective, direction=self.direction,
-                         limits=self.limits, feedrate=self.feedrate, spindle=self.spindle)
-
-
-def inputs_of(operation):
-    """What an operation was planned with, or is to be planned with again.
-
-    Parameters
-    ----------
-    operation : App.DocumentObject
-
-    Returns
-    -------
-    Inputs
-        Without faces where the part was deleted.
-    """
-    faces = tuple((thing, name) for thing, names in operation.Faces for name in names if name)
-    rows = {name: tuple((point.x, point.z) for point in getattr(operation, name.capitalize()))
-            for name in ("shank", "holder")}
-    return Inputs(faces, operation.Tool, rows["shank"], rows["holder"], operation.StickOut.Value,
-                  operation.Scallop.Value, operation.Allowance.Value, operation.Limits, tuple(operation.Obstacles),
-                  operation.Objective, operation.Direction, round(60 * operation.FeedRate.Value, 9),
-                  operation.SpindleSpeed)
 
 
 def task(inputs):
@@ -128,14 +33,19 @@ def task(inputs):
 
     tool = inputs.assembled()
     inputs.job().check_tool(tool)
+    inputs.check_counts()
     source = Source.of(inputs)
+    division = source.division(inputs)
 
     def compute(progress):
         import toolaxis as ta
 
         part, bodies = source.read(progress)
-        return ta.plan(part, tool, inputs.scallop, machine=inputs.limits or None, faces=source.numbers,
-                       objective=inputs.objective, allowance=inputs.allowance, direction=inputs.direction,
+        faces = None if inputs.blades and source.complete(part) else source.numbers
+        return ta.plan(part, tool, inputs.scallop, machine=inputs.limits or None, faces=faces,
+                       regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
+                       compare=inputs.compare, division=division, objective=inputs.objective,
+                       allowance=inputs.allowance, direction=inputs.direction,
                        obstacles=list(bodies) or None, feedrate=inputs.feedrate, spindle=inputs.spindle,
                        datum=source.datum, progress=progress)
 
@@ -193,7 +103,8 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
         mm
     progress : toolaxis.progress.Progress, optional
     **given
-        Further fields of `Inputs`; what is not given comes from the part.
+        Further fields of `Inputs`, `regions`, `orientations` and `method` among them; what is not given comes from the
+        part.
 
     Returns
     -------
@@ -235,7 +146,9 @@ def tool_fields(tool):
 
 
 def recompute(operation, progress=None):
-    """Plan an operation again with its own inputs, for the part as it is now, as one undo step.
+    """Plan an operation, or a whole plan, again with its own inputs, for the part as it is now, as one undo step.
+
+    What is locked, and borders that were drawn by hand, are kept.
 
     Parameters
     ----------
@@ -245,7 +158,7 @@ def recompute(operation, progress=None):
     Returns
     -------
     list of App.DocumentObject
-        The operation itself first; more where its face now falls into several sub-surfaces.
+        The operation itself first; more where its face now falls into several sub-surfaces; all of a whole plan.
 
     Raises
     ------
@@ -254,11 +167,24 @@ def recompute(operation, progress=None):
     """
     from toolaxis.errors import InvalidInput
 
-    inputs = inputs_of(operation_of(operation))
+    operation = planned_with(operation_of(operation, whole=True))
+    inputs = inputs_of(operation)
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
     made = task(inputs)(progress_of(progress))
     return apply(operation.Document, inputs, made, operation)
+
+
+def planned_with(operation):
+    """What is planned again for an operation: itself, or its whole plan where blades were planned together.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+        An operation or a whole plan.
+    """
+    above = None if is_plan(operation) else plan_of(operation)
+    return above if above is not None and above.BladesFound not in ("", "null") else operation
 
 
 def verify(operation, progress=None):

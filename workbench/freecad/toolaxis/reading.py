@@ -33,7 +33,7 @@ class Source:
 
         Parameters
         ----------
-        inputs : freecad.toolaxis.bridge.Inputs
+        inputs : freecad.toolaxis.inputs.Inputs
 
         Raises
         ------
@@ -53,6 +53,30 @@ class Source:
         return cls(tuple(shape.copy() for shape in shapes), tuple(map(name_of, things)), numbers,
                    tuple(shapes[0].Placement.Base), tuple(shape_of(thing).copy() for thing in avoided),
                    tuple(map(name_of, avoided)))
+
+    def division(self, inputs):
+        """Sub-surfaces that are kept as they are, as the library takes them.
+
+        Parameters
+        ----------
+        inputs : freecad.toolaxis.inputs.Inputs
+        """
+        from toolaxis.plan.sub_surface import SubSurface
+
+        of = {(thing.Name, name): number for number, (thing, name, _) in zip(
+            self.numbers, numbered(inputs, self.shapes).values(), strict=True)}
+        return tuple(SubSurface(of[piece.thing.Name, piece.name], piece.region, piece.axis, piece.feed, piece.locked,
+                                f"{of[piece.thing.Name, piece.name]}{piece.suffix}") for piece in inputs.pieces)
+
+    def complete(self, part):
+        """Whether all sculptured faces of one object are chosen, and no others.
+
+        Parameters
+        ----------
+        part : toolaxis.shape.part.Part
+            What was read.
+        """
+        return len(self.shapes) == 1 and set(self.numbers) == {face.number for face in part.sculptured}
 
     def read(self, progress):
         """The part and the bodies to avoid, as the library knows them.

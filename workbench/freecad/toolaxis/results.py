@@ -6,12 +6,17 @@ from dataclasses import replace
 import FreeCAD
 
 from .faces import facts_of
+from .objects import is_plan, operations_in
 from .objects.belongings import GROUP, child, frame_of, loose
+from .objects.copies import Tree
 from .objects.frames import add_frame, place_frame
 from .objects.operation import Operation, mark, set_inputs, set_results
 from .objects.passes import commands, fill_passes
+from .objects.properties import assign
+from .objects.surfaces import is_shown, show_surface, surface_colour
 from .objects.tool import ToolOnPasses, tool_shape
 from .objects.transaction import one_step, remove
+from .objects.wholeplan import WholePlan, keep_plan
 from .places import chain_of, placement_from
 from .staleness import digest, signature
 
@@ -46,13 +51,20 @@ def apply(document, inputs, plan, replaces=None):
         raise Cancelled("nothing was planned: the computation was stopped")
     owners = owners_of(inputs, plan)
     with one_step(document, translate("ToolAxis", "Plan orientations")):
-        group = _group_for(document, replaces)
-        made = []
+        group, standing = _place_for(document, inputs, plan, replaces)
+        tree = Tree(document, group, plan)
+        made, colours = [], _colours(plan, standing)
         for op, owner in zip(plan.operations, owners, strict=True):
-            operation = replaces if op is plan.operations[0] and replaces is not None else _added(document, group)
+            if op.number in tree.copies:
+                continue
+            operation = standing.pop(_key(op, owner), None) or _added(document, tree.place_of(op))
             made.append(operation)
-            _fill(operation, _alone(inputs, owner), plan, (op, owner[2]))
-        document.recompute([*(thing for one in made for thing in (*one.Group, one)), group])
+            _fill(operation, _alone(inputs, owner), plan, (op, owner[2], colours.get(op.number)))
+            _lock(operation, inputs, _key(op, owner))
+        tree.finish(made, chain_of(owners[0][0]), list(standing.values()))
+        if is_plan(group):
+            keep_plan(group, inputs, plan)
+        document.recompute([*(thing for one in made for thing in (*one.Group, one)), *tree.things, group])
     return made
 
 
@@ -77,22 +89,72 @@ def owners_of(inputs, plan):
 
 
 def _alone(inputs, owner):
-    """The inputs for one face: the other parts of the job become bodies to avoid."""
+    """The inputs for one sub-surface: the other parts of the job become bodies to avoid."""
     thing, name, _ = owner
     others = tuple(one for one in inputs.things if one.Name != thing.Name)
     known = {one.Name for one in inputs.obstacles}
-    return replace(inputs, faces=((thing, name),),
+    return replace(inputs, faces=((thing, name),), regions=None, orientations=None, compare=False, pieces=(),
                    obstacles=(*inputs.obstacles, *(one for one in others if one.Name not in known)))
 
 
-def _group_for(document, replaces):
+def _lock(operation, inputs, key):
+    """Show what of an operation is locked."""
+    piece = next((one for one in inputs.pieces if (one.thing.Name, one.name, one.suffix) == (
+        key[0], operation.Faces[0][1][0], key[2])), None)
+    assign(operation, AxisLocked=piece is not None and piece.locked, FeedLocked=piece is not None and bool(piece.feed),
+           DrawnByHand=piece is not None and piece.drawn)
+
+
+def _key(op, owner):
+    """What an operation is known again by: part, face, and the letters of the sub-surface."""
+    return owner[0].Name, owner[2], op.face.label.removeprefix(str(op.face.number))
+
+
+def _place_for(document, inputs, plan, replaces):
+    """The group to put operations into, and the operations that stand there already, by their keys."""
+    if replaces is not None and is_plan(replaces):
+        return replaces, {_key_of(one): one for one in operations_in(replaces)}
     if replaces is not None:
+        first = plan.operations[0]
         above = [thing for thing in replaces.InList if thing.hasExtension("App::GroupExtension")]
-        if above:
-            return above[0]
+        return (above[0] if above else _new_group(document)), {_key(first, owners_of(inputs, plan)[0]): replaces}
+    if len(plan.operations) > 1 or inputs.divides:
+        return _new_plan(document), {}
+    return _new_group(document), {}
+
+
+def _key_of(operation):
+    details = json.loads(operation.Details or "{}")
+    number = details.get("face", 0)
+    part = next((thing.Name for thing, _ in operation.Faces), "")
+    return part, number, details.get("label", "").removeprefix(str(number))
+
+
+def _new_group(document):
     group = document.addObject("App::DocumentObjectGroup", GROUP)
     group.Label = translate("ToolAxis", "Orientations")
     return group
+
+
+def _new_plan(document):
+    plan = document.addObject("App::DocumentObjectGroupPython", "ToolAxisPlan")
+    WholePlan(plan)
+    if FreeCAD.GuiUp:
+        from .views.wholeplan import WholePlanView
+
+        WholePlanView(plan.ViewObject)
+    plan.Label = translate("ToolAxis", "Plan")
+    return plan
+
+
+def _colours(plan, standing):
+    """Colours of sub-surfaces by number, where there are several; one that is planned again alone keeps its own."""
+    from toolaxis.report.colouring import colours_of
+
+    if len(plan.operations) > 1:
+        return colours_of(plan)
+    kept = next((surface_colour(one) for one in standing.values()), None)
+    return {plan.operations[0].number: kept} if kept else {}
 
 
 def _added(document, group):
@@ -108,30 +170,32 @@ def _added(document, group):
 
 def _fill(operation, inputs, plan, which):
     """Make an operation what a plan says, its frame, passes and tool included."""
-    op, number = which
+    op, number, colour = which
     thing, name = inputs.faces[0]
     label = op.face.label[len(str(op.face.number)):] if op.face.label.startswith(str(op.face.number)) else ""
     title = f"{thing.Label} {name.rsplit('.', 1)[-1]}{label}"
     operation.Label = title
     set_inputs(operation, inputs)
     set_results(operation, op.orientation, plan.not_checked)
-    _keep(operation, inputs, op, f"{number}{label}" if label else str(number))
-    remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature")])
+    _keep(operation, inputs, (op, plan), f"{number}{label}" if label else str(number))
+    remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
     if op.done:
         frame = _standing_frame(operation, op, thing, title)
         _standing_passes(operation, op, (frame, inputs.feedrate), title)
         _standing_tool(operation, plan.tool, title)
     else:
-        remove(list(operation.Group))
+        remove([one for one in operation.Group if not is_shown(one)])
+    show_surface(operation, op, chain_of(thing), colour)
     mark(operation)
 
 
-def _keep(operation, inputs, op, label):
+def _keep(operation, inputs, which, label):
     from toolaxis.plan.document import orientation_document
 
+    op, plan = which
     number = int("".join(c for c in label if c.isdigit()) or 0)
     operation.AxisMap = json.dumps(orientation_document(op.orientation))
-    operation.Details = json.dumps({"face": number, "label": label, "region": _region(op, number),
+    operation.Details = json.dumps({"face": number, "label": label, "region": region_of(op, plan),
                                     "about": facts_of(*inputs.faces[0])})
     operation.PlannedWith = digest(inputs)
     operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
@@ -139,10 +203,22 @@ def _keep(operation, inputs, op, label):
     operation.Starts = [] if op.path is None else [int(start) for start in op.path.breaks]
 
 
-def _region(op, number):
-    """Trim loops of a sub-surface that is not a whole face or a whole piece of one."""
-    plain = op.face.label[len(str(op.face.number)):]
-    return None if not plain or plain.isalpha() else [loop.tolist() for loop in op.face.trims]
+def region_of(op, plan):
+    """Trim loops of a sub-surface that is not a whole face or a whole piece of one between kinks; else None.
+
+    Parameters
+    ----------
+    op : toolaxis.plan.operation.Operation
+    plan : toolaxis.plan.plan.Plan
+    """
+    import numpy as np
+
+    from toolaxis.shape.kinks import split_at_kinks
+
+    whole = plan.part.face(op.face.number)
+    whole = next((piece for piece in split_at_kinks(whole) if piece.label == op.face.label), whole)
+    same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
+    return None if same else [loop.tolist() for loop in op.face.trims]
 
 
 def _standing_frame(operation, op, part, title):

@@ -6,6 +6,8 @@ import json
 _SAME = 1e-6
 _SUMS = 8
 _GRID = 4
+#: Inputs that older documents do not have, with what stood for them.
+_USUAL = {"regions": None, "orientations": None, "method": "sphere"}
 
 
 def signature(things, obstacles=(), turned=False):
@@ -90,6 +92,7 @@ def digest(inputs):
     words = {name: f"{getattr(inputs, name):.9g}" for name in numbers}
     words |= {name: getattr(inputs, name) for name in ("tool", "limits", "objective", "direction")}
     words |= {name: [[f"{x:.9g}" for x in row] for row in getattr(inputs, name)] for name in ("shank", "holder")}
+    words |= {name: str(getattr(inputs, name)) for name, usual in _USUAL.items() if getattr(inputs, name) != usual}
     words["faces"] = [[thing.Name, name] for thing, name in inputs.faces]
     words["obstacles"] = [thing.Name for thing in inputs.obstacles]
     return json.dumps(words, sort_keys=True)
@@ -137,8 +140,7 @@ def why_stale(operation):
     gone = [name for name in planned["obstacles"] if name not in now["obstacles"]]
     if gone:
         reasons.append(f"{', '.join(gone)}: no longer avoided")
-    changed = [name for name in planned if name not in ("faces", "obstacles") and planned[name] != now[name]]
-    reasons += [f"{name} was changed" for name in changed]
+    reasons += _changed(planned, now)
     reasons += missing(operation)
     try:
         found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
@@ -150,6 +152,26 @@ def why_stale(operation):
     changed = _what_changed(list(operation.Signature), found, len(inputs.obstacles))
     then = json.loads(operation.Details).get("about")
     return reasons + changed + what_became(thing, (planned_name, name), then, bool(changed))
+
+
+def changed_inputs(planned, inputs):
+    """What of the inputs of a whole plan is not as it was when it was planned, sentences.
+
+    Parameters
+    ----------
+    planned : dict
+        Read from `digest` at the time of planning.
+    inputs : freecad.toolaxis.inputs.Inputs
+        As they are now.
+    """
+    now = json.loads(digest(inputs))
+    other = ["the faces were changed"] if sorted(planned["faces"]) != sorted(now["faces"]) else []
+    return other + _changed(planned, now)
+
+
+def _changed(planned, now):
+    names = [name for name in dict.fromkeys((*planned, *now)) if name not in ("faces", "obstacles")]
+    return [f"{name} was changed" for name in names if planned.get(name) != now.get(name)]
 
 
 def _what_changed(planned, found, obstacles):

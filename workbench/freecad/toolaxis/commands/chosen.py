@@ -19,6 +19,22 @@ def operations(document):
     return list(dict.fromkeys(chosen)) or every
 
 
+def plans(document):
+    """Whole plans that are selected, or the only one of a document where nothing of Tool Axis is selected.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+    from ..objects import is_operation, is_plan
+
+    chosen = FreeCADGui.Selection.getSelection(document.Name)
+    if any(is_operation(one) for thing in chosen for one in (thing, *thing.InListRecursive)):
+        return []
+    found = [thing for thing in chosen if is_plan(thing)]
+    return found or [thing for thing in document.Objects if is_plan(thing)][:1]
+
+
 def warn(text):
     """Say something in a dialog that waits for OK.
 

@@ -4,7 +4,7 @@ import FreeCAD
 import FreeCADGui
 
 from .. import RESOURCES
-from .chosen import operations, warn
+from .chosen import operations, plans, warn
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -26,7 +26,7 @@ class Recompute:
 
     def Activated(self):
         """Open the panel with the operation's inputs and compute, or say what is missing."""
-        found = operations(FreeCAD.ActiveDocument)
+        found = plans(FreeCAD.ActiveDocument) or operations(FreeCAD.ActiveDocument)
         if not found:
             warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation to recompute: "
                                                   "select faces and run Plan Orientations first."))
@@ -34,6 +34,7 @@ class Recompute:
         from .. import bridge
         from ..panels.planning import PlanPanel
 
-        panel = PlanPanel(FreeCAD.ActiveDocument, bridge.inputs_of(found[0]), found[0])
+        chosen = bridge.planned_with(found[0])
+        panel = PlanPanel(FreeCAD.ActiveDocument, bridge.inputs_of(chosen), chosen)
         FreeCADGui.Control.showDialog(panel)
         panel.compute()

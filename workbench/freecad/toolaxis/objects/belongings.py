@@ -2,9 +2,10 @@
 
 import FreeCAD
 
-from . import is_operation
+from . import is_operation, is_plan, operations_in
 from .maps import colour
 from .properties import assign
+from .surfaces import colour_view, is_shown
 
 #: FreeCAD's own coordinate systems, the newer first; documents of either kind are opened in both.
 FRAMES = ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem")
@@ -43,7 +44,7 @@ def _is_passes(thing):
 
 
 def _is_map(thing):
-    return thing.TypeId == "Mesh::Feature" and "Shows" in thing.PropertiesList
+    return thing.TypeId == "Mesh::Feature" and "Deviation" in thing.PropertiesList
 
 
 def belongings(operation):
@@ -54,7 +55,7 @@ def belongings(operation):
     operation : App.DocumentObject
     """
     return [thing for thing in operation.Group if _is_frame(thing) or _is_passes(thing) or _is_map(thing)
-            or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
+            or is_shown(thing) or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
 
 
 def loose(operation):
@@ -108,7 +109,7 @@ def _untie(operation, without):
     own = [thing for thing in belongings(operation) if without is None or thing.Name != without.Name]
     tied = [] if any(map(_is_frame, own)) else [thing for thing in own if _is_passes(thing)]
     if not any(map(_is_passes, own)):
-        tied += [thing for thing in own if not _is_frame(thing)]
+        tied += [thing for thing in own if not _is_frame(thing) and not is_shown(thing)]
     for thing in tied:
         if any(name == "Placement" for name, _ in thing.ExpressionEngine):
             thing.setExpression("Placement", None)
@@ -131,6 +132,9 @@ class Keeper:
         if is_operation(thing):
             self._take(document, thing)
             return
+        if is_plan(thing):
+            self._take_plan(document, thing)
+            return
         for above in thing.InList:
             if is_operation(above) and above.Name not in self.going and thing in above.Group:
                 note(above, thing)
@@ -139,6 +143,8 @@ class Keeper:
         """Called by FreeCAD after a step was undone."""
         for thing in filter(_is_map, document.Objects):
             colour(thing)
+        for thing in filter(is_shown, document.Objects):
+            colour_view(thing)
 
     slotRedoDocument = slotUndoDocument
 
@@ -152,12 +158,24 @@ class Keeper:
         finally:
             self.going.discard(operation.Name)
 
+    def _take_plan(self, document, plan):
+        self.going.add(plan.Name)
+        try:
+            inner = [thing for thing in plan.Group if thing.TypeId == "App::DocumentObjectGroup"]
+            links = [one for group in inner for one in group.Group if one.TypeId == "App::Link"]
+            for name in [thing.Name for thing in (*links, *operations_in(plan), *inner)]:
+                if document.getObject(name) is not None:
+                    document.removeObject(name)
+        finally:
+            self.going.discard(plan.Name)
+
     def _emptied(self, operation):
         """The group of planning, where this was its last operation and it is not deleted itself just now."""
         if not _deleted_alone(operation.Document):
             return []
-        return [above for above in operation.InList if above.TypeId == "App::DocumentObjectGroup"
-                and above.Name.startswith(GROUP) and all(one.Name in self.going for one in above.Group)]
+        return [above for above in operation.InList if above.Name not in self.going
+                and ((above.TypeId == "App::DocumentObjectGroup" and above.Name.startswith(GROUP)) or is_plan(above))
+                and all(one.Name in self.going for one in above.Group)]
 
 
 def _deleted_alone(document):

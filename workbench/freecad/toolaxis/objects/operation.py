@@ -6,7 +6,7 @@ from . import is_operation
 from .belongings import Keeper, note
 from .properties import Property, Proxy, assign
 
-_ASKED, _FOUND, _JUDGED, _KEPT = "Inputs", "Result", "Verdict", "Tool Axis"
+_ASKED, _LOCKS, _FOUND, _JUDGED, _KEPT = "Inputs", "Locks", "Result", "Verdict", "Tool Axis"
 
 INPUTS = (
     Property("LinkSubListGlobal", "Faces", _ASKED, "The face that is machined"),
@@ -23,7 +23,17 @@ INPUTS = (
     Property("Enumeration", "Direction", _ASKED, "Direction of the passes", False, False,
              ("zigzag", "climb", "conventional")),
     Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting motion"),
-    Property("Float", "SpindleSpeed", _ASKED, "rev/min"))
+    Property("Float", "SpindleSpeed", _ASKED, "rev/min"),
+    Property("String", "Regions", _ASKED, "Sub-surfaces of each face: a number, auto, or nothing for whole faces"),
+    Property("String", "Orientations", _ASKED, "Different axes at most: a number, auto, or nothing for one each"),
+    Property("Enumeration", "Method", _ASKED, "How axes are found", False, False,
+             ("sphere", "sectors", "roman", "normal", "one", "ball")),
+    Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and turn it to the others"),
+    Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"))
+LOCKS = (
+    Property("Bool", "AxisLocked", _LOCKS, "The axis is kept when the operation is computed again"),
+    Property("Bool", "FeedLocked", _LOCKS, "The feed direction is kept when the operation is computed again"),
+    Property("Bool", "DrawnByHand", _LOCKS, "The border is kept when the plan is computed again"))
 RESULTS = (
     Property("String", "Outcome", _FOUND, "optimal, feasible, infeasible, not_found or cancelled", True),
     Property("StringList", "Reasons", _FOUND, "What limits the choice, or why there is no axis", True),
@@ -73,7 +83,7 @@ class Operation(Proxy):
     """
 
     Type = "ToolAxisOperation"
-    properties = (*INPUTS, *RESULTS, *KEPT, *VERDICT)
+    properties = (*INPUTS, *LOCKS, *RESULTS, *KEPT, *VERDICT)
 
     def __init__(self, thing):
         super().__init__(thing)
@@ -158,7 +168,9 @@ def set_inputs(thing, inputs):
         setattr(thing, name, [FreeCAD.Vector(radius, 0, z) for radius, z in rows])
     assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, Scallop=inputs.scallop, Allowance=inputs.allowance,
            Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
-           FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle)
+           FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
+           Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,
+           Compare=inputs.compare)
 
 
 def set_results(thing, found, not_checked):

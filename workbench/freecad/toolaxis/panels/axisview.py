@@ -5,9 +5,11 @@ import numpy as np
 from PySide import QtCore, QtWidgets
 
 from ..tasks import Work
+from .curve import OrientationCurve
 from .fields import fine_text, fit_rows, length_text
 from .hemisphere import HemisphereMap
 from .legend import Legend
+from .locks import Locks
 
 translate = FreeCAD.Qt.translate
 
@@ -36,15 +38,22 @@ class AxisView(QtCore.QObject):
         self.map.setObjectName("axisMap")
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)
+        self.curve = OrientationCurve(form)
+        form.curvePlace.layout().addWidget(self.curve)
+        self.curve.hovered.connect(form.pointer.setText)
+        self.locks = Locks()
         self.plan = self.found = None
         self.pictures, self.titles = {}, {}
         self.growing, self.computed = {}, None
-        self.tried = None
+        self.tried = self._asked = None
         self.work = None
         self.map.hovered.connect(form.pointer.setText)
         self.map.picked.connect(self.try_axis)
         form.lock.clicked.connect(self.lock)
         form.best.clicked.connect(self.back_to_best)
+        form.turnFeed.clicked.connect(self.try_other_feed)
+        form.lockAxis.clicked.connect(lambda held: self._hold(self.locks.axis, held))
+        form.lockFeed.clicked.connect(lambda held: self._hold(self.locks.feed, held))
         form.operation.currentIndexChanged.connect(self._show_operation)
         form.slide.valueChanged.connect(lambda value: self.preview.move(value / form.slide.maximum()))
         self.clear()
@@ -59,10 +68,13 @@ class AxisView(QtCore.QObject):
         """Show no plan."""
         self.leave()
         self.plan, self.found, self.pictures, self.growing = None, None, {}, {}
+        self.locks = Locks()
+        self.curve.show_options(())
+        fill_baselines(self.form.baselines, ())
         self._offer([], -1)
         self._show_operation()
 
-    def show(self, plan, pictures, titles=None):
+    def show(self, plan, pictures, titles=None, locks=None):
         """Show a plan.
 
         Parameters
@@ -72,11 +84,14 @@ class AxisView(QtCore.QObject):
             By the operations' numbers.
         titles : dict of int to str, optional
             What the faces are called, by their numbers.
+        locks : Locks, optional
         """
-        self.titles = titles or {}
+        self.titles, self.locks = titles or {}, locks or Locks()
+        self.curve.show_options(plan.options)
+        fill_baselines(self.form.baselines, plan.baselines)
         self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
         undone = [k for k, op in enumerate(plan.operations) if not op.done]
-        self._offer([self._title(op) for op in plan.operations], undone[0] if undone else 0)
+        self._offer(self._titles(), undone[0] if undone else 0)
         self._show_operation()
 
     def _offer(self, names, index):
@@ -130,8 +145,15 @@ class AxisView(QtCore.QObject):
             return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
         return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)
 
+    def _titles(self):
+        return [self._title(op) for op in self.plan.operations]
+
     def _title(self, op):
         title = title_of(op.face, self.titles)
+        if op.number in self.locks.axis | self.locks.feed:
+            title = translate("ToolAxis", "{} (locked)").format(title)
+        if self.plan.blades is not None and op.number in self.plan.blades.copies:
+            title = translate("ToolAxis", "{} (turned copy)").format(title)
         return title if op.done else translate("ToolAxis", "{}: no axis").format(title)
 
     def leave(self):
@@ -175,9 +197,32 @@ class AxisView(QtCore.QObject):
         form.reasons.setText("" if op is None else _sentences((self.tried or op).orientation))
         form.lock.setEnabled(self.tried is not None and self.tried.done)
         form.best.setEnabled(op is not None and op is not self._best(op))
-        for widget in (form.slide, form.slideLabel, form.lock, form.best):
+        for widget in (form.slide, form.slideLabel, form.lock, form.best, form.lockAxis, form.lockFeed, form.turnFeed):
             widget.setVisible(op is not None)
+        own = op is not None and op.done and not self._is_copy(op)
+        for box, held in ((form.lockAxis, self.locks.axis), (form.lockFeed, self.locks.feed)):
+            box.setEnabled(own)
+            box.setChecked(own and op.number in held)
+        form.turnFeed.setEnabled(own)
         form.slide.setEnabled(op is not None and (self.tried or op).done)
+
+    def _is_copy(self, op):
+        return self.plan.blades is not None and op.number in self.plan.blades.copies
+
+    def _hold(self, held, locked):
+        """Lock or unlock axis or feed of the operation that is shown."""
+        if self.operation is None:
+            return
+        (held.add if locked else held.discard)(self.operation.number)
+        index = self.form.operation.currentIndex()
+        self._offer(self._titles(), index)
+        self.changed.emit()
+
+    def try_other_feed(self):
+        """Try the other feed with the axis that is shown."""
+        op = self.tried or self.operation
+        if op is not None and op.done:
+            self.try_axis(op.orientation.axis, "v" if op.orientation.feed == "u" else "u")
 
     def _best(self, op):
         return next(one for one in self.found.operations if one.number == op.number)
@@ -197,23 +242,28 @@ class AxisView(QtCore.QObject):
                                      "width.").format(found.passes - best.passes, _percent(found.length, best.length),
                                                       _percent(found.average_strip_width, best.average_strip_width))
 
-    def try_axis(self, axis):
+    def try_axis(self, axis, feed=None):
         """Try an axis off the GUI thread.
 
         Parameters
         ----------
         axis : (3,) array
+        feed : "u" or "v", optional
+            The one that is locked, or the better one, unless given.
         """
         from toolaxis.job.axes import try_axis
 
         plan, op = self.plan, self.operation
-        if op is None or not self.map.isEnabled():
+        if op is None or not self.map.isEnabled() or self._is_copy(op):
             return
         self.leave()
+        self._asked = feed
+        if feed is None and op.number in self.locks.feed:
+            feed = op.orientation.feed
         self.map.show_tried(axis)
         self.legend.show_picture(self.map.picture, tried=True)
         self.form.cost.setText(translate("ToolAxis", "Trying this axis..."))
-        self.work = Work(lambda progress: try_axis(plan, op, axis, progress=progress))
+        self.work = Work(lambda progress: try_axis(plan, op, axis, feed, progress=progress))
         self.work.progressed.connect(self._trying)
         self.work.done.connect(self._tried)
         self.work.failed.connect(self._failed)
@@ -241,11 +291,16 @@ class AxisView(QtCore.QObject):
     def lock(self):
         """Take the tried axis over into the plan."""
         if self.tried is not None and self.tried.done:
+            self.locks.axis.add(self.tried.number)
+            if self._asked is not None:
+                self.locks.feed.add(self.tried.number)
             self._take(self.tried)
 
     def back_to_best(self):
         """Take the axis that the search found back into the plan."""
         if self.operation is not None:
+            for held in (self.locks.axis, self.locks.feed):
+                held.discard(self.operation.number)
             self._take(self._best(self.operation))
 
     def _take(self, operation):
@@ -257,6 +312,7 @@ class AxisView(QtCore.QObject):
             picture.marks.pop("chosen", None)
             if operation.done:
                 picture.marks["chosen"] = np.atleast_2d(operation.orientation.axis)
+        self._offer(self._titles(), self.form.operation.currentIndex())
         self._show_operation()
         self.changed.emit()
 
@@ -353,4 +409,36 @@ def fill(table, columns):
             table.setItem(i, k, item)
     table.verticalHeader().setVisible(True)
     table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
+    fit_rows(table)
+
+
+def fill_baselines(table, rows):
+    """Show what other methods come to; hidden where there are none.
+
+    Parameters
+    ----------
+    table : QTableWidget
+    rows : sequence of toolaxis.plan.baseline.Baseline
+    """
+    from toolaxis.plan.baseline import METHOD_NAMES
+
+    heads = [translate("ToolAxis", name) for name in ("Method", "Axes", "Passes", "Length")]
+    table.setVisible(bool(rows))
+    table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
+    table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
+    table.setColumnCount(len(heads))
+    table.setHorizontalHeaderLabels(heads)
+    table.verticalHeader().setVisible(False)
+    table.setRowCount(len(rows))
+    for i, row in enumerate(rows):
+        name = METHOD_NAMES.get(row.method, row.method)
+        cells = [name, str(row.orientations), str(row.passes), length_text(row.length)]
+        if not row.complete:
+            cells[3] = translate("ToolAxis", "{} of {} sub-surfaces").format(row.machined, row.sub_surfaces)
+        for k, text in enumerate(cells):
+            item = QtWidgets.QTableWidgetItem(text)
+            item.setToolTip(f"{name}: {row.reason}" if row.reason else text)
+            table.setItem(i, k, item)
+    table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.ResizeToContents)
+    table.horizontalHeader().setStretchLastSection(True)
     fit_rows(table)

@@ -109,7 +109,8 @@ class OperationPanel(Panel):
     def _plan_again(self):
         from .planning import PlanPanel
 
-        self._open(lambda: PlanPanel(self.document, bridge.inputs_of(self.operation), self.operation))
+        chosen = bridge.planned_with(self.operation)
+        self._open(lambda: PlanPanel(self.document, bridge.inputs_of(chosen), chosen))
 
     def _verify(self):
         from .verifying import VerifyPanel

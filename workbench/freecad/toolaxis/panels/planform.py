@@ -12,6 +12,8 @@ translate = FreeCAD.Qt.translate
 KINDS = ("torus", "ball", "flat", "tapered")
 OBJECTIVES = ("length", "passes")
 DIRECTIONS = ("zigzag", "climb", "conventional")
+METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
+_NONE, _AUTO, _NUMBER = range(3)
 _NO_LIMITS, _CONE, _ROTARY = range(3)
 
 
@@ -38,7 +40,12 @@ class PlanForm:
         self.limits = self._find("limits", QtWidgets.QComboBox)
         self.spindle = self._find("spindle", QtWidgets.QSpinBox)
         self.middle = [self._find(name, QtWidgets.QDoubleSpinBox) for name in ("limitX", "limitY", "limitZ")]
+        self.counts = {name: (self._find(name, QtWidgets.QComboBox), self._find(f"{name}Number", QtWidgets.QSpinBox))
+                       for name in ("regions", "orientations")}
+        self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
         self._other_limits = ""
+        for combo, _ in self.counts.values():
+            combo.currentIndexChanged.connect(self._show_what_counts)
         self.kind.currentIndexChanged.connect(self._show_what_counts)
         self.limits.currentIndexChanged.connect(self._show_what_counts)
         self._show_what_counts()
@@ -59,9 +66,11 @@ class PlanForm:
             field.on_change(slot)
         for table in (self.shank, self.holder):
             table.on_change(slot)
-        for name in ("kind", "limits", "objective", "direction"):
+        for name in ("kind", "limits", "objective", "direction", "method", *self.counts):
             self._find(name, QtWidgets.QComboBox).currentIndexChanged.connect(lambda _: slot())
-        for spin in (*self.middle, self.spindle):
+        for box in self.switches.values():
+            box.toggled.connect(lambda _: slot())
+        for spin in (*self.middle, self.spindle, *(spin for _, spin in self.counts.values())):
             spin.valueChanged.connect(lambda _: slot())
         self.avoid.widget.itemChanged.connect(lambda _: slot())
         self.faces.on_change(slot)
@@ -73,6 +82,8 @@ class PlanForm:
                  "turnLow": limits == _ROTARY}
         members = {"limitX": ("limitX", "limitY", "limitZ"), "tiltLow": ("tiltLow", "tiltHigh"),
                    "turnLow": ("turnLow", "turnHigh")}
+        for combo, spin in self.counts.values():
+            spin.setVisible(combo.currentIndex() == _NUMBER)
         for name, visible in shown.items():
             for member in (*members.get(name, (name,)), f"{name}Label"):
                 self._find(member).setVisible(visible)
@@ -169,6 +180,30 @@ class PlanForm:
             self.quantities[name].value = value
         self.limits.setCurrentIndex(choice)
 
+    def count(self, name):
+        """A number of sub-surfaces or axes: a whole number, "auto" or None.
+
+        Parameters
+        ----------
+        name : str
+            "regions" or "orientations".
+        """
+        combo, spin = self.counts[name]
+        return {_NONE: None, _AUTO: "auto"}.get(combo.currentIndex(), spin.value())
+
+    def set_count(self, name, count):
+        """Show a number of sub-surfaces or axes.
+
+        Parameters
+        ----------
+        name : str
+        count : int, "auto" or None
+        """
+        combo, spin = self.counts[name]
+        if isinstance(count, int):
+            spin.setValue(count)
+        combo.setCurrentIndex({None: _NONE, "auto": _AUTO}.get(count, _NUMBER))
+
     def fill(self, inputs):
         """Show what a job was, or should be, given.
 
@@ -185,6 +220,11 @@ class PlanForm:
         self.spindle.setValue(int(inputs.spindle))
         self._find("objective", QtWidgets.QComboBox).setCurrentIndex(OBJECTIVES.index(inputs.objective))
         self._find("direction", QtWidgets.QComboBox).setCurrentIndex(DIRECTIONS.index(inputs.direction))
+        self._find("method", QtWidgets.QComboBox).setCurrentIndex(METHODS.index(inputs.method))
+        for name in self.counts:
+            self.set_count(name, getattr(inputs, name))
+        for name, box in self.switches.items():
+            box.setChecked(getattr(inputs, name))
         self.set_limits(inputs.limits)
 
     def read(self):
@@ -201,7 +241,10 @@ class PlanForm:
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
-                "feedrate": self.quantities["feedrate"].value, "spindle": float(self.spindle.value())}
+                "feedrate": self.quantities["feedrate"].value, "spindle": float(self.spindle.value()),
+                "method": METHODS[self._find("method", QtWidgets.QComboBox).currentIndex()],
+                **{name: self.count(name) for name in self.counts},
+                **{name: box.isChecked() for name, box in self.switches.items()}}
 
     def refusal(self):
         """Why the fields cannot be computed with, one sentence; empty where they can."""
@@ -231,18 +274,13 @@ def check(values):
     """
     from toolaxis.errors import InvalidInput
     from toolaxis.machine.limits import parse_limits
-    from toolaxis.plan.plan import Inputs
-    from toolaxis.tools.assembly import Tool
 
-    body = {name: [list(row) for row in values[name]] for name in ("shank", "holder") if values[name]}
+    from ..inputs import Inputs
+
     if values["stickout"] <= 0:
         raise InvalidInput(f"stick-out is {values['stickout']:g} mm: it must be above zero")
-    tool = Tool.parse(values["tool"], stickout=values["stickout"], **body)
-    inputs = Inputs(values["scallop"], values["allowance"], objective=values["objective"],
-                    direction=values["direction"], limits=values["limits"], feedrate=values["feedrate"],
-                    spindle=values["spindle"])
-    inputs.check_tool(tool)
+    inputs = Inputs(**{**values, "faces": (), "obstacles": ()})
+    inputs.job().check_tool(inputs.assembled())
+    inputs.check_counts()
     if values["limits"]:
         parse_limits(values["limits"])
-
-

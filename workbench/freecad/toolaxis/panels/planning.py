@@ -1,6 +1,7 @@
 """The task panel of Plan Orientations: fields, Compute, the map, and OK as one undo step."""
 
 from contextlib import suppress
+from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui
@@ -8,10 +9,12 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..cam import speeds
+from ..objects import is_operation
 from ..reading import titles_of
 from ..tasks import Work, sentence
 from .axisview import AxisView
 from .fields import load_form, tell
+from .locks import Locks
 from .panel import Panel
 from .planform import PlanForm
 from .preview import Preview
@@ -64,7 +67,8 @@ class PlanPanel(Panel):
         """Put the plan into the document, as one undo step; refused without a plan."""
         if not self.ready:
             return False
-        inputs, plan = self.computed, self.view.plan
+        plan = self.view.plan
+        inputs = replace(self.computed, pieces=self._pieces())
         try:
             bridge.apply(self.document, inputs, plan, self.operation)
         except Exception as reason:
@@ -90,6 +94,8 @@ class PlanPanel(Panel):
         self.tools = tools_in(self.document)
         self.form.tool.addItem(translate("ToolAxis", "typed in below"))
         self.form.tool.addItems([name for name, _ in self.tools])
+        self.given = inputs.pieces
+        self.keeps = self.operation is not None and is_operation(self.operation) and bool(self.given)
         self.fields.fill(inputs)
         bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
         self.fields.avoid.offer(bodies, inputs.obstacles)
@@ -106,6 +112,7 @@ class PlanPanel(Panel):
         form.stop.clicked.connect(self.stop)
         self.view.changed.connect(self._show_state)
         self.view.told.connect(lambda text: self._tell(text, bad=True))
+        self.view.curve.picked.connect(self.compute_with)
 
     def _add_faces(self):
         faces, problems = selected_faces(self.document)
@@ -146,7 +153,7 @@ class PlanPanel(Panel):
         form.compute.setEnabled(not computing and not self.refusal)
         form.stop.setEnabled(computing)
         form.progress.setVisible(computing)
-        for tab in (form.jobTab, form.toolTab, form.limitsTab, self.view.map):
+        for tab in (form.jobTab, form.toolTab, form.limitsTab, self.view.map, self.view.curve):
             tab.setEnabled(not computing)
         if self.buttons is not None:
             with suppress(RuntimeError):
@@ -186,7 +193,7 @@ class PlanPanel(Panel):
         if self.refusal or self.work is not None:
             self._show_state()
             return
-        inputs = bridge.Inputs(**self.fields.read())
+        inputs = bridge.Inputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
         try:
@@ -206,6 +213,26 @@ class PlanPanel(Panel):
         self._tell(translate("ToolAxis", "Reading the part"))
         self._show_state()
         self.work.start()
+
+    def compute_with(self, count):
+        """Compute again with a number of different axes.
+
+        Parameters
+        ----------
+        count : int
+        """
+        if self.work is None:
+            self.fields.set_count("orientations", count)
+            self.compute()
+
+    def _pieces(self):
+        """The sub-surfaces that are kept: those of the plan that is shown, else those that the panel began with."""
+        if self.view.plan is not None and self.view.locks.owners:
+            found = self.view.locks.pieces(self.view.plan, every=self.keeps)
+        else:
+            found = self.given
+        chosen = {(thing.Name, name) for thing, name in self.fields.faces.faces}
+        return tuple(piece for piece in found if (piece.thing.Name, piece.name) in chosen)
 
     def stop(self):
         """Ask the computation to stop."""
@@ -235,7 +262,7 @@ class PlanPanel(Panel):
             return
         self.computed = inputs
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
-        self.view.show(plan, pictures, titles)
+        self.view.show(plan, pictures, titles, Locks(inputs, plan))
         self.form.tabs.setCurrentWidget(self.form.resultTab)
         self._show_state()
 

@@ -1,0 +1,187 @@
+"""Whole parts from the panel: divided, picked from the curve, locked, and put into the tree as one undo step."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+TREE = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="module")
+def whole_parts():
+    spec = importlib.util.spec_from_file_location("whole_parts", TREE / "whole_parts.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def roof(desk, whole_parts):
+    return shown(desk, whole_parts.roof)
+
+
+def shown(desk, make):
+    """A part in a document of its own, in sight."""
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Part")
+    document.UndoMode = 1
+    found = make(document)
+    view = desk.gui.getDocument(document.Name).ActiveView
+    view.viewIsometric()
+    view.fitAll()
+    return found
+
+
+@pytest.fixture
+def form(desk, roof):
+    """The panel for the roof, with a coarse scallop."""
+    form = desk.start(*roof)
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.4 mm")
+    return form
+
+
+def put(desk):
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+
+
+def plan_in(document):
+    from freecad.toolaxis.objects import is_plan
+
+    return next(filter(is_plan, document.Objects), None)
+
+
+def operations(document):
+    from freecad.toolaxis.objects import operations_in
+
+    return operations_in(plan_in(document))
+
+
+def colours_of(document):
+    return [next(tuple(thing.ViewObject.ShapeColor) for thing in one.Group if thing.TypeId == "Mesh::Feature")
+            for one in operations(document)]
+
+
+def names(document):
+    return sorted(thing.Name for thing in document.Objects)
+
+
+def test_two_sub_surfaces_stand_in_the_tree_and_go_with_one_undo(desk, roof, form, remembered, tmp_path):
+    import FreeCAD
+
+    document = roof[0].Document
+    before = names(document)
+    form.regions.setCurrentIndex(2)
+    assert form.blades.isChecked() and form.regionsNumber.isVisible() and form.regionsNumber.value() == 2
+    desk.shot("60-division")
+    desk.computed(form)
+    assert "Every face has an axis" in form.message.text() and names(document) == before
+    assert form.operation.count() == 2
+    desk.shot("61-two-axes")
+    put(desk)
+    after = names(document)
+    made = operations(document)
+    assert [one.Label.rsplit(" ", 1)[1] for one in made] == [f"{roof[1]}a", f"{roof[1]}b"]
+    for one in made:
+        kinds = [thing.TypeId for thing in one.Group]
+        assert "Path::Feature" in kinds and "Mesh::Feature" in kinds and not one.Stale
+    colours = colours_of(document)
+    assert colours[0] != colours[1]
+    desk.shot("62-sub-surfaces")
+    document.undo()
+    desk.pump(0.2)
+    assert names(document) == before, "one undo step takes all back"
+    document.redo()
+    desk.pump(0.2)
+    assert names(document) == after and not plan_in(document).Stale
+    document.saveAs(str(tmp_path / "Roof.FCStd"))
+    FreeCAD.closeDocument(document.Name)
+    again = FreeCAD.openDocument(str(tmp_path / "Roof.FCStd"))
+    desk.pump(0.3)
+    assert names(again) == after and not any(one.Stale for one in operations(again))
+    assert sum(colours_of(again), ()) == pytest.approx(sum(colours, ()), abs=0.01)
+    desk.gui.getDocument(again.Name).ActiveView.fitAll()
+    desk.shot("63-reopened")
+    desk.gui.Selection.addSelection(again.Name, plan_in(again).Name)
+    desk.gui.runCommand("Std_Delete")
+    desk.pump(0.2)
+    assert plan_in(again) is None and not [one for one in again.Objects if one.Name.startswith(("Operation", "Sub"))]
+
+
+def test_the_curve_is_picked_from(desk, whole_parts):
+    roof = shown(desk, whole_parts.wave)
+    form = desk.start(*roof)
+    form.tabs.setCurrentWidget(form.toolTab)
+    desk.type(form.diameter, "6 mm")
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.1 mm")
+    form.orientations.setCurrentIndex(1)
+    desk.computed(form)
+    curve = form.findChild(desk.widgets.QWidget, "orientationCurve")
+    assert curve.isVisible() and len(curve.options) > 1
+    chosen = next(one for one in curve.options if one.chosen)
+    other = next(one for one in curve.options if not one.chosen)
+    desk.hover(curve, curve.position_of(chosen))
+    assert "sub-surfaces" in form.pointer.text()
+    desk.shot("64-curve")
+    desk.click(curve, curve.position_of(other))
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    assert form.orientationsNumber.value() == other.orientations and form.orientations.currentIndex() == 2
+    put(desk)
+    assert plan_in(roof[0].Document).DifferentAxes == other.orientations
+    assert plan_in(roof[0].Document).Orientations == str(other.orientations)
+
+
+def test_a_locked_axis_is_kept_when_the_plan_is_computed_again(desk, roof, form, remembered):
+    document = roof[0].Document
+    form.regions.setCurrentIndex(2)
+    desk.computed(form)
+    chart = form.findChild(desk.widgets.QWidget, "axisMap")
+    centre, radius = chart.disc()
+    desk.click(chart, centre + desk.qt.QPointF(0.2 * radius, -0.1 * radius))
+    desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")
+    desk.press(form.lock)
+    assert form.lockAxis.isChecked() and "(locked)" in form.operation.itemText(0)
+    desk.shot("65-locked")
+    put(desk)
+    first, second = operations(document)
+    axis, border = first.Axis, first.Details
+    assert first.AxisLocked and not second.AxisLocked
+    desk.gui.Selection.clearSelection()
+    desk.gui.runCommand("ToolAxis_Recompute")
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+    form = desk.form("ToolAxisPlan")
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    assert form.lockAxis.isChecked() and "Every face has an axis" in form.message.text()
+    put(desk)
+    again = operations(document)
+    assert [one.Name for one in again] == [first.Name, second.Name], "the same objects"
+    assert again[0].Axis.isEqual(axis, 1e-9) and again[0].AxisLocked
+    import json
+
+    assert json.loads(again[0].Details)["region"] == json.loads(border)["region"]
+    assert any("locked by hand" in text for text in again[0].Reasons)
+
+
+@pytest.mark.parametrize(("field", "value", "words"), [
+    ("regions", 16, "cannot be divided"), ("orientations", 1, "")])
+def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, remembered, field, value, words):
+    document = roof[0].Document
+    before = names(document)
+    getattr(form, field).setCurrentIndex(2)
+    getattr(form, f"{field}Number").setValue(value)
+    if field == "orientations":
+        form.method.setCurrentIndex(3)
+        assert not form.compute.isEnabled() and "names its own axes" in form.message.text()
+        desk.shot("66-refused-division")
+        return
+    desk.type(form.scallop, "0.4 mm")
+    form.tabs.setCurrentWidget(form.toolTab)
+    desk.type(form.diameter, "8 mm")
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.computed(form)
+    assert words in form.message.text() and not desk.standard_button("Ok").isEnabled()
+    assert names(document) == before

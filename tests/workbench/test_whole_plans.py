@@ -1,0 +1,212 @@
+"""Whole parts by scripts: sub-surfaces, shared axes and blades in the tree, locks, and the library's own figures."""
+
+import importlib.util
+import json
+from pathlib import Path
+
+import FreeCAD
+import pytest
+from freecad.toolaxis import bridge
+from freecad.toolaxis.inputs import inputs_of
+from freecad.toolaxis.objects import is_operation, operations_in, plan_of
+from freecad.toolaxis.objects.belongings import frame_of
+from freecad.toolaxis.objects.surfaces import CLEAN_UP, SURFACE, is_shown
+from freecad.toolaxis.reading import Source
+
+import toolaxis as ta
+from toolaxis.progress import NO_PROGRESS
+
+TOOL = "ball:6"
+
+
+@pytest.fixture(scope="module")
+def whole_parts():
+    path = Path(__file__).with_name("whole_parts.py")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def divided(whole_parts):
+    """The roof in two sub-surfaces, and its plan as the library makes it of the same shape."""
+    document = FreeCAD.newDocument("Divided")
+    document.UndoMode = 1
+    thing, name = whole_parts.roof(document)
+    made = bridge.plan(document, (thing, name), TOOL, 0.4, regions=2, method="normal")
+    theirs = ta.plan(thing, bridge.inputs_of(made[0]).assembled(), 0.4, faces=[int(name[4:])], regions=2,
+                     method="normal", feedrate=made[0].FeedRate.Value * 60)
+    yield made, theirs
+    FreeCAD.closeDocument(document.Name)
+
+
+@pytest.fixture(scope="module")
+def bladed(whole_parts):
+    """The wheel, with one blade planned and turned to the others."""
+    document = FreeCAD.newDocument("Bladed")
+    document.UndoMode = 1
+    thing = whole_parts.wheel(document)
+    made = bridge.plan(document, thing, regions=1, **whole_parts.BLADE_TOOL)
+    yield thing, made
+    FreeCAD.closeDocument(document.Name)
+
+
+def shown(operation, what):
+    return [thing for thing in operation.Group if is_shown(thing) and thing.Shows == what]
+
+
+def links(plan):
+    return [thing for group in plan.Group for thing in getattr(group, "Group", ()) if thing.TypeId == "App::Link"]
+
+
+def test_the_figures_are_the_librarys(divided):
+    made, theirs = divided
+    assert [one.Outcome for one in made] == [op.orientation.outcome for op in theirs.operations]
+    plan = plan_of(made[0])
+    assert plan.CuttingLength.Value == pytest.approx(theirs.length, rel=1e-9)
+    assert plan.Travel.Value == pytest.approx(theirs.travel, rel=1e-9)
+    for ours, op in zip(made, theirs.operations, strict=True):
+        assert tuple(ours.Axis) == pytest.approx(tuple(op.orientation.axis), abs=1e-9)
+        assert ours.CuttingLength.Value == pytest.approx(op.orientation.length, rel=1e-9)
+        area = sum(mesh.Mesh.Area for mesh in shown(ours, SURFACE))
+        assert area == pytest.approx(op.face.area, rel=0.02), "the colour lies on the whole sub-surface"
+
+
+def test_the_judge_takes_a_sub_surface_from_the_document(divided):
+    made, theirs = divided
+    verdict = bridge.verify(made[0])
+    expected = ta.verify(theirs).operations[0]
+    assert verdict.passed == expected.passed
+    assert verdict.share_within == pytest.approx(expected.share_within, abs=0.02)
+
+
+def test_one_sub_surface_is_planned_again_with_its_own_border(divided):
+    made, _ = divided
+    first, region = made[0], json.loads(made[0].Details)["region"]
+    others = [one.Name for one in made]
+    again = bridge.recompute(first)
+    assert again == [first] and json.loads(first.Details)["region"] == region
+    assert [one.Name for one in operations_in(plan_of(first))] == others
+
+
+def test_locks_are_kept_and_the_plan_is_planned_again_in_the_same_objects(divided):
+    made, _ = divided
+    plan = plan_of(made[0])
+    made[1].AxisLocked, made[1].FeedLocked = True, True
+    axis, feed = made[1].Axis, made[1].FeedParameter
+    inputs = inputs_of(plan)
+    assert [piece.locked for piece in inputs.pieces] == [False, True] and inputs.pieces[1].feed == feed
+    again = bridge.recompute(plan)
+    assert again == made and made[1].AxisLocked and not made[0].AxisLocked and not plan.Stale
+    assert made[1].Axis.isEqual(axis, 1e-9) and made[1].FeedParameter == feed
+    made[1].AxisLocked = made[1].FeedLocked = False
+    assert not inputs_of(plan).pieces
+
+
+def test_an_input_of_the_plan_that_is_changed_marks_it(divided):
+    plan = plan_of(divided[0][0])
+    plan.Scallop = 0.5
+    plan.Document.recompute()
+    assert plan.Stale and plan.StaleReasons == ["scallop was changed"]
+    plan.Scallop = 0.4
+    plan.Document.recompute()
+    assert not plan.Stale
+
+
+def test_other_blades_are_links_that_follow(bladed, tmp_path):
+    thing, made = bladed
+    plan = plan_of(made[0])
+    assert plan.Outcome in ("complete", "incomplete") and len(plan.Group) == 3
+    found = links(plan)
+    done = [one for one in made if one.Outcome == "feasible"]
+    assert done and len(found) == 2 * len(done)
+    for link in found:
+        source = link.LinkedObject
+        assert is_operation(source) and plan_of(source) == plan
+        turned = link.Placement.multiply(frame_of(source).Placement)
+        assert turned.Rotation.multVec(FreeCAD.Vector(0, 0, 1)).isEqual(link.Axis, 1e-6)
+        number = int(link.Face[4:])
+        passes = next(one for one in source.Group if one.TypeId == "Path::Feature")
+        end = passes.Path.Commands[len(passes.Path.Commands) // 2].Placement.Base
+        place = link.Placement.multVec(passes.Placement.multVec(end))
+        face = thing.Shape.Faces[number - 1]
+        assert face.distToShape(FreecadVertex(place))[0] < 4.0, "the passes lie at the face that the link names"
+    before = [link.Placement for link in found]
+    motion = FreeCAD.Placement(FreeCAD.Vector(5, -3, 2), FreeCAD.Rotation(FreeCAD.Vector(1, 2, 3), 40))
+    thing.Placement = motion
+    thing.Document.recompute()
+    for link, was in zip(found, before, strict=True):
+        assert link.Placement.isSame(motion.multiply(was).multiply(motion.inverse()), 1e-7)
+    thing.Placement = FreeCAD.Placement()
+    thing.Document.recompute()
+    names = sorted(one.Name for one in thing.Document.Objects)
+    thing.Document.saveCopy(str(tmp_path / "Bladed.FCStd"))
+    again = FreeCAD.openDocument(str(tmp_path / "Bladed.FCStd"))
+    try:
+        assert sorted(one.Name for one in again.Objects) == names
+        assert not any(one.Stale for one in again.Objects if is_operation(one))
+    finally:
+        FreeCAD.closeDocument(again.Name)
+
+
+def FreecadVertex(place):
+    import Part as FreecadPart
+
+    return FreecadPart.Vertex(place)
+
+
+def test_one_undo_takes_blades_and_links(bladed):
+    thing, made = bladed
+    document = thing.Document
+    names = sorted(one.Name for one in document.Objects)
+    document.openTransaction("delete")
+    document.removeObject(plan_of(made[0]).Name)
+    document.commitTransaction()
+    left = [one for one in document.Objects if one.TypeId == "App::Link" or is_operation(one) or is_shown(one)]
+    assert not left, "what belongs to a plan goes with it"
+    document.undo()
+    assert sorted(one.Name for one in document.Objects) == names
+
+
+def test_clean_up_zones_are_hatched(document, whole_parts):
+    """A zone drawn as lines: as long as its area over their pitch, and on the face."""
+    from freecad.toolaxis.objects.surfaces import show_surface
+    from freecad.toolaxis.places import chain_of
+
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.zone import Zone
+
+    thing, name = whole_parts.roof(document)
+    inputs = bridge.Inputs(((thing, name),))
+    part, _ = Source.of(inputs).read(NO_PROGRESS)
+    face = part.face(int(name[4:]))
+    group = document.addObject("App::DocumentObjectGroupPython", "Group")
+    op = Operation(1, face, Orientation(None), zones=(Zone(face.outline, face.area),))
+    show_surface(group, op, chain_of(thing), (0.5, 0.5, 1.0))
+    lines, = shown(group, CLEAN_UP)
+    mesh, = shown(group, SURFACE)
+    wires = lines.Shape.Wires
+    assert len(wires) > 30
+    length = sum(wire.Length for wire in wires[1:])
+    assert length * face.diagonal / 60 == pytest.approx(face.area, rel=0.25)
+    top = thing.Shape.Faces[int(name[4:]) - 1]
+    assert top.distToShape(wires[len(wires) // 2])[0] < 0.01 * face.diagonal
+    thing.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, 7), FreeCAD.Rotation())
+    document.recompute()
+    assert lines.Placement.Base.z == mesh.Placement.Base.z == pytest.approx(7)
+    show_surface(group, Operation(1, face, Orientation(None)), chain_of(thing), None)
+    assert not group.Group
+
+
+@pytest.mark.parametrize(("given", "words"), [
+    ({"regions": 0}, "number of sub-surfaces is 0"), ({"orientations": 40}, "number of orientations is 40"),
+    ({"method": "best"}, "method is 'best'"), ({"regions": "some"}, "number of sub-surfaces is 'some'"),
+    ({"orientations": 2, "method": "roman"}, "names its own axes")])
+def test_what_cannot_be_is_a_sentence_and_leaves_nothing(document, whole_parts, given, words):
+    thing, name = whole_parts.roof(document)
+    before = [one.Name for one in document.Objects]
+    with pytest.raises(ta.InvalidInput, match=words):
+        bridge.plan(document, (thing, name), TOOL, 0.4, **given)
+    assert [one.Name for one in document.Objects] == before

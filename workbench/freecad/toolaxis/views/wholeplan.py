@@ -1,0 +1,53 @@
+"""A whole plan in the tree: its icon tells whether its results still hold."""
+
+import FreeCADGui
+
+from . import icon
+
+
+class WholePlanView:
+    """View provider of a whole plan.
+
+    Parameters
+    ----------
+    view : Gui.ViewProvider
+    """
+
+    def __init__(self, view):
+        view.Proxy = self
+
+    def attach(self, view):
+        """Called by FreeCAD when the view is there."""
+        self.thing = view.Object
+
+    def getIcon(self):
+        """Another icon while the results are stale."""
+        stale = getattr(getattr(self, "thing", None), "Stale", False)
+        return icon("operation-stale.svg" if stale else "plan.svg")
+
+    def updateData(self, thing, name):
+        """Show a changed mark."""
+        self.thing = thing
+        if name == "Stale":
+            thing.ViewObject.signalChangeIcon()
+
+    def onDelete(self, view, names):
+        """Delete it without the question that FreeCAD asks for groups: what belongs to it goes with it."""
+        return True
+
+    def doubleClicked(self, view):
+        """Open the planning panel with what the plan was made with."""
+        if FreeCADGui.Control.activeDialog():
+            return False
+        from ..inputs import inputs_of
+        from ..panels.planning import PlanPanel
+
+        plan = view.Object
+        FreeCADGui.Control.showDialog(PlanPanel(plan.Document, inputs_of(plan), plan))
+        return True
+
+    def dumps(self):
+        """Nothing to save."""
+
+    def loads(self, state):
+        """Nothing was saved."""
