@@ -7,6 +7,7 @@ from FreeCAD import Vector
 from freecad.toolaxis import machines
 from freecad.toolaxis.objects.machine import machine_of, place_machine
 from freecad.toolaxis.panels.machinemotion import Journey, corners, meeting, places
+from freecad.toolaxis.preferences import PLACE
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
@@ -28,7 +29,7 @@ def mounted():
 def test_the_library_and_the_users_folder_are_offered(tmp_path):
     assert set(library()) <= set(machines.available())
     (tmp_path / "mine.toml").write_text(library()["ab-trunnion"].read_text())
-    preferences = FreeCAD.ParamGet(machines.PREFERENCES)
+    preferences = FreeCAD.ParamGet(PLACE)
     preferences.SetString("MachinesFolder", str(tmp_path))
     try:
         assert machines.available()["mine"] == str(tmp_path / "mine.toml")

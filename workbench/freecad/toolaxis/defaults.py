@@ -3,6 +3,8 @@
 from contextlib import suppress
 from dataclasses import replace
 
+from .preferences import preferred_inputs
+
 #: Diameters that cutters come in, mm.
 _DIAMETERS = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
 _SCALLOPS = (0.005, 0.01, 0.02, 0.05)
@@ -10,7 +12,7 @@ _GRID = 5
 
 
 def defaults(document, faces):
-    """Inputs for faces: the first usable tool of a CAM job, else a bull nose that fits into the faces.
+    """Inputs for faces: the first usable tool of a CAM job, else what is preferred, or a bull nose that fits the faces.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ def defaults(document, faces):
     from .cam import controllers, speeds, tool_from
 
     shapes = _faces(faces)
-    inputs = _for_size(Inputs(tuple(faces)), shapes)
+    inputs = _preferred(_for_size(Inputs(tuple(faces)), shapes))
     for controller in controllers(document):
         with suppress(Exception):  # a tool of another kind: the next one
             found = tool_fields(tool_from(controller))
@@ -34,6 +36,22 @@ def defaults(document, faces):
             inputs = replace(inputs, **found, feedrate=feed or inputs.feedrate, spindle=spindle or inputs.spindle)
             break
     return inputs
+
+
+def _preferred(inputs):
+    """What the user prefers in place of what the part suggests; a tool that is none is left out."""
+    from toolaxis.errors import InvalidInput
+    from toolaxis.tools.assembly import Tool
+
+    found = preferred_inputs()
+    if "tool" in found:
+        try:
+            diameter = 2 * Tool.parse(found["tool"]).radius
+        except InvalidInput:
+            del found["tool"]
+        else:
+            found |= {"stickout": 5 * diameter, "holder": _holder(diameter)}
+    return replace(inputs, **found)
 
 
 def _faces(faces):

@@ -8,6 +8,9 @@ from . import RESOURCES
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 FreeCADGui.addLanguagePath(str(RESOURCES / "translations"))
+FreeCADGui.updateLocale()
+FreeCADGui.addIconPath(str(RESOURCES / "icons"))
+FreeCADGui.addPreferencePage(str(RESOURCES / "ui" / "preferences.ui"), QT_TRANSLATE_NOOP("QObject", "Tool Axis"))
 
 
 class ToolAxisWorkbench(FreeCADGui.Workbench):
@@ -19,11 +22,13 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from .commands import register
+        from .commands import examples, register
 
         names = register()
         self.appendToolbar(QT_TRANSLATE_NOOP("Workbench", "Tool Axis"), names)
-        self.appendMenu(QT_TRANSLATE_NOOP("Workbench", "&Tool Axis"), names)
+        menu = QT_TRANSLATE_NOOP("Workbench", "&Tool Axis")
+        self.appendMenu(menu, names)
+        self.appendMenu([menu, QT_TRANSLATE_NOOP("Workbench", "Examples")], examples.register())
         self._names = names
 
     def ContextMenu(self, recipient):

@@ -4,11 +4,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import FreeCAD
+from .preferences import machines_folder
 
 #: A machine among the limits of the axis: "machine:bc-table-table@0,0,60".
 PREFIX = "machine:"
-PREFERENCES = "User parameter:BaseApp/Preferences/Mod/ToolAxis"
 
 
 def available():
@@ -30,7 +29,7 @@ def available():
 
 def folders():
     """The user's own folders of machines that exist: that of the preferences, and FreeCAD's."""
-    named = FreeCAD.ParamGet(PREFERENCES).GetString("MachinesFolder", "")
+    named = machines_folder()
     found = [Path(named).expanduser()] if named else []
     with suppress(Exception):  # a FreeCAD that keeps no machines
         import Path.Preferences as CamPreferences

@@ -9,7 +9,8 @@ import numpy as np
 from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
 from PySide import QtCore
 
-_CUT, _LINK = (0.90, 0.38, 0.0), (0.45, 0.45, 0.45)
+from ..preferences import colours
+
 _COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder": (0.35, 0.45, 0.60)}
 _CLEAR = {"cutter": 0.0, "shank": 0.15, "holder": 0.35}
 _TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.35, 0.90)))
@@ -195,7 +196,7 @@ def _lines(path):
     node = coin.SoSeparator()
     cut = np.asarray(path.kind[1:]) == Motion.CUT
     bounds = np.concatenate([[0], np.flatnonzero(np.diff(cut)) + 1, [len(cut)]])
-    for flag, colour, width in ((True, _CUT, 1.6), (False, _LINK, 1.0)):
+    for flag, colour, width in zip((True, False), colours(), (1.6, 1.0), strict=True):
         lines = [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == flag]
         if lines:
             node.addChild(_polylines(colour, lines, width))

@@ -1,0 +1,95 @@
+"""The page of preferences and the menu of examples."""
+
+import FreeCAD
+import pytest
+
+
+@pytest.fixture
+def kept():
+    """Where preferences are kept, empty before and after."""
+    from freecad.toolaxis.preferences import PLACE
+
+    group = FreeCAD.ParamGet(PLACE)
+    group.Clear()
+    yield group
+    group.Clear()
+
+
+def on_page(desk, act):
+    """Open FreeCAD's preferences at our page, do something with it, and answer OK."""
+    from PySide import QtCore, QtWidgets
+
+    seen = []
+
+    def visit():
+        dialog = desk.app.activeModalWidget()
+        if dialog is None or seen:
+            return
+        page = dialog.findChild(QtWidgets.QWidget, "ToolAxisPreferences")
+        seen.append(page is not None)
+        try:
+            if page is not None:
+                act(page)
+        finally:
+            box = dialog.findChild(QtWidgets.QDialogButtonBox)
+            box.button(QtWidgets.QDialogButtonBox.Ok).click()
+
+    timer = QtCore.QTimer()
+    timer.setInterval(500)
+    timer.timeout.connect(visit)
+    timer.start()
+    desk.gui.showPreferences("Tool Axis", 0)
+    timer.stop()
+    assert seen == [True]
+
+
+def test_the_page_keeps_what_is_set(desk, kept, tmp_path):
+    def fill(page):
+        page.findChild(desk.widgets.QWidget, "tool").setText("ball:4")
+        page.findChild(desk.widgets.QWidget, "scallop").setValue(0.03)
+        page.findChild(desk.widgets.QWidget, "feed").setValue(640)
+        page.findChild(desk.widgets.QWidget, "folder").setProperty("fileName", str(tmp_path))
+        desk.shot("90-preferences")
+
+    on_page(desk, fill)
+    assert kept.GetString("Tool") == "ball:4" and kept.GetFloat("Scallop") == pytest.approx(0.03)
+    assert kept.GetFloat("FeedRate") == 640 and kept.GetString("MachinesFolder") == str(tmp_path)
+
+
+def test_new_plans_begin_with_what_is_preferred(desk, kept, wavy):
+    from freecad.toolaxis import bridge
+
+    part, face = wavy
+    usual = bridge.defaults(part.Document, ((part, face),))
+    assert usual.tool.startswith("torus:")
+    kept.SetString("Tool", "ball:4")
+    kept.SetFloat("Scallop", 0.03)
+    kept.SetFloat("FeedRate", 640.0)
+    found = bridge.defaults(part.Document, ((part, face),))
+    assert (found.tool, found.scallop, found.feedrate, found.spindle) == ("ball:4", 0.03, 640.0, usual.spindle)
+    assert found.stickout == 20.0 and found.assembled().kind == "ball"
+    kept.SetString("Tool", "ball")
+    assert bridge.defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"
+
+
+def test_colours_are_those_of_the_preferences(kept):
+    from freecad.toolaxis.preferences import colours
+
+    assert colours()[0] == pytest.approx((0.9, 0.38, 0.0), abs=0.005)
+    kept.SetUnsigned("CutColour", 0x0000FFFF)
+    assert colours()[0] == (0.0, 0.0, 1.0)
+
+
+def test_every_example_of_the_menu_is_there_and_opens(desk):
+    from freecad.toolaxis.commands.examples import PARTS, Example
+
+    assert all(Example(name).file.is_file() for name in PARTS)
+    menus = desk.window.menuBar().findChildren(desk.widgets.QMenu)
+    texts = [action.text().replace("&", "") for menu in menus for action in menu.actions()]
+    assert {"Examples", "Saddle", "Blisk with 16 blades"} <= set(texts)
+    desk.gui.runCommand("ToolAxis_Example_saddle")
+    desk.pump(0.3)
+    document = FreeCAD.ActiveDocument
+    assert document.Name == "saddle" and document.Objects[0].Label == "Saddle" and document.UndoCount == 0
+    assert any(type(face.Surface).__name__ == "BSplineSurface" for face in document.Objects[0].Shape.Faces)
+    desk.shot("91-example")
