@@ -131,13 +131,18 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
                               description="Write a plan's operations in the dialect of a control, with a setup sheet.")
     sub.add_argument("folder", metavar="DIR",
                      help="folder that toolaxis plan wrote; or a file made elsewhere, APT or the NC program of a "
-                          "five-axis --machine, which --dialect apt writes as an APT file beside it")
+                          "five-axis machine: --dialect apt writes it as an APT file beside it, fanuc, siemens and "
+                          "heidenhain as a program of --machine with tool centre point control")
     sub.add_argument("--dialect", required=True, metavar="NAME",
                      help="fanuc (G68.2), haas-g268, haas-g254, siemens (CYCLE800), heidenhain (PLANE SPATIAL), "
                           "linuxcnc-twp (G68.2), linuxcnc or iso (a work offset for each orientation), apt (CL files)")
     sub.add_argument("--machine", metavar="NAME|FILE", help="a machine from resources/machines, a TOML or .fcm file")
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm: travel is checked with it")
+    sub.add_argument("--source", metavar="NAME|FILE",
+                     help="of a program made elsewhere: the machine that it was for (default: --machine)")
+    sub.add_argument("--feedrate", type=float, metavar="MM/MIN", help="of CL data made elsewhere, in place of its own")
+    sub.add_argument("--spindle", type=float, metavar="RPM", help="of CL data made elsewhere, in place of its own")
     sub.add_argument("--retract", type=float, metavar="MM",
                      help="machine coordinate of Z at which rotary axes may turn (default: the end of its travel)")
     sub.add_argument("--clamp", metavar="WORDS", help="words that hold the rotary axes, such as M10,M12")
@@ -147,10 +152,11 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
 
 
 def _add_report(commands: "argparse._SubParsersAction[_Parser]") -> None:
-    sub = commands.add_parser("report", help="write a plan as one HTML page",
+    sub = commands.add_parser("report", help="write a plan, or a batch, as HTML pages",
                               description="Write one self-contained HTML page that shows all of a plan and its "
-                                          "verdict; it needs no network.")
-    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
+                                          "verdict, or one that lists the jobs of a batch and leads to the page of "
+                                          "each; they need no network.")
+    sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan or toolaxis batch wrote")
     sub.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html)")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.report")

@@ -1,4 +1,4 @@
-"""`toolaxis post`: NC programs and CL files from a plan's folder, and CL files from CL data made elsewhere."""
+"""`toolaxis post`: NC programs and CL files from a plan's folder, and both from CL data made elsewhere."""
 
 from argparse import Namespace
 from collections.abc import Callable
@@ -10,6 +10,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, staged
 from toolaxis.job.posting import posted, verdict_of
 from toolaxis.job.reading import read_cl
+from toolaxis.job.reposting import reposted
 from toolaxis.job.spec import offset_from
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
@@ -58,17 +59,29 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _written_again(given: Namespace, file: Path) -> int:
-    """Write CL data that were made elsewhere, an APT file or a program, as an APT file beside them."""
-    if given.dialect != APT:
-        raise InvalidInput(f"{file} holds CL data that were made elsewhere: they are written as APT files, use "
-                           f"--dialect {APT}; dialects of programs take a plan's folder")
-    found = read_cl(file, given.machine or None, offset=offset_from(given.offset) if given.offset else None)
-    target = file.with_suffix(".apt")
-    target = target if target.resolve() != file.resolve() else file.with_name(f"{file.stem}-again.apt")
-    target.write_text(locations_text(found, file.stem), encoding="utf-8")
+    """Write CL data that were made elsewhere, an APT file or a program, beside them: as APT, or as a program."""
+    offset = offset_from(given.offset) if given.offset else None
+    source = given.source or given.machine
+    found = read_cl(file, source or None, offset=offset if given.source in (None, given.machine) else None)
+    if given.dialect == APT:
+        files = {f"{file.stem}.apt": locations_text(found, file.stem)}
+    elif not given.machine:
+        raise InvalidInput(f"dialect {given.dialect} writes rotary angles: give --machine, the one that the program is "
+                           "for")
+    else:
+        options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
+        files = reposted(found, given.dialect, Mounting(load_machine(given.machine), offset), options, name=file.stem,
+                         feedrate=given.feedrate, spindle=given.spindle)
+    targets = []
+    for name, text in files.items():
+        target = file.with_name(name)
+        target = target if target.resolve() != file.resolve() else file.with_name(f"{file.stem}-again{target.suffix}")
+        target.write_text(text, encoding="utf-8")
+        targets.append(str(target))
     if given.json:
-        print_json({"dialect": APT, "files": [str(target)], "points": len(found.tip)})
-    say(f"toolaxis: {target}: {len(found.tip)} points")
+        print_json({"dialect": given.dialect, "files": targets, "points": len(found.tip)})
+    for each in targets:
+        say(f"toolaxis: {each}: {len(found.tip)} points")
     return 0
 
 

@@ -27,6 +27,8 @@ OFF = 1e-4
 _ROUNDS, _MOST = 16, 2_000_000
 #: By how much rotary angles may pass their limits, rad, and linear ones theirs, mm.
 _ROUNDING = 1e-9
+#: Digits of turns, rad, to which two are as much.
+_SAME = 6
 #: Turn of a rotary axis that shows how far the linear axes go along with it, rad.
 _PROBE = 1e-4
 
@@ -58,7 +60,8 @@ def following(machine: Machine, path: ToolPath, table_from_part: ArrayLike | Non
               near: ArrayLike = (), travel: bool = False) -> Following:
     """Machine axes along a path, turning without jumps.
 
-    Of the solutions and whole turns to begin with, that whose rotary axes turn least in all is taken.
+    Of the solutions and whole turns to begin with, that whose rotary axes turn least in all is taken; of two that turn
+    as much, the one that begins nearer to where they stand.
 
     Parameters
     ----------
@@ -100,14 +103,22 @@ def following(machine: Machine, path: ToolPath, table_from_part: ArrayLike | Non
     if not found:
         raise InvalidInput(why or f"no position of {machine.name} takes the first axis of the path: choose another "
                            "machine, offset or strategy")
-    return min(found, key=lambda one: float(np.abs(np.diff(one.rotary, axis=0)).sum()))
+    return min(found, key=lambda one: (round(float(np.abs(np.diff(one.rotary, axis=0)).sum()), _SAME),
+                                       round(float(np.abs(one.rotary[0] - stand).max(initial=0.0)), _SAME)))
 
 
 def _begins(machine: Machine, path: ToolPath, place: ArrayLike | None, stand: Array) -> list[Array]:
-    """Rotary angles that take the first axis: every solution, by every whole turn inside ranges that end."""
+    """Rotary angles that take the first axis: every solution, by every whole turn inside ranges that end.
+
+    Where the axis next to the part is free at first, it may also stand where the first axis that turns it needs it.
+    """
     found = rotary_angles(machine, path.axis[:1], stand, place)
-    rows = []
-    for angles in found.joints[0][found.within[0]]:
+    rows, firsts = [], list(found.joints[0][found.within[0]])
+    if found.free[0] and firsts:
+        later = rotary_angles(machine, path.axis, stand, place)
+        k = int(np.argmin(later.free))
+        firsts += [np.concatenate([angles[:1], firsts[0][1:]]) for angles in later.joints[k][later.within[k]]]
+    for angles in firsts:
         turns = [_whole_turns(axis.low - angle, axis.high - angle) for axis, angle in
                  zip(machine.rotary, angles, strict=True)]
         rows += [angles + 2 * pi * np.array(some) for some in product(*turns)]

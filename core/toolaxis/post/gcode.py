@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, degrees, isfinite, radians
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.post.stations import Station, in_plane, stations, turned_table
 from toolaxis.post.turns import matrix_from_turns, turns_from_matrix
 
@@ -29,15 +29,15 @@ _AXES = ("X", "Y", "Z")
 _LEVEL = -1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Program:
-    """All that a dialect needs to write.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Setting:
+    """What every block of a program may depend on besides motions.
 
     Attributes
     ----------
-    plan : Plan
     mounting : Mounting
-    stations : tuple of Station
+    inputs : Inputs
+        Spindle speed and feed rates.
     name : str
         Of the program; letters, digits, points, dashes and underscores are kept.
     retract : float or None
@@ -46,9 +46,8 @@ class Program:
         Words that hold and let go the rotary axes around an index move.
     """
 
-    plan: Plan
     mounting: Mounting
-    stations: tuple[Station, ...]
+    inputs: Inputs
     name: str = "toolaxis"
     retract: float | None = None
     clamp: tuple[str, ...] = ()
@@ -58,6 +57,22 @@ class Program:
     def machine(self) -> Machine:
         """The machine of the mounting."""
         return self.mounting.machine
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Program(Setting):
+    """All that a dialect needs to write a plan.
+
+    Attributes
+    ----------
+    mounting, inputs, name, retract, clamp, unclamp
+        As for `Setting`.
+    plan : Plan
+    stations : tuple of Station
+    """
+
+    plan: Plan
+    stations: tuple[Station, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -145,7 +160,7 @@ class Dialect(ABC):
     notes: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Blocks of the safe start: modes, plane off, retract, tool, spindle."""
 
     @abstractmethod
@@ -157,7 +172,7 @@ class Dialect(ABC):
         """Blocks that cancel the plane and retract."""
 
     @abstractmethod
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Blocks of the end."""
 
     def comment(self, text: str) -> str:
@@ -177,11 +192,11 @@ class Dialect(ABC):
         """The word that turns tool length compensation on in the approach."""
         return "G43 H1"
 
-    def straight_rapid(self, program: Program, point: Array) -> str:
+    def straight_rapid(self, program: Setting, point: Array) -> str:
         """A rapid motion along a straight line, at rapid rate by G1 where G0 may bend it."""
         if self.straight:
             return f"G0 {self.point(point)}"
-        return f"G1 {self.point(point)} F{program.plan.inputs.rapid:.0f}."
+        return f"G1 {self.point(point)} F{program.inputs.rapid:.0f}."
 
     def rapid(self, program: Program, station: Station, point: Array) -> str:
         """A rapid motion in the plane."""
@@ -327,12 +342,35 @@ def bare_program(plan: Plan, mounting: Mounting, dialect: Dialect, options: Opti
     InvalidInput
         When the machine's axes are not X, Y, Z with the spindle along Z.
     """
+    return Program(plan=plan, **_setting(plan.inputs, mounting, dialect, options, name))
+
+
+def setting_of(inputs: Inputs, mounting: Mounting, dialect: Dialect, options: Options | None = None,
+               name: str = "toolaxis") -> Setting:
+    """What a program says besides its motions, without a plan.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    mounting, dialect, options, name
+        As for `program_of`.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine's axes are not X, Y, Z with the spindle along Z.
+    """
+    return Setting(**_setting(inputs, mounting, dialect, options, name))
+
+
+def _setting(inputs: Inputs, mounting: Mounting, dialect: Dialect, options: Options | None,
+             name: str) -> dict[str, Any]:
     _check_frame(mounting.machine)
     chosen = Options() if options is None else options
     top = mounting.machine.linear[2].high
     retract = chosen.retract if chosen.retract is not None else (top if isfinite(top) else None)
-    return Program(plan, mounting, (), _plain(name).replace(" ", "_") or "toolaxis", retract,
-                   chosen.clamp or dialect.hold, chosen.unclamp or dialect.release)
+    return {"mounting": mounting, "inputs": inputs, "name": _plain(name).replace(" ", "_") or "toolaxis",
+            "retract": retract, "clamp": chosen.clamp or dialect.hold, "unclamp": chosen.unclamp or dialect.release}
 
 
 def _check_frame(machine: Machine) -> None:
@@ -375,7 +413,7 @@ def _path(program: Program, station: Station, dialect: Dialect) -> Iterator[str]
     Links that are not rapid go straight at the rapid rate: what they keep clear of was checked along the line.
     """
     held: float | None = None
-    inputs, path = program.plan.inputs, station.operation.path
+    inputs, path = program.inputs, station.operation.path
     assert path is not None
     starts, passes = set(path.breaks[1:-1].tolist()), 1
     for k, tip in enumerate(station.tips[1:], 1):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 
 Array = NDArray[np.float64]
@@ -38,6 +38,11 @@ class CutterLocations:
     breaks: NDArray[np.int64]
     told: bool = True
     spindle: float = 0.0
+
+    @property
+    def rapid(self) -> NDArray[np.bool_]:
+        """Whether the motion to each point is rapid, (n,)."""
+        return np.asarray(self.kind == Motion.LINK)
 
     @property
     def path(self) -> ToolPath:

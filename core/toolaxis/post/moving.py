@@ -5,21 +5,21 @@ so that the tip is there while the rotary axes turn.  All motions are G1: links 
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.cldata.toolpath import Motion
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import Following, following
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.mounting import Mounting
-from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.post.gcode import Dialect, Lines, Options, Program, bare_program, number
+from toolaxis.post.gcode import Dialect, Lines, Options, Setting, number, setting_of
 
 Array = NDArray[np.float64]
 
@@ -29,18 +29,23 @@ _WORDS = ("none", "one", "two")
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """One operation as tool centre point control carries it out.
+    """One path as tool centre point control carries it out.
 
     Attributes
     ----------
-    operation : Operation
+    name : str
+    path : ToolPath
+    rates : (n,) array
+        Feed rate on the way to each point of the path, mm/min; infinite where rapid.
     along : Following
         Rotary axes at all points, those put between the path's own included.
     tips, axes : (n, 3) array
         In the work coordinate system, tips from the datum, mm.
     """
 
-    operation: Operation
+    name: str
+    path: ToolPath
+    rates: Array
     along: Following
     tips: Array
     axes: Array
@@ -69,31 +74,31 @@ class TipControl(ABC):
     least_axes: ClassVar[int] = 2
 
     @abstractmethod
-    def begin(self, program: Program, course: Course) -> Lines:
+    def begin(self, program: Setting, course: Course) -> Lines:
         """Blocks from a retracted tool to tool centre point control with the first axis."""
 
     @abstractmethod
-    def leave(self, program: Program, course: Course) -> Lines:
+    def leave(self, program: Setting, course: Course) -> Lines:
         """Blocks that end it and retract."""
 
     @abstractmethod
-    def orientation(self, program: Program, course: Course, k: int) -> str:
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
         """The words that turn the axis to that of a point."""
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Blocks of the safe start."""
         return self.dialect.start(program)
 
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Blocks of the end."""
         return self.dialect.end(program)
 
-    def block(self, program: Program, course: Course, k: int, rate: float | None) -> str:
+    def block(self, program: Setting, course: Course, k: int, rate: float | None) -> str:
         """The motion to a point, at a feed rate where it does not hold any more."""
         word, *rate_word = self.dialect.feed(course.tips[k], rate).rsplit(" F", 1)
         return " ".join([word, self.orientation(program, course, k), *(f"F{text}" for text in rate_word)])
 
-    def check(self, program: Program) -> None:
+    def check(self, program: Setting) -> None:
         """Refuse what the control cannot do.
 
         Raises
@@ -129,21 +134,45 @@ def courses(plan: Plan, mounting: Mounting) -> tuple[Course, ...]:
     InvalidInput
         When the machine cannot follow a path, or there is none.
     """
-    turn, found = placement(mounting.table_from_part)[:3, :3], []
-    stand = np.zeros(len(mounting.machine.rotary))
+    found, stand = list[Course](), np.zeros(len(mounting.machine.rotary))
     for op in plan.operations:
-        if op.path is None:
-            continue
-        try:
-            along = following(mounting.machine, op.path, mounting.table_from_part, float(mounting.tool_length or 0.0),
-                              near=stand, travel=mounting.judges_travel)
-        except InvalidInput as reason:
-            raise InvalidInput(f"{op.name}: {reason}") from None
-        stand = along.rotary[-1]
-        found.append(Course(op, along, (along.tips - plan.datum) @ turn.T, along.axes @ turn.T))
+        if op.path is not None:
+            rates = np.where(op.path.kind == Motion.LINK, np.inf, plan.inputs.feedrate)
+            found.append(course_of(op.name, op.path, rates, mounting, plan.datum, stand))
+            stand = found[-1].along.rotary[-1]
     if not found:
         raise InvalidInput("the plan has no operation with an axis: there is nothing to post")
     return tuple(found)
+
+
+def course_of(name: str, path: ToolPath, rates: Array, mounting: Mounting, datum: ArrayLike = (0.0, 0.0, 0.0),
+              near: ArrayLike = ()) -> Course:
+    """A path followed by a machine.
+
+    Parameters
+    ----------
+    name : str
+    path : ToolPath
+    rates : (n,) array
+        mm/min; infinite where rapid.
+    mounting : Mounting
+    datum : (3,) array_like
+        Origin of the work coordinate system in the part's frame, mm.
+    near : (m,) array_like
+        Where the rotary axes stand before, rad; zero unless given.
+
+    Raises
+    ------
+    InvalidInput
+        When the machine cannot follow it.
+    """
+    turn = placement(mounting.table_from_part)[:3, :3]
+    try:
+        along = following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
+                          near=near, travel=mounting.judges_travel)
+    except InvalidInput as reason:
+        raise InvalidInput(f"{name}: {reason}") from None
+    return Course(name, path, rates, along, (along.tips - np.asarray(datum)) @ turn.T, along.axes @ turn.T)
 
 
 def moving_text(plan: Plan, mounting: Mounting, control: TipControl, options: Options | None = None,
@@ -170,37 +199,50 @@ def moving_text(plan: Plan, mounting: Mounting, control: TipControl, options: Op
     InvalidInput
         When the machine cannot follow a path, or the control cannot move its axes.
     """
-    program = bare_program(plan, mounting, control.dialect, options, name)
+    program = setting_of(plan.inputs, mounting, control.dialect, options, name)
     control.check(program)
+    return courses_text(program, control, courses(plan, mounting))
+
+
+def courses_text(program: Setting, control: TipControl, found: Sequence[Course]) -> str:
+    """The text of a program that carries out courses one after the other.
+
+    Parameters
+    ----------
+    program : Setting
+        That the control was asked about.
+    control : TipControl
+    found : sequence of Course
+    """
     lines = control.start(program)
-    for course in courses(plan, mounting):
-        lines += [control.dialect.comment(course.operation.name.upper()), *control.begin(program, course)]
+    for course in found:
+        lines += [control.dialect.comment(course.name.upper()), *control.begin(program, course)]
         lines += _motions(program, course, control)
         lines += control.leave(program, course)
     return "\n".join([*control.dialect.framed([*lines, *control.end(program)]), ""])
 
 
-def _motions(program: Program, course: Course, control: TipControl) -> Lines:
-    path, inputs, lines = course.operation.path, program.plan.inputs, []
-    assert path is not None
+def _motions(program: Setting, course: Course, control: TipControl) -> Lines:
+    path, lines = course.path, list[str]()
     starts, begun, passes, held = set(path.breaks[1:-1].tolist()), 0, 1, -1.0
+    rates = np.where(np.isfinite(course.rates), course.rates, program.inputs.rapid).tolist()
     for k, point in enumerate(course.along.arrival.tolist()):
         if point in starts and point != begun:
             passes += 1
             lines.append(control.dialect.comment(f"PASS {passes}"))
         begun = point
-        rate = inputs.rapid if k == 0 or path.kind[point] == Motion.LINK else inputs.feedrate
+        rate = program.inputs.rapid if k == 0 else rates[point]
         lines.append(control.block(program, course, k, None if rate == held else rate))
         held = rate
     return lines
 
 
-def rotary_words(program: Program, course: Course, k: int, digits: int, rolls_over: bool) -> Lines:
+def rotary_words(program: Setting, course: Course, k: int, digits: int, rolls_over: bool) -> Lines:
     """Rotary angles of a point as words; from 0 to below 360 degrees for axes without end that roll over.
 
     Parameters
     ----------
-    program : Program
+    program : Setting
     course : Course
     k : int
     digits : int

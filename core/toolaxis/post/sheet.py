@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from toolaxis.machine.kinematics import linear_coordinates, placement
 from toolaxis.plan.plan import Plan
-from toolaxis.post.gcode import Dialect, Program, number
-from toolaxis.post.moving import TipControl, courses
+from toolaxis.post.gcode import Dialect, Program, Setting, number
+from toolaxis.post.moving import Course, TipControl, courses
 from toolaxis.post.stations import Station
 
 Array = NDArray[np.float64]
@@ -70,10 +70,42 @@ def moving_sheet_text(program: Program, control: TipControl, file: str, verdict:
     return "\n\n".join(parts)
 
 
+def course_sheet_text(program: Setting, control: TipControl, course: Course, file: str) -> str:
+    """The setup sheet of a program made of CL data.
+
+    Parameters
+    ----------
+    program : Setting
+    control : TipControl
+    course : Course
+    file : str
+        Name of the program's file.
+
+    Returns
+    -------
+    str
+        Markdown; lengths in mm, angles in degrees.
+    """
+    machine, turned = program.machine, np.degrees(course.along.rotary)
+    general = _table(["", ""], [
+        ["program", file], ["control", control.title], ["machine", f"{machine.name} ({machine.chain})"],
+        ["work offset", "the origin of the CL data"], ["rev/min", f"{program.inputs.spindle:.0f}"],
+        ["points", f"{len(course.tips)}, of them {len(course.tips) - len(course.path.cl)} put between"],
+        ["first point", _vector(course.tips[0], 3)]])
+    rows = [[axis.name, f"{low:.3f}", f"{high:.3f}"] for axis, low, high in
+            zip(machine.rotary, turned.min(axis=0), turned.max(axis=0), strict=True)]
+    notes = [*control.notes, f"Points are rounded to {0.5 * 10 ** -control.dialect.digits:g} mm in each coordinate.",
+             "The CL data were made elsewhere: nothing was checked but that the machine's axes can follow."]
+    ranges, mind = _table(["axis", "from", "to"], rows), "\n".join(f"- {note}" for note in notes)
+    parts = [f"# Setup sheet: {program.name}", general, "## Rotary axes", ranges, "## What to mind", mind, ""]
+    return "\n\n".join(parts)
+
+
 def _courses(program: Program) -> str:
-    inputs, rows = program.plan.inputs, []
-    for course in courses(program.plan, program.mounting):
-        op, turned = course.operation, np.degrees(course.along.rotary)
+    inputs, rows = program.inputs, []
+    done = [op for op in program.plan.operations if op.path is not None]
+    for op, course in zip(done, courses(program.plan, program.mounting), strict=True):
+        turned = np.degrees(course.along.rotary)
         ranges = ["; ".join(f"{axis.name} {low:.3f} to {high:.3f}" for axis, low, high in
                             zip(program.machine.rotary, turned.min(axis=0), turned.max(axis=0), strict=True))]
         lead = "-" if op.orientation.lead is None else number(degrees(op.orientation.lead), 3)
@@ -161,9 +193,9 @@ def _origin(program: Program, station: Station) -> str:
 
 
 def _operations(program: Program, dialect: Dialect) -> str:
-    inputs, rows = program.plan.inputs, []
+    inputs, rows = program.inputs, []
     for station in program.stations:
-        op, seconds = station.operation, station.operation.seconds(program.plan.inputs.feedrate, inputs.rapid)
+        op, seconds = station.operation, station.operation.seconds(program.inputs.feedrate, inputs.rapid)
         offset = dialect.offsets[station.orientation if len(dialect.offsets) > 1 else 0]
         rows.append([op.name, str(station.orientation + 1), offset, str(op.path.passes if op.path else 0),
                      _vector(station.tips[0], 3), number(float(station.tips[:, 2].min()), 3),
@@ -191,7 +223,7 @@ def gouge_of(program: Program, dialect: Dialect, station: Station) -> float:
 
 
 def _notes(program: Program, dialect: Dialect) -> list[str]:
-    notes, allowed = list(dialect.notes), program.plan.inputs.tolerance.gouge
+    notes, allowed = list(dialect.notes), program.inputs.tolerance.gouge
     over = [station.operation.name for station in program.stations if gouge_of(program, dialect, station) > allowed]
     if over:
         notes.append(f"With the digits of this dialect the bound of the gouge exceeds {allowed:g} mm in "

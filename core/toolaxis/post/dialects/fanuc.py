@@ -7,7 +7,7 @@ cancelled after G69 and G28, is common practice and not from a manual that was a
 
 from typing import ClassVar
 
-from toolaxis.post.gcode import Dialect, Lines, Program
+from toolaxis.post.gcode import Dialect, Lines, Program, Setting
 from toolaxis.post.stations import Station
 
 
@@ -22,16 +22,16 @@ class Fanuc(Dialect):
         "G54 has its origin at the datum, rotary axes at zero there.",
         "G0 may bend rapid motion: where the spindle is tilted, links are G1 at the rapid rate.")
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Number, modes, plane off, Z to its reference point, tool, spindle."""
         return ["%", "O0001", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", *self.cancelled(),
-                *self.retracted(program), "T1 M6", "G54", f"S{program.plan.inputs.spindle:.0f} M3"]
+                *self.retracted(program), "T1 M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
 
     def cancelled(self) -> Lines:
         """The block that cancels the plane."""
         return ["G69"]
 
-    def retracted(self, program: Program) -> Lines:
+    def retracted(self, program: Setting) -> Lines:
         """Z to its reference point, length compensation off."""
         return ["G91 G28 Z0.", "G90 G49"]
 
@@ -44,7 +44,7 @@ class Fanuc(Dialect):
         """Plane off, retract."""
         return [*self.cancelled(), *self.retracted(program)]
 
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Spindle off, rotary axes to zero, end."""
         zero = " ".join(f"{axis.name}0." for axis in program.machine.rotary if not axis.by_hand)
         return ["M5", *([*program.unclamp, f"G0 {zero}", *program.clamp] if zero else []), "M30", "%"]
@@ -76,5 +76,5 @@ class Iso(Fanuc):
         """Turn the axes, or stop for them to be set by hand."""
         if any(axis.by_hand for axis in program.machine.rotary):
             return ["M5", self.comment(f"SET {self.rotary(program, station)}"), "M0",
-                    f"S{program.plan.inputs.spindle:.0f} M3"]
+                    f"S{program.inputs.spindle:.0f} M3"]
         return super().index(program, station)

@@ -8,7 +8,7 @@ the work coordinate system) is not verified: `notes` says so on every setup shee
 """
 
 from toolaxis.post.dialects.fanuc import Fanuc
-from toolaxis.post.gcode import Lines, Program
+from toolaxis.post.gcode import Lines, Program, Setting
 from toolaxis.post.stations import Station
 
 
@@ -28,7 +28,7 @@ class HaasPlane(Fanuc):
         """The block that cancels the plane."""
         return ["G269"]
 
-    def retracted(self, program: Program) -> Lines:
+    def retracted(self, program: Setting) -> Lines:
         """Z to the top in machine coordinates, which G53 is for."""
         return ["G53 G0 Z0.", "G49"]
 

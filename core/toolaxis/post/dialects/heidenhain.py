@@ -9,7 +9,7 @@ retracts along the tool axis, is common practice and not from a manual that was 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.post.gcode import Dialect, Lines, Program, number
+from toolaxis.post.gcode import Dialect, Lines, Program, Setting, number
 from toolaxis.post.stations import Station
 
 
@@ -26,9 +26,9 @@ class Heidenhain(Dialect):
     notes = ("The preset that is active has its origin at the datum, without a basic rotation.",
              "The tool retracts along its axis by M140 MB MAX before the axes turn.")
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Plane off, tool, spindle, retract."""
-        return ["PLANE RESET STAY", f"TOOL CALL 1 Z S{program.plan.inputs.spindle:.0f}", "L M3", "L M140 MB MAX"]
+        return ["PLANE RESET STAY", f"TOOL CALL 1 Z S{program.inputs.spindle:.0f}", "L M3", "L M140 MB MAX"]
 
     def orient(self, program: Program, station: Station) -> Lines:
         """Index, then the plane."""
@@ -68,7 +68,7 @@ class Heidenhain(Dialect):
         """Retract along the tool axis, plane off."""
         return ["L M140 MB MAX", "PLANE RESET STAY"]
 
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Spindle off, end."""
         return ["L M5", "L M30"]
 

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from toolaxis.errors import InvalidInput
 from toolaxis.post.dialects.fanuc import Iso
-from toolaxis.post.gcode import Dialect, Lines, Program
+from toolaxis.post.gcode import Dialect, Lines, Program, Setting
 from toolaxis.post.stations import Station
 
 
@@ -25,13 +25,13 @@ class LinuxCnc(Iso):
     rolls_over = False
     told_retract = True
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Modes with a path tolerance inside that of gouging, retract, tool, spindle."""
-        blend = program.plan.inputs.tolerance.gouge / 2
+        blend = program.inputs.tolerance.gouge / 2
         return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{blend:.4f}", *self.cancelled(),
-                "G54", *self.retracted(program), "T1 M6", f"S{program.plan.inputs.spindle:.0f} M3"]
+                "G54", *self.retracted(program), "T1 M6", f"S{program.inputs.spindle:.0f} M3"]
 
-    def retracted(self, program: Program) -> Lines:
+    def retracted(self, program: Setting) -> Lines:
         """Z to the machine coordinate at which rotary axes may turn."""
         return [f"G53 G0 Z{program.retract:.3f}"]
 

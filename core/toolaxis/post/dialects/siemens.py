@@ -12,7 +12,7 @@ from math import degrees
 
 import numpy as np
 
-from toolaxis.post.gcode import Dialect, Lines, Program, number
+from toolaxis.post.gcode import Dialect, Lines, Program, Setting, number
 from toolaxis.post.stations import Station
 
 
@@ -30,10 +30,10 @@ class Siemens(Dialect):
              "takes the one by _DIR, whose reference axis the machine's maker has set; the program supposes the axis "
              "that tilts. Compare with the angles of this sheet when the axes have turned.")
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Modes, swivel frames deleted, straight rapids, tool, spindle."""
         return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", "T1 D1", "M6", "G54",
-                f"S{program.plan.inputs.spindle:.0f} M3"]
+                f"S{program.inputs.spindle:.0f} M3"]
 
     def orient(self, program: Program, station: Station) -> Lines:
         """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
@@ -44,7 +44,7 @@ class Siemens(Dialect):
         """Nothing: the next CYCLE800 retracts Z before it swivels, in one call that a swivel data record stands for."""
         return []
 
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Retract, axes to zero, frames deleted, spindle off, end."""
         zero = number(0.0, self.angle_digits)
         home = [f"{axis.name}{zero}" for axis in program.machine.rotary]

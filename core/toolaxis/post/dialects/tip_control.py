@@ -12,7 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.post.dialects.fanuc import Fanuc
 from toolaxis.post.dialects.heidenhain import Heidenhain, signed
 from toolaxis.post.dialects.siemens import Siemens
-from toolaxis.post.gcode import Dialect, Lines, Program, number
+from toolaxis.post.gcode import Dialect, Lines, Setting, number
 from toolaxis.post.moving import Course, TipControl, rotary_words
 
 _NOTE = ("The first motion of each operation leads straight from the retracted place to its first point, with the axis "
@@ -28,15 +28,15 @@ class FanucTip(TipControl):
     notes = (_NOTE, "G43.4 is programmed in the coordinate system that is fixed to the table with the rotary axes at "
              "zero; check the parameter that says so.")
 
-    def begin(self, program: Program, course: Course) -> Lines:
+    def begin(self, program: Setting, course: Course) -> Lines:
         """Rotary axes to the first axis, then control of the tip."""
         return [*program.unclamp, f"G0 {self.orientation(program, course, 0)}", "G43.4 H1"]
 
-    def leave(self, program: Program, course: Course) -> Lines:
+    def leave(self, program: Setting, course: Course) -> Lines:
         """Control of the tip off, retract."""
         return ["G49", "G91 G28 Z0.", "G90"]
 
-    def orientation(self, program: Program, course: Course, k: int) -> str:
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
         """Positions of the rotary axes."""
         return " ".join(rotary_words(program, course, k, self.axis_digits, True))
 
@@ -51,32 +51,32 @@ class SiemensTip(TipControl):
     notes = (_NOTE, "The rotary axes are turned to the first axis before TRAORI; the control goes on from there in the "
              "same solution. The program is for those angles, in the comments.")
 
-    def start(self, program: Program) -> Lines:
+    def start(self, program: Setting) -> Lines:
         """Modes, transformations and frames off, tool, spindle, retract."""
         return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", "T1 D1", "M6", "G54",
-                f"S{program.plan.inputs.spindle:.0f} M3", self._retract(program)]
+                f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
 
-    def begin(self, program: Program, course: Course) -> Lines:
+    def begin(self, program: Setting, course: Course) -> Lines:
         """Rotary axes to the first axis, then the transformation and its work offset."""
         words = [f"{word[0]}=DC({word[1:]})" if endless else word for word, endless in
                  zip(rotary_words(program, course, 0, self.dialect.angle_digits, True),
                      (axis.high == float("inf") for axis in program.machine.rotary), strict=True)]
         return [*program.unclamp, f"G0 {' '.join(words)}", "D1", "TRAORI", "G54", "ORIWKS ORIVECT"]
 
-    def leave(self, program: Program, course: Course) -> Lines:
+    def leave(self, program: Setting, course: Course) -> Lines:
         """Transformation off, retract."""
         return ["TRAFOOF", self._retract(program)]
 
-    def end(self, program: Program) -> Lines:
+    def end(self, program: Setting) -> Lines:
         """Spindle off, end."""
         return ["M5", "M30"]
 
-    def orientation(self, program: Program, course: Course, k: int) -> str:
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
         """The axis as a vector."""
         return " ".join(f"{name}={number(value, self.axis_digits)}" for name, value in
                         zip(("A3", "B3", "C3"), course.axes[k], strict=True))
 
-    def check(self, program: Program) -> None:
+    def check(self, program: Setting) -> None:
         """Refuse a retract that nobody told.
 
         Raises
@@ -89,7 +89,7 @@ class SiemensTip(TipControl):
                                "machine coordinate at which the rotary axes may turn")
 
     @staticmethod
-    def _retract(program: Program) -> str:
+    def _retract(program: Setting) -> str:
         assert program.retract is not None
         return f"SUPA G0 Z{number(program.retract, 3)} D0"
 
@@ -104,16 +104,16 @@ class HeidenhainTip(TipControl):
     notes = (_NOTE, "The tool retracts along its axis by M140 MB MAX before the axes turn.",
              "M128 keeps the tip in its place: the tool length in the table is that to the tip.")
 
-    def begin(self, program: Program, course: Course) -> Lines:
+    def begin(self, program: Setting, course: Course) -> Lines:
         """Rotary axes to the first axis, then control of the tip."""
         free = [f"L {word}" for word in program.unclamp]
         return [*free, f"L {self.orientation(program, course, 0)} R0 FMAX", "L M128"]
 
-    def leave(self, program: Program, course: Course) -> Lines:
+    def leave(self, program: Setting, course: Course) -> Lines:
         """Control of the tip off, retract along the tool axis."""
         return ["L M129", "L M140 MB MAX"]
 
-    def orientation(self, program: Program, course: Course, k: int) -> str:
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
         """Positions of the rotary axes with their signs."""
         return " ".join(word[0] + signed(word[1:]) for word in
                         rotary_words(program, course, k, self.axis_digits, True))
