@@ -35,6 +35,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_verify(commands)
     _add_post(commands)
+    _add_reschedule(commands)
     _add_report(commands)
     _add_export(commands)
     _add_batch(commands)
@@ -149,6 +150,32 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.post")
+
+
+def _add_reschedule(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("reschedule", help="give CL data around a blade tool angles that do not turn back",
+                              description="Read CL data of four-axis milling around a blade that were made elsewhere, "
+                                          "give them tool angles with which the rotary axis does not turn back within "
+                                          "a cut, and write them as an APT file, which toolaxis post takes. The ball's "
+                                          "centres stay.")
+    sub.add_argument("file", metavar="FILE", help="an APT file, or the NC program of --machine")
+    sub.add_argument("--tool", required=True, metavar="TOOL",
+                     help="with a ball end: ball:8, tapered:6x3x4, a file or a name")
+    sub.add_argument("--holder", metavar="FILE|SPEC", help="TOML file, or radius,z rows: 10,0;10,40;25,40;25,80")
+    sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")
+    sub.add_argument("--curve", default="least", choices=("least", "keys"),
+                     help="least peak acceleration (default), or key points and rounded corners")
+    sub.add_argument("--about", metavar="X,Y,Z",
+                     help="direction of the rotary axis (default: the one that the tool axes of FILE turn about)")
+    sub.add_argument("--part", metavar="PART.step", help="the part in the coordinates of FILE: the new path is proven "
+                                                         "against it, or refused")
+    sub.add_argument("--depth", type=float, default=0.01, metavar="MM",
+                     help="by how much cuts of FILE may lie below the part (default: 0.01)")
+    sub.add_argument("--machine", metavar="NAME|FILE", help="the machine of a program; it must be able to follow")
+    sub.add_argument("--offset", metavar="X,Y,Z", help="the part's origin in machine coordinates, all axes at zero, mm")
+    sub.add_argument("--out", metavar="FILE", help="the APT file (default: NAME-rescheduled.apt beside FILE)")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.reschedule")
 
 
 def _add_report(commands: "argparse._SubParsersAction[_Parser]") -> None:

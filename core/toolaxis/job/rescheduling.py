@@ -1,0 +1,152 @@
+"""CL data around a blade that were made elsewhere, with new tool angles, held against the part where it is given."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import following
+from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.blade import CLEARANCE, Swing
+from toolaxis.orient.blade_path import Rescheduled, reschedule_path
+from toolaxis.orient.moving import kept, prove_moving, spans_of
+from toolaxis.orient.proof import COMPONENTS
+from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
+from toolaxis.post.locations import CutterLocations
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+#: By how much cuts of the file may lie below the part, mm: what chords and digits of other systems come to.
+DEPTH = 0.01
+#: Turns smaller than this are none, rad.
+_STILL = 1e-6
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How the rotary axis turns along the cuts.
+
+    Attributes
+    ----------
+    steepest : float
+        Greatest turn over the way of the cutter's centre, rad/mm.
+    backwards : int
+        How often it turns back.
+    total : float
+        All that it turns, rad.
+    """
+
+    steepest: float
+    backwards: int
+    total: float
+
+
+@dataclass(frozen=True, eq=False)
+class NewAngles:
+    """Cutter locations with new tool angles.
+
+    Attributes
+    ----------
+    locations : CutterLocations
+    made : Rescheduled
+    before, after : Turning
+    clear : bool
+        Whether they were held against a part.
+    """
+
+    locations: CutterLocations
+    made: Rescheduled
+    before: Turning
+    after: Turning
+    clear: bool
+
+
+def reschedule(found: CutterLocations, tool: Tool, *, curve: str = "least", direction: ArrayLike | None = None,
+               clearance: float = CLEARANCE, faces: tuple[Face, ...] = (), depth: float = DEPTH,
+               mounting: Mounting | None = None, progress: Progress = NO_PROGRESS) -> NewAngles:
+    """Give cutter locations around a blade new tool angles; the ball's centres, feed rates and kinds of motion stay.
+
+    Parameters
+    ----------
+    found : CutterLocations
+        From `toolaxis.read_cl`: cuts around a blade, with the axes of four-axis milling.
+    tool : Tool
+        With a ball end.
+    curve : str
+        "least": least peak acceleration; "keys": key points and rounded corners.
+    direction : (3,) array_like, optional
+        The rotary axis; that of the file's own tool axes unless given.
+    clearance : float
+        Of tool angles from their limits, rad.
+    faces : tuple of Face
+        Of the part, in the file's coordinates: the new path is proven against them.
+    depth : float
+        By how much the cutter may lie below them, mm.
+    mounting : Mounting, optional
+        A machine that must be able to follow.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When the file is no path around a blade, the machine cannot follow, or tool and part meet; the message gives
+        the place and the amount.
+
+    Notes
+    -----
+    **Source**: [stheta2023] Sec. 2.2, 2.3 for the angles; the proof is that of all moving axes.
+    """
+    made = reschedule_path(found.path, tool, curve=curve, clearance=clearance, direction=direction, progress=progress)
+    if mounting is not None:
+        following(mounting.machine, made.path, mounting.table_from_part, float(mounting.tool_length or 0.0),
+                  travel=mounting.judges_travel)
+    if faces:
+        _prove(made.path, tool, faces, depth, progress)
+    before, after = (_turning(path, tool, made.swing) for path in (found.path, made.path))
+    return NewAngles(replace(found, tip=made.path.cl, axis=made.path.axis), made, before, after, bool(faces))
+
+
+def _turning(path: ToolPath, tool: Tool, swing: Swing) -> Turning:
+    cut = np.flatnonzero(path.kind == Motion.CUT)
+    centre, angle = path.cl + tool.corner_radius * path.axis, swing.angles(path.axis)
+    turn = np.diff(angle)[cut[cut > 0] - 1]
+    way = np.linalg.norm(np.diff(centre, axis=0), axis=1)[cut[cut > 0] - 1]
+    sense = np.sign(turn[np.abs(turn) > _STILL])
+    steep = np.abs(turn[way > 0]) / way[way > 0]
+    return Turning(float(steep.max(initial=0.0)), int((np.diff(sense) != 0).sum()), float(np.abs(turn).sum()))
+
+
+def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, progress: Progress) -> None:
+    """Refuse a path that meets the part: cutter below it, shank or holder too near, or links too near."""
+    tolerance = Tolerance()
+    far = [tolerance.shank_clearance, tolerance.holder_clearance]
+    proof = prove_moving(path, tool, (Group(SKIN, faces, np.array([-depth, *far])),), progress=progress)
+    if proof.witness is not None:
+        raise InvalidInput(f"the new tool angles are refused: {_said(proof.witness)}; take a slimmer or longer tool, "
+                           "another --curve, or a rotary axis that leans away")
+    # links between cuts: those that leave a cut or lead to one begin or end on the part and were judged above
+    free = Group(OTHER, faces, np.array([tolerance.cutter_clearance, *far]))
+    cut = path.kind == Motion.CUT
+    on = np.flatnonzero((path.kind[1:] == Motion.LINK) & ~cut[:-1] & ~np.append(cut[2:], False))
+    if len(on):
+        spans = spans_of(path).rows(on)
+        bad = on[~kept(tool, free, spans, free.required)]
+        if len(bad):
+            at = np.round(path.cl[bad[0] + 1], 2).tolist()
+            raise InvalidInput(f"the new tool angles are refused: on the rapid motion to point {bad[0] + 1}, at {at}, "
+                               "the tool comes too near to the part; retract farther between the cuts")
+
+
+def _said(witness: Witness) -> str:
+    where = f"face {witness.label} at {np.round(witness.point, 2).tolist()}"
+    name = "cutter" if witness.reason == GOUGE else COMPONENTS[max(witness.reason - CUTTER, 0)]
+    if witness.distance < 0:
+        return f"the {name} goes {-witness.distance:.3f} mm into {where}"
+    return f"the {name} comes within {witness.distance:.3f} mm of {where}"
