@@ -21,6 +21,8 @@ from toolaxis.job.folder import made_folders, remove_empty
 
 JOB, JOURNAL, LOCK, WORK = "job.json", "journal.jsonl", ".lock", ".work"
 _SUMMARIES = ("summary.csv", "summary.json")
+#: What other commands write into the folder of a job from its plan.
+_DERIVED = ("report.html", "plan.step", "plan.glb")
 
 
 class BatchFolder:
@@ -200,7 +202,7 @@ class BatchFolder:
     def _swap(self, stage: Path, target: Path) -> None:
         """Put a folder in its place; an earlier one stays under another name where somebody else put files into it."""
         if target.exists():
-            ours = {JOB, *(_read(target) or {"files": {}})["files"]}
+            ours = {JOB, *_DERIVED, *(_read(target) or {"files": {}})["files"]}
             own = any(path.name not in ours for path in target.iterdir())
             number = 1
             while (kept := target.with_name(f"{target.name}.earlier-{number}")).exists():

@@ -1,4 +1,4 @@
-"""`toolaxis report`: a plan as one HTML page."""
+"""`toolaxis report`: a plan, or a batch, as HTML pages."""
 
 from argparse import Namespace
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from toolaxis.job.reporting import report
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
-    """Write the page of a plan's folder.
+    """Write the page of a plan's folder, or those of a batch's.
 
     Parameters
     ----------
@@ -23,8 +23,12 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     int
         0, whatever the page says of the plan.
     """
+    from toolaxis.batch.report import is_batch, report_batch
+
+    folder = Path(given.folder)
+    write = report_batch if is_batch(folder) else report
     with shown_progress(asked) as progress:
-        made = report(Path(given.folder), Path(given.out) if given.out else None, progress)
+        made = write(folder, Path(given.out) if given.out else None, progress)
     if given.json:
         print_json({"page": str(made), "bytes": made.stat().st_size})
     say(f"toolaxis: {made}")

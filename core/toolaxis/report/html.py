@@ -106,27 +106,41 @@ def page(plan: Plan, beside: Beside, name: str) -> str:
     data = {name: _json(chart) for name, chart in common.items()}
     data |= {f"{name}:{what}": _json(chart) for name, found in own.items() for what, chart in found.items()}
     chooser = [{"name": name, "said": _said(plan, name), "charts": list(found)} for name, found in own.items() if found]
+    warnings = warnings_of(plan, beside.verdict)
     context = {
         "name": name, "plan": plan, "version": __version__, "verdict": _verdict_word(beside.verdict),
-        "warnings": warnings_of(plan, beside.verdict), "figures": _figures(plan),
+        "warnings": warnings, "told": json.dumps([[one.level, one.text] for one in warnings]),
+        "figures": _figures(plan),
         "tables": _tables(plan, beside, (done, seconds)), "chooser": chooser, "data": data,
         "still": b64encode(beside.still).decode("ascii"),
         "bounds": _bounds(made.off, made.apart, beside, bool(copies)),
-        "plotly": plotly.offline.get_plotlyjs(), "style": _text("page.css"), "script": _text("page.js"),
+        "plotly": plotly.offline.get_plotlyjs(), "style": page_text("page.css"), "script": page_text("page.js"),
         "source": PurePath(beside.source).name or "given as faces", "has_feeds": bool(beside.feeds),
         "has_views": bool(beside.views),
     }
-    return _template().render(context)
+    return template("page.html.j2").render(context)
 
 
-def _text(name: str) -> str:
+def page_text(name: str) -> str:
+    """A file of the page: template, style or script.
+
+    Parameters
+    ----------
+    name : str
+    """
     return files("toolaxis.report").joinpath(name).read_text("utf-8")
 
 
 @cache
-def _template() -> jinja2.Template:
+def template(name: str) -> jinja2.Template:
+    """A template of this package, by the name of its file.
+
+    Parameters
+    ----------
+    name : str
+    """
     world = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    return world.from_string(_text("page.html.j2"))
+    return world.from_string(page_text(name))
 
 
 def _json(chart: Chart) -> str:
