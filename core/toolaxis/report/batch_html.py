@@ -63,7 +63,8 @@ def batch_page(name: str, records: Sequence[Mapping[str, Any]], leaves: Mapping[
         for text in job["troubles"]:
             troubles.setdefault(text, []).append(job)
     context = {"name": name, "version": __version__, "style": page_text("page.css"), "jobs": jobs, "counts": counts,
-               "complete": not troubles, "troubles": list(troubles.items()), "headings": _HEADINGS, "figures": _figures(records)}
+               "complete": not troubles, "troubles": list(troubles.items()), "headings": _HEADINGS,
+               "figures": _figures(records)}
     return template("batch.html.j2").render(context)
 
 
