@@ -210,3 +210,54 @@ def test_what_cannot_be_is_a_sentence_and_leaves_nothing(document, whole_parts, 
     with pytest.raises(ta.InvalidInput, match=words):
         bridge.plan(document, (thing, name), TOOL, 0.4, **given)
     assert [one.Name for one in document.Objects] == before
+
+
+def sub_surfaces(plan):
+    return [one.Label.rsplit("Face", 1)[1] for one in operations_in(plan)]
+
+
+def test_sub_surfaces_are_merged_split_and_drawn_by_hand(document, whole_parts):
+    """Areas stay the face's, what was drawn is kept when the plan is made again, and each change is one undo step."""
+    document.UndoMode = 1
+    thing, name = whole_parts.roof(document)
+    number, area = name[4:], thing.Shape.Faces[int(name[4:]) - 1].Area
+    made = bridge.plan(document, (thing, name), TOOL, 0.4, method="normal")
+    plan = plan_of(made[0])
+    line = document.addObject("Part::Feature", "Line")
+    line.Shape = polygon([(9, -2, 40), (12, 8, 40), (9, 18, 40)])
+    names = {one.Name for one in document.Objects}
+
+    def meshes():
+        return sum(mesh.Mesh.Area for one in operations_in(plan) for mesh in shown(one, SURFACE))
+
+    bridge.split(operations_in(plan)[0], line)
+    assert sub_surfaces(plan) == [f"{number}a", f"{number}b"] and meshes() == pytest.approx(area, rel=0.02)
+    assert all(one.DrawnByHand for one in operations_in(plan))
+    left, right = operations_in(plan)
+    borders = [json.loads(one.Details)["region"] for one in (left, right)]
+    bridge.recompute(plan)
+    assert [json.loads(one.Details)["region"] for one in operations_in(plan)] == borders
+    document.undo()
+    document.undo()
+    assert {one.Name for one in document.Objects} == names
+    document.redo()
+    document.redo()
+    line.Shape = polygon([(6, 4, 40), (20, 4, 40), (20, 12, 40), (6, 12, 40), (6, 4, 40)])
+    bridge.split(operations_in(plan)[0], line)
+    assert len(sub_surfaces(plan)) == 3 and meshes() == pytest.approx(area, rel=0.02)
+    bridge.merge(operations_in(plan))
+    assert sub_surfaces(plan) == [number] and operations_in(plan)[0].DrawnByHand
+    bridge.split(operations_in(plan)[0])
+    assert len(sub_surfaces(plan)) == 2
+    for wrong, words in ((lambda: bridge.merge(operations_in(plan)[:1]), "two or more of one face"),
+                         (lambda: bridge.split(operations_in(plan)[0], thing), "separate lines")):
+        before = {one.Name for one in document.Objects}
+        with pytest.raises(ta.InvalidInput, match=words):
+            wrong()
+        assert {one.Name for one in document.Objects} == before
+
+
+def polygon(points):
+    import Part as FreecadPart
+
+    return FreecadPart.makePolygon([FreeCAD.Vector(*point) for point in points])

@@ -12,7 +12,7 @@ import FreeCAD
 ROOT = Path(__file__).resolve().parents[3]
 CORE = ROOT / "core"
 RESOURCES = ROOT / "resources"
-PUBLIC = ("is_stale", "make_jobs", "plan", "recompute", "verify")
+PUBLIC = ("is_stale", "make_jobs", "merge", "plan", "recompute", "split", "verify")
 
 if (CORE / "toolaxis").is_dir() and str(CORE) not in sys.path:
     sys.path.insert(0, str(CORE))

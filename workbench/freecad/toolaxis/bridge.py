@@ -175,6 +175,59 @@ def recompute(operation, progress=None):
     return apply(operation.Document, inputs, made, operation)
 
 
+def merge(operations, progress=None):
+    """Put sub-surfaces of one face together and plan them again, as one undo step.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+        Two or more; what they make together has to hang together.
+    progress : toolaxis.progress.Progress, optional
+
+    Returns
+    -------
+    list of App.DocumentObject
+        The operations of the plan.
+
+    Raises
+    ------
+    ToolAxisError
+        In one sentence; the document is then as it was.
+    """
+    from .byhand import merged
+
+    owner, inputs = merged([operation_of(one) for one in operations])
+    return apply(owner.Document, inputs, task(inputs)(progress_of(progress)), owner)
+
+
+def split(operation, line=None, parameter="", at=None, progress=None):
+    """Cut a sub-surface apart and plan its pieces, as one undo step.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    line : App.DocumentObject, optional
+        A drawn line with edges; a closed one cuts a new sub-surface out of all of the face that it meets.
+    parameter, at : str, float, optional
+        Without a line: the parameter that is constant on the cut, and its value; else the middle of the longer one.
+    progress : toolaxis.progress.Progress, optional
+
+    Returns
+    -------
+    list of App.DocumentObject
+        The operations of the plan.
+
+    Raises
+    ------
+    ToolAxisError
+        In one sentence; the document is then as it was.
+    """
+    from .byhand import split as cut
+
+    owner, inputs = cut(operation_of(operation), line, parameter, at)
+    return apply(owner.Document, inputs, task(inputs)(progress_of(progress)), owner)
+
+
 def planned_with(operation):
     """What is planned again for an operation: itself, or its whole plan where blades were planned together.
 

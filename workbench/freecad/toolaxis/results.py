@@ -10,6 +10,7 @@ from .objects import is_plan, operations_in
 from .objects.belongings import GROUP, child, frame_of, loose
 from .objects.copies import Tree
 from .objects.frames import add_frame, place_frame
+from .objects.machine import keep_angles
 from .objects.operation import Operation, mark, set_inputs, set_results
 from .objects.passes import commands, fill_passes
 from .objects.properties import assign
@@ -21,6 +22,9 @@ from .places import chain_of, placement_from
 from .staleness import digest, signature
 
 translate = FreeCAD.Qt.translate
+
+#: With more operations than this, work coordinate systems are hidden at first: they have one origin.
+_FEW = 4
 
 
 def apply(document, inputs, plan, replaces=None):
@@ -61,6 +65,7 @@ def apply(document, inputs, plan, replaces=None):
             made.append(operation)
             _fill(operation, _alone(inputs, owner), plan, (op, owner[2], colours.get(op.number)))
             _lock(operation, inputs, _key(op, owner))
+            keep_angles(operation, plan, op)
         tree.finish(made, chain_of(owners[0][0]), list(standing.values()))
         if is_plan(group):
             keep_plan(group, inputs, plan)
@@ -180,9 +185,9 @@ def _fill(operation, inputs, plan, which):
     _keep(operation, inputs, (op, plan), f"{number}{label}" if label else str(number))
     remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
     if op.done:
-        frame = _standing_frame(operation, op, thing, title)
+        frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
         _standing_passes(operation, op, (frame, inputs.feedrate), title)
-        _standing_tool(operation, plan.tool, title)
+        _standing_tool(operation, plan, title)
     else:
         remove([one for one in operation.Group if not is_shown(one)])
     show_surface(operation, op, chain_of(thing), colour)
@@ -221,8 +226,8 @@ def region_of(op, plan):
     return None if same else [loop.tolist() for loop in op.face.trims]
 
 
-def _standing_frame(operation, op, part, title):
-    document = operation.Document
+def _standing_frame(operation, op, where, title):
+    document, (part, shown) = operation.Document, where
     frame = frame_of(operation)
     if frame is None:
         remove(loose(operation))
@@ -230,7 +235,7 @@ def _standing_frame(operation, op, part, title):
         operation.addObject(frame)
         operation.FrameFeatures = [feature.Name for feature in getattr(frame, "OriginFeatures", ())]
         if FreeCAD.GuiUp:
-            frame.ViewObject.Visibility = True
+            frame.ViewObject.Visibility = shown
     frame.Label = translate("ToolAxis", "Work coordinates {}").format(title)
     place_frame(frame, placement_from(op.frame.part_from_work), chain_of(part))
     return frame
@@ -253,7 +258,7 @@ def _standing_passes(operation, op, frame, title):
         passes.ViewObject.StartPosition = first
 
 
-def _standing_tool(operation, tool, title):
+def _standing_tool(operation, plan, title):
     document = operation.Document
     standing = child(operation, "Part::FeaturePython")
     passes = child(operation, "Path::Feature")
@@ -264,13 +269,14 @@ def _standing_tool(operation, tool, title):
             from .views.tool import ToolView
 
             ToolView(standing.ViewObject)
+            standing.ViewObject.Visibility = len(plan.operations) == 1  # several would hide what they machine
         operation.addObject(standing)
     if standing.Passes != passes:
         standing.Passes = passes
         standing.setExpression("Placement", None)
         standing.setExpression("Placement", f"{passes.Name}.Placement * Station")
     standing.Label = translate("ToolAxis", "Tool {}").format(title)
-    standing.Shape = tool_shape(tool)
+    standing.Shape = tool_shape(plan.tool)
     standing.Proxy.execute(standing)
 
 

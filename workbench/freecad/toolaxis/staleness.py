@@ -6,6 +6,8 @@ import json
 _SAME = 1e-6
 _SUMS = 8
 _GRID = 4
+#: Shapes that were looked at last, with their points, and how many.
+_SEEN, _KEPT = [], 6
 #: Inputs that older documents do not have, with what stood for them.
 _USUAL = {"regions": None, "orientations": None, "method": "sphere"}
 
@@ -36,13 +38,26 @@ def signature(things, obstacles=(), turned=False):
     own = shapes[0].Placement.inverse().toMatrix()
     found = []
     for shape in shapes:
-        rows = np.array(_points(shape), dtype=float)
+        rows = _rows(shape)
         turn = np.array(own.A, dtype=float).reshape(4, 4)
         values = (rows @ turn[:3, :3].T + turn[:3, 3]).ravel()
         index = np.arange(1, len(values) + 1)
         found += [float(len(shape.Faces)), float(len(values))]
         found += [float(np.cos(index * (0.7 + 1.1 * k)) @ values) for k in range(_SUMS)]
     return found + ([float(x) for x in own.A] if turned else [])
+
+
+def _rows(shape):
+    """Points of a shape, (n, 3); looked at once for each shape: parts with blades have hundreds of faces."""
+    import numpy as np
+
+    for known, rows in _SEEN:  # holding the shape itself, so that none of another shape has its place in memory
+        if known.isSame(shape):
+            return rows
+    rows = np.array(_points(shape), dtype=float)
+    _SEEN.insert(0, (shape, rows))
+    del _SEEN[_KEPT:]
+    return rows
 
 
 def _points(shape):

@@ -9,8 +9,8 @@ from PySide import QtCore, QtWidgets
 from .. import RESOURCES, bridge
 from ..objects.belongings import child
 from ..tasks import Work, sentence
-from .axisview import fill, measures
 from .fields import load_form, tell
+from .figures import fill, measures
 from .hemisphere import HemisphereMap
 from .legend import Legend
 from .panel import Panel
@@ -74,6 +74,8 @@ class OperationPanel(Panel):
 
     def _move(self, value):
         if self.tool is not None:
+            if not self.tool.ViewObject.Visibility:
+                self.tool.ViewObject.Visibility = True
             self.tool.Position = value / self.form.slide.maximum()
 
     def _draw_map(self):

@@ -9,8 +9,8 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..tasks import Work, sentence
-from .axisview import fill
 from .fields import fine_text, length_text, load_form, tell
+from .figures import fill
 from .paint import WHAT, Paint, skins_of
 from .panel import Panel
 from .preview import view_of
