@@ -1,5 +1,7 @@
 """Machines of documents: which there are, both solutions of an axis, and the way of the machine between operations."""
 
+import json
+
 import FreeCAD
 import numpy as np
 import pytest
@@ -138,3 +140,43 @@ def test_a_machine_in_a_document_is_one_step(document, parts):
     document.undo()
     document.undo()
     assert machine_of(document) is None and not operation.Stale
+
+
+LIMITS = "machine:ab-trunnion@0,0,20"
+
+
+def test_a_plan_for_a_machine_shows_its_angles_and_is_written_for_it(document, parts, tmp_path):
+    from dataclasses import replace
+
+    from freecad.toolaxis import bridge
+    from freecad.toolaxis.exporting import Wish, export
+
+    thing = parts.block(document)
+    inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), limits=TEXT)
+    mounted = machines.mounting(TEXT, inputs.assembled())
+    second = machines.ways_to_hold(mounted, parts.LEANING, TIPS)[1]
+    assert not second.reason, second.reason
+    plan = parts.quick_plan(inputs, Vector(*mounted.axis_at(second.rotary)))
+    plan = replace(plan, machine=mounted, operations=(replace(plan.operations[0], rotary=tuple(second.rotary)),))
+    made = bridge.apply(document, inputs, plan)[0]
+    assert made.Limits == TEXT and not made.Stale and bridge.inputs_of(made).limits == TEXT
+    assert len(made.RotaryAngles) == 2 and made.RotaryAngles[0] == second.text(mounted.machine)
+    names = export(made, tmp_path / "plan", Wish("linuxcnc", "bc-table-table", (0, 0, 20)))
+    written = json.loads((tmp_path / "plan" / "plan.json").read_text())
+    assert written["machine"]["name"].startswith("BC") and written["inputs"]["limits"] == ""
+    angles = " ".join(f"{axis.name}{np.degrees(angle):.5f}" for axis, angle in zip(mounted.machine.rotary,
+                                                                                  second.rotary, strict=True))
+    assert "program-linuxcnc.ngc" in names and angles in (tmp_path / "plan" / "program-linuxcnc.ngc").read_text()
+
+
+@pytest.mark.long
+def test_planning_for_a_machine_allows_what_it_holds(document, parts):
+    from freecad.toolaxis import bridge
+
+    thing = parts.block(document)
+    inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), scallop=0.6, limits=LIMITS)
+    made = bridge.apply(document, inputs, bridge.task(inputs)(parts.NO_PROGRESS))[0]
+    assert made.Outcome == "feasible" and len(made.RotaryAngles) == 2, made.Reasons
+    assert machines.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
+    assert "machine" not in made.NotChecked
+    assert 1 in json.loads(made.AxisMap)["map"]["reason"], "axes that the machine does not hold are grey on the map"

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 
 from .arguments import operation_of, progress_of
+from .machines import PREFIX, in_order, mounting
+from .objects.machine import angles_kept, nearest
 
 #: What operations of one folder have in common, and how it is called in messages.
 _SHARED = {"tool": "tools", "stickout": "stick-outs", "shank": "shanks", "holder": "holders",
@@ -115,6 +117,7 @@ def plan_task(operations):
     stands = [Standing.of(operation) if operation.Motions else None for operation in operations]
     kept = [(operation.AxisMap, operation.Details) for operation in operations]
     tool, job = together.assembled(), together.job()
+    angles = [angles_kept(operation) for operation in operations]
 
     def compute(progress):
         from toolaxis.plan.plan import Plan, outcome_of
@@ -122,7 +125,10 @@ def plan_task(operations):
         part, bodies = source.read(progress)
         made = [_operation(k, part, (standing, number, texts)) for k, (standing, number, texts)
                 in enumerate(zip(stands, numbers, kept, strict=True), 1)]
-        return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made))
+        mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
+        if mounted is not None:
+            made = _held(made, mounted, angles)
+        return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
 
     return compute
 
@@ -188,6 +194,19 @@ def _operation(number, part, stands):
         return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))
     standing = replace(standing, details=details)
     return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
+
+
+def _held(made, mounted, angles):
+    """Operations with the rotary angles at which the machine that they were planned for holds them: those that the
+    document tells, else the nearest ones."""
+    done = [(op, kept) for op, kept in zip(made, angles, strict=True) if op.done]
+    rows = in_order(mounted, [(op.orientation.axis, op.path.cl) for op, _ in done])
+    found = {}
+    for (op, kept), (ways, taken) in zip(done, rows, strict=True):
+        taken = nearest(ways, kept) if kept and ways else taken
+        if taken >= 0 and ways:
+            found[op.number] = tuple(map(float, ways[taken].rotary))
+    return [replace(op, rotary=found.get(op.number, ())) for op in made]
 
 
 def _datum(made, source):

@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 
+from .machines import PREFIX
 from .places import matrix_of
 
 
@@ -133,7 +134,8 @@ class Inputs:
         from toolaxis.plan.plan import Inputs as JobInputs
 
         return JobInputs(self.scallop, self.allowance, method=self.method, objective=self.objective,
-                         direction=self.direction, limits=self.limits, feedrate=self.feedrate, spindle=self.spindle)
+                         direction=self.direction, limits="" if self.limits.startswith(PREFIX) else self.limits,
+                         feedrate=self.feedrate, spindle=self.spindle)
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes.

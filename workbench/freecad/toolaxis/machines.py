@@ -4,7 +4,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+import FreeCAD
+
 from .preferences import machines_folder
+
+translate = FreeCAD.Qt.translate
 
 #: A machine among the limits of the axis: "machine:bc-table-table@0,0,60".
 PREFIX = "machine:"
@@ -25,6 +29,22 @@ def available():
         for path in sorted(path for ending in ("*.toml", "*.fcm") for path in folder.glob(ending)):
             found.setdefault(path.stem if path.stem not in found else path.name, str(path))
     return found
+
+
+def offered(document):
+    """Machines as limits of the axis, (what is shown, text): that of the document with its place, then all others.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+    from .objects.machine import machine_of
+
+    found, standing = [], machine_of(document)
+    if standing is not None:
+        found.append((standing.Label, text_of(standing.Machine, tuple(standing.Offset))))
+    return found + [(translate("ToolAxis", "machine {}").format(shown), text_of(name))
+                    for shown, name in available().items()]
 
 
 def folders():
@@ -218,3 +238,16 @@ def in_order(mounted, operations):
         stand = ways[taken].rotary if taken >= 0 else stand
         found.append((ways, taken))
     return found
+
+
+def texts_of(machine, ways, taken):
+    """The angles of an operation as its property holds them, the solution that is taken first.
+
+    Parameters
+    ----------
+    machine : toolaxis.machine.configurations.Machine
+    ways : sequence of Held
+    taken : int
+    """
+    order = sorted(range(len(ways)), key=lambda k: k != taken)
+    return [ways[k].text(machine) + (f" ({ways[k].reason})" if ways[k].reason else "") for k in order]

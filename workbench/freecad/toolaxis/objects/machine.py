@@ -82,6 +82,60 @@ def place_machine(document, name, offset, found):
     return thing
 
 
+def keep_angles(operation, plan, op):
+    """Write the rotary angles of an operation that was planned for a machine, both solutions, the chosen one first.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    plan : toolaxis.plan.plan.Plan
+    op : toolaxis.plan.operation.Operation
+    """
+    if plan.machine is None or not op.done:
+        if "RotaryAngles" in operation.PropertiesList and not op.done:
+            operation.RotaryAngles = []
+        return
+    from dataclasses import replace
+
+    from ..machines import texts_of, ways_to_hold
+
+    mounted = replace(plan.machine, tool_length=plan.tool.gauge_length)
+    ways = ways_to_hold(mounted, op.orientation.axis, op.path.cl)
+    ensure(operation, _ANGLES)
+    assign(operation, RotaryAngles=texts_of(mounted.machine, ways, nearest(ways, op.rotary)))
+
+
+def angles_kept(operation):
+    """The rotary angles that an operation tells first, rad; empty without any.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    from math import radians
+    from re import findall
+
+    texts = getattr(operation, "RotaryAngles", None) or [""]
+    return tuple(radians(float(number)) for number in findall(r"[ABC] (-?[\d.]+(?:e-?\d+)?)\u00b0", texts[0]))
+
+
+def nearest(ways, rotary):
+    """The solution that stands at given angles, whole turns aside; the first where none are given.
+
+    Parameters
+    ----------
+    ways : sequence of freecad.toolaxis.machines.Held
+    rotary : sequence of float
+        rad
+    """
+    import numpy as np
+
+    if not ways or len(rotary) != len(ways[0].rotary):
+        return 0
+    away = [np.abs(np.mod(way.rotary - np.array(rotary) + np.pi, 2 * np.pi) - np.pi).max(initial=0.0) for way in ways]
+    return int(np.argmin(away))
+
+
 def _range(axis):
     """An axis with its range, in mm or degrees."""
     from math import degrees, isfinite

@@ -6,7 +6,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from .. import RESOURCES
-from ..machines import available, in_order, mounting, text_of
+from ..machines import available, in_order, mounting, text_of, texts_of
 from ..objects.machine import machine_of, place_machine
 from ..tasks import Work, sentence
 from .fields import load_form, tell
@@ -55,7 +55,7 @@ class MachinePanel(Panel):
         if self.found is None:
             return False
         mounted, rows, _ = self.found
-        texts = [(operation, _texts(mounted.machine, ways, taken))
+        texts = [(operation, texts_of(mounted.machine, ways, taken))
                  for operation, (ways, taken) in zip(self.operations, rows, strict=True)]
         try:
             place_machine(self.document, self.machine, self.offset, texts)
@@ -294,9 +294,3 @@ def _middle(path):
 
     cuts = path.cl[np.asarray(path.kind) == Motion.CUT]
     return cuts[len(cuts) // 2] if len(cuts) else path.cl[0]
-
-
-def _texts(machine, ways, taken):
-    """The angles of an operation as its property holds them, the solution that is taken first."""
-    order = sorted(range(len(ways)), key=lambda k: k != taken)
-    return [ways[k].text(machine) + (f" ({ways[k].reason})" if ways[k].reason else "") for k in order]

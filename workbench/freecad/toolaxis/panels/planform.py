@@ -5,6 +5,7 @@ from math import degrees
 import FreeCAD
 from PySide import QtWidgets
 
+from ..machines import PREFIX, mounting
 from .fields import BodyList, FaceList, OutlineTable, QuantityField
 
 translate = FreeCAD.Qt.translate
@@ -43,7 +44,6 @@ class PlanForm:
         self.counts = {name: (self._find(name, QtWidgets.QComboBox), self._find(f"{name}Number", QtWidgets.QSpinBox))
                        for name in ("regions", "orientations")}
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
-        self._other_limits = ""
         for combo, _ in self.counts.values():
             combo.currentIndexChanged.connect(self._show_what_counts)
         self.kind.currentIndexChanged.connect(self._show_what_counts)
@@ -145,7 +145,18 @@ class PlanForm:
         if choice == _ROTARY:
             return (f"rotary:tilt={values['tiltLow']}..{values['tiltHigh']},turn={values['turnLow']}.."
                     f"{values['turnHigh']},z={x}/{y}/{z}" + self._turn_zero())
-        return self._other_limits if choice > _ROTARY else ""
+        return (self.limits.currentData() or "") if choice > _ROTARY else ""
+
+    def offer_machines(self, machines):
+        """Offer machines as limits of the axis.
+
+        Parameters
+        ----------
+        machines : list of (str, str)
+            What is shown, and the text that stands for it.
+        """
+        for shown, text in machines:
+            self.limits.addItem(shown, text)
 
     def _turn_zero(self):
         """Where turn 0 points, when the middle lies along x and the usual +x has no direction across it."""
@@ -163,7 +174,7 @@ class PlanForm:
         from toolaxis.machine.limits import Cone, RotaryRanges, parse_limits
 
         defaults = {"cone": 60.0, "tiltLow": 0.0, "tiltHigh": 90.0, "turnLow": -180.0, "turnHigh": 180.0}
-        found = parse_limits(text) if text else None
+        found = parse_limits(text) if text and not text.startswith(PREFIX) else None
         middle, choice = (0.0, 0.0, 1.0), _NO_LIMITS
         if isinstance(found, Cone):
             middle, choice, defaults["cone"] = found.direction, _CONE, degrees(found.tilt)
@@ -172,8 +183,10 @@ class PlanForm:
             for name in ("tilt", "turn"):
                 defaults[f"{name}Low"], defaults[f"{name}High"] = (degrees(v) for v in getattr(found, name))
         elif text:
-            self._other_limits, choice = text, 3
-            self.limits.addItem(text)
+            choice = self.limits.findData(text)
+            if choice < 0:
+                choice = self.limits.count()
+                self.limits.addItem(text, text)
         for spin, value in zip(self.middle, middle, strict=True):
             spin.setValue(value)
         for name, value in defaults.items():
@@ -282,5 +295,7 @@ def check(values):
     inputs = Inputs(**{**values, "faces": (), "obstacles": ()})
     inputs.job().check_tool(inputs.assembled())
     inputs.check_counts()
-    if values["limits"]:
+    if values["limits"].startswith(PREFIX):
+        mounting(values["limits"], inputs.assembled())
+    elif values["limits"]:
         parse_limits(values["limits"])

@@ -9,6 +9,7 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..cam import speeds
+from ..machines import offered
 from ..objects import is_operation
 from ..reading import titles_of
 from ..tasks import Work, sentence
@@ -96,6 +97,7 @@ class PlanPanel(Panel):
         self.form.tool.addItems([name for name, _ in self.tools])
         self.given = inputs.pieces
         self.keeps = self.operation is not None and is_operation(self.operation) and bool(self.given)
+        self.fields.offer_machines(offered(self.document))
         self.fields.fill(inputs)
         bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
         self.fields.avoid.offer(bodies, inputs.obstacles)
