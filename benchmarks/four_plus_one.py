@@ -29,8 +29,9 @@ from toolaxis.tools.assembly import Tool
 FACES = ("freeform", "saddle", "hyperbolic_paraboloid")
 MACHINE, TOOL, SCALLOP = "mikron-ucp-710", "torus:12x1", 0.02
 STEP = np.radians(0.5)
-#: Clamped angles whose reckoned length is within this factor of the shortest are counted exactly.
-_NEAR = 1.35
+#: Clamped angles whose reckoned length is within this factor of what the search found are counted exactly, and those
+#: within this factor of the shortest of them with a moving axis too.
+_NEAR, _NEARER = 1.15, 1.03
 
 
 def turning(plan: Plan) -> list[tuple[str, float, float, float, float]]:
@@ -62,8 +63,8 @@ def brute(name: str) -> None:
     job = task(face, Tool.torus(12, 1), SCALLOP, mounting)
     began = time.perf_counter()
     finder = Finder(Clamping(job, mounting))
-    found = finder.found(Orientation(None))  # no fixed axis: the search stands on its own
-    spent, best = time.perf_counter() - began, min(one.count.length for one in finder.known.values() if one is not None)
+    found = finder.found(Orientation(None))[0]  # no fixed axis: the search stands on its own
+    spent = time.perf_counter() - began
     every = Finder(Clamping(job, mounting))
     rows = []
     for which, axis in enumerate(mounting.machine.rotary):
@@ -71,16 +72,16 @@ def brute(name: str) -> None:
             for feed in ("u", "v"):
                 rough = every.search.reckoned(every.search.clamp(which, float(angle)), feed)
                 rows += [] if rough is None else [(rough.length, rough.clamp, feed)]
-    least = min(row[0] for row in rows)
-    near = [row for row in rows if row[0] <= _NEAR * least]
+    near = [row for row in rows if row[0] <= _NEAR * found.count.length]
     whole = [one for one in (every.choice(clamp, feed) for _, clamp, feed in near) if one is not None]
-    top = min(whole, key=lambda one: one.count.length)
-    clamp = top.candidate.clamp
-    print(f"{name}: brute force, {len(rows)} clamped angles and feeds screened, {len(near)} counted: best "
-          f"{top.count.length:.1f} mm with {clamp.machine.rotary[clamp.which].name} at {np.degrees(clamp.angle):.2f} "
-          f"deg, feed {top.candidate.feed}; the search, {len(finder.known)} counted in {spent:.0f} s: {best:.1f} mm, "
-          f"{100 * (best / top.count.length - 1):+.2f} %; first of its ranking: "
-          f"{found[0].count.length:.1f} mm with a moving axis", flush=True)
+    whole.sort(key=lambda one: one.count.length)
+    some = [one for one in whole if one.count.length <= _NEARER * whole[0].count.length]
+    top = min((every.moving(one) for one in some), key=lambda one: one.count.length)
+    said = [f"{one.count.length:.1f} mm with {mounting.machine.rotary[one.candidate.clamp.which].name} at "
+            f"{np.degrees(one.candidate.clamp.angle):.2f} deg, feed {one.candidate.feed}" for one in (top, found)]
+    print(f"{name}: brute force, {len(rows)} clamped angles and feeds reckoned, {len(near)} counted, {len(some)} of "
+          f"them with a moving axis: best {said[0]}; the search, {len(finder.known)} counted in {spent:.0f} s: "
+          f"{said[1]}, {100 * (found.count.length / top.count.length - 1):+.2f} %", flush=True)
 
 
 def measured(name: str) -> None:

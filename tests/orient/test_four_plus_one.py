@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.cldata.toolpath import Motion
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.orient.clamping import Clamping
 from toolaxis.orient.four_plus_one import (
+    Finder,
+    _ways,
     clamped_range,
     four_plus_one,
     machine_of,
@@ -34,9 +36,17 @@ MIKRON = load_machine("mikron-ucp-710")
 
 
 @pytest.fixture(scope="module")
-def found():
-    job = task(seeded(5, 1.2), TOOL, H, Mounting(MIKRON))
-    return job, *four_plus_one(job)
+def searched():
+    """One search, with the clamped angles that it ranks before passes are laid."""
+    job, ranked, found = task(seeded(5, 1.2), TOOL, H, Mounting(MIKRON)), [], Finder.found
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Finder, "found", lambda self, fixed: ranked.extend(found(self, fixed)) or ranked)
+        return job, *four_plus_one(job), ranked
+
+
+@pytest.fixture(scope="module")
+def found(searched):
+    return searched[:3]
 
 
 def _clamp(orientation) -> tuple[int, float]:
@@ -60,12 +70,45 @@ def test_one_axis_stands_still_and_the_other_has_no_jump(found) -> None:
     along = following(MIKRON, path)
     clamped, free = along.rotary[:, which], along.rotary[:, 1 - which]
     assert np.ptp(clamped) < np.radians(0.02)
-    mirrored = (clamped[0] - angle) / np.pi if which == 0 else 0.0
-    assert mirrored == pytest.approx(round(mirrored), abs=1e-4)
+    assert clamped[0] == pytest.approx(angle, abs=np.radians(0.002))  # what is said is what the machine does
     turn, way = np.abs(np.diff(free)), np.linalg.norm(np.diff(along.tips, axis=0), axis=1)
     cut = path.kind[along.arrival[1:]] == Motion.CUT
     assert np.ptp(free) > np.radians(3) and turn[~cut].max() <= np.radians(1.01)
     assert (turn[cut] <= 1e-3 + STEEP * way[cut]).all()
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_both_solutions_of_the_machine_are_told(which: int) -> None:
+    """Below 30 deg A reaches both: they are told, the one that begins near zero first."""
+    turn = np.radians(np.linspace(5, 25, 30))
+    clamp = Clamp(MIKRON, which, np.radians([40.0, 12.0][which]))
+    axes = clamp.axes(turn)
+    cl = np.column_stack([np.linspace(0, 30, 30), np.zeros(30), np.zeros(30)])
+    path = ToolPath(cl, cl, axes, axes, np.zeros(30, dtype=np.int8), np.array([0, 30]))
+    told = _ways(Mounting(MIKRON), which, path)
+    said = np.array([[float(word) for part in row for word in part.split() if word[-1].isdigit()] for row in told])
+    wanted = [[[40, 5, 25], [-140, -25, -5]], [[12, 5, 25], [-12, -175, -155]]][which]
+    assert np.allclose(said, wanted, atol=2e-3)
+    if which == 0:
+        steep = clamp.axes(turn + np.radians(30))
+        assert len(_ways(Mounting(MIKRON), 0, replace(path, axis=steep, normal=steep))) == 1
+
+
+def test_no_other_clamped_angle_is_counted_shorter(searched) -> None:
+    """The first that is ranked, against angles all over the range and beside it: within 1 %."""
+    job, best = searched[0], searched[3][0]
+    finder = Finder(Clamping(job, machine_of(job)))
+    clamp, others = best.candidate.clamp, []
+    for which, axis in enumerate(MIKRON.rotary):
+        for angle in clamped_range(axis, np.radians(60.0)):
+            others += [(finder.search.clamp(which, float(angle)), feed) for feed in ("u", "v")]
+    others += [(finder.search.clamp(clamp.which, clamp.angle + np.radians(off)), best.candidate.feed)
+               for off in (-1.0, -0.5, 0.5)]
+    rough = [(one, finder.search.reckoned(*one)) for one in others]
+    limit = 1.1 * best.count.length
+    near = [finder.choice(*one) for one, about in rough if about is not None and about.length < limit]
+    lengths = [finder.moving(one).count.length for one in near if one is not None]
+    assert len(lengths) >= 2 and best.count.length <= 1.01 * min(lengths)
 
 
 def test_the_free_angle_goes_on_from_pass_to_pass(found) -> None:

@@ -7,12 +7,12 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from toolaxis.orient import free_angle
-from toolaxis.orient.free_angle import bands, narrowest, smoothest, widest
+from toolaxis.orient.free_angle import Gates, bands, narrowest, smoothest, widest
 
 ANGLES = np.radians(np.linspace(-10, 10, 5))
 
 
-def _price(widths, chosen):
+def _price(widths, chosen, gates=None):
     """What dynamic programming makes least on one pass, written again."""
     width = widths[list(chosen), np.arange(len(chosen))]
     if (width <= 0).any():
@@ -22,6 +22,9 @@ def _price(widths, chosen):
     for i, (a, b) in enumerate(pairwise(chosen)):
         low, high = min(a, b), max(a, b)
         if ((widths[low:high + 1, i] <= 0) & (widths[low:high + 1, i + 1] <= 0)).any():
+            return np.inf
+        below = [gates.at[n, 0] <= ANGLES[j] for n, j in ((i, a), (i + 1, b))] if gates is not None else [True, True]
+        if below[0] != below[1] and gates.shut[i:i + 2].any():
             return np.inf
     return float(((least / width) ** free_angle._POWER).sum() + free_angle._ALONG * (turn**2).sum())
 
@@ -36,6 +39,34 @@ def test_one_pass_is_that_of_brute_force(seed: int) -> None:
         assert found is None
     else:
         assert found is not None and _price(widths, found[:, 0]) == pytest.approx(rows[0][0], rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_one_pass_between_gates_is_that_of_brute_force(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    widths = rng.uniform(0.2, 1.0, (5, 4)) * (rng.random((5, 4)) > 0.1)
+    gates = Gates(rng.uniform(-0.15, 0.15, (4, 1)), rng.random((4, 1)) > 0.4)
+    least = min(_price(widths, chosen, gates) for chosen in product(range(5), repeat=4))
+    found = widest(widths[:, :, None], ANGLES, gates)
+    if not np.isfinite(least):
+        assert found is None
+    else:
+        assert found is not None and _price(widths, found[:, 0], gates) == pytest.approx(least, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(2, 1), (1, 2)])
+def test_a_gate_that_moves_is_passed_neither_along_a_pass_nor_from_one_to_the_next(shape: tuple[int, int]) -> None:
+    """No angle is forbidden at either node: only the side tells that the normal would be passed."""
+    at, shut = np.radians([-2.5, 2.5]).reshape(shape), np.ones(shape, dtype=bool)
+    widths = np.full((5, *shape), 0.5)
+    widths[2] = 1.0  # no lean is the widest: above the gate at one node, below it at the other
+    free, kept = (widest(widths, ANGLES, Gates(at, each)) for each in (~shut, shut))
+    assert free is not None and (free == 2).all()
+    assert kept is not None and np.unique(ANGLES[kept] > at).size == 1 and np.ptp(kept) == 1
+    for gates, everywhere in ((Gates(at, ~shut), True), (Gates(at, shut), False)):
+        low, high = bands(widths, ANGLES, kept, 0.5, gates)
+        assert ((low == ANGLES[0]).all() and (high == ANGLES[-1]).all()) == everywhere
+        assert everywhere or ((low > at) == (high > at)).all()
 
 
 def test_an_angle_that_two_places_forbid_is_not_turned_across() -> None:

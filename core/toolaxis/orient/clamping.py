@@ -11,16 +11,19 @@ from toolaxis.contact.placing import place
 from toolaxis.contact.second_order import screen_many
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.free_angle import bands, narrowest, smoothest, widest
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.orient.free_angle import Gates, bands, narrowest, smoothest, widest
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.nodes import NODES, Nodes
 from toolaxis.path.chart import Cut
 from toolaxis.path.clamped import AngleField, Clamp, ClampedChart, ClampedCut
+from toolaxis.path.clamped_links import free_angles
 from toolaxis.path.count import Count, measure
 from toolaxis.path.lean import lean_ratios
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 #: Angles of the free axis lie so far apart, rad; those around the chosen ones that are looked at for interference, and
 #: how often angles are chosen anew where something is in the way.
@@ -31,6 +34,8 @@ _UPRIGHT = 0.6 * FREE
 #: Turns that are tried where something is in the way there, rad; how often angles are moved away, and the share of
 #: those places from which on that is not tried.
 _HELP, _REPAIRS, _HOPELESS = np.radians(0.625) * np.arange(1, 17), 8, 0.1
+#: The four nodes around a place.
+_CORNERS = ((0, 0), (1, 0), (0, 1), (1, 1))
 #: Relative accuracy of counts by which angles are compared.
 _COUNTED = 5e-3
 
@@ -58,6 +63,10 @@ class Candidate:
     widths : (j, i, k) array
         Strip widths in the step parameter; 0 where an angle must not be used.
     chosen : (i, k) array of int
+    gates : Gates
+        That the free axis does not pass.
+    known : (j, i, k) array of bool
+        What was held against everything around.
     """
 
     clamp: Clamp
@@ -67,6 +76,8 @@ class Candidate:
     angles: Array
     widths: Array
     chosen: Index
+    gates: Gates
+    known: Bools
 
     def value(self, objective: str) -> float:
         """What is to be least.
@@ -130,17 +141,35 @@ class Clamping:
         feed : str
         """
         angles = self.angles(clamp.which)
-        return self._candidate(clamp, feed, angles, self._widths(clamp, feed, angles))
+        widths, gates = self._widths(clamp, feed, angles), self._gates(clamp, feed)
+        known = np.zeros(widths.shape, dtype=bool)
+        return self._candidate(clamp, feed, angles, widths, widest(widths, angles, gates), gates, known)
 
-    def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array) -> Candidate | None:
-        chosen = widest(widths, angles)
+    def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array, chosen: Index | None, gates: Gates,
+                   known: Bools) -> Candidate | None:
         if chosen is None:
             return None
         nodes, least = self.nodes[feed], narrowest(widths, chosen)
         weight = np.full(NODES[1], nodes.step[1] - nodes.step[0])
         weight[[0, -1]] /= 2
         return Candidate(clamp, feed, float((weight / least).sum()), float((weight * nodes.lengths / least).sum()),
-                         angles, widths, chosen)
+                         angles, widths, chosen, gates, known)
+
+    def _gates(self, clamp: Clamp, feed: str) -> Gates:
+        """Where the axis passes the normal, and where it must not: too near to it, or with something in the way."""
+        nodes = self.nodes[feed]
+        normals = self.job.worth.face.normal(nodes.uv)
+        at = free_angles(normals, clamp).reshape(NODES)
+        at = np.unwrap(np.unwrap(at, axis=0), axis=1)
+        axes = clamp.axes(at.ravel())
+        shut = np.asarray(angle_between(axes, normals)) < self._upright
+        some = np.flatnonzero(nodes.counts.ravel() & ~shut)
+        shut[some] = ~self._free(nodes.uv[some], axes[some])
+        return Gates(at, shut.reshape(NODES) & nodes.counts)
+
+    @property
+    def _upright(self) -> float:
+        return float(max(self.job.feasibility.least_angle, _UPRIGHT))
 
     def _widths(self, clamp: Clamp, feed: str, angles: Array) -> Array:
         """Strip widths in the step parameter, (j, i, k); 0 where there is none, infinite off the face."""
@@ -149,7 +178,7 @@ class Clamping:
         half = screen_many(forms, axes, self.plain.numbers, self.plain.scallop)
         along, left, up = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
         width = 2 * half * lean_ratios(self.plain.leans, along, left)
-        width[(up > np.cos(max(limits.least_angle, _UPRIGHT))) | (up < np.cos(limits.greatest_angle))] = 0.0
+        width[(up > np.cos(self._upright)) | (up < np.cos(limits.greatest_angle))] = 0.0
         width[:, ~nodes.counts.ravel()] = np.inf
         self.looked += len(axes)
         return np.asarray(width.reshape(len(angles), *NODES))
@@ -164,13 +193,19 @@ class Clamping:
         """
         self.job.progress.check()
         angles, limits = self.angles(clamp.which), self.job.feasibility.limits
-        axes, widths = clamp.axes(angles), self._widths(clamp, feed, angles)
+        widths = self._widths(clamp, feed, angles)
         if limits is not None:
-            widths[~limits.allowed(axes)] = 0.0
+            widths[~limits.allowed(clamp.axes(angles))] = 0.0
         known = np.zeros(widths.shape, dtype=bool)
         known[:, ~self.nodes[feed].counts] = True
+        return self._settled(clamp, feed, angles, widths, self._gates(clamp, feed), known)
+
+    def _settled(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: Gates,
+                 known: Bools) -> Candidate | None:
+        """Angles chosen anew until nothing is in the way of any; widths are set to 0 where something is."""
+        axes, known = clamp.axes(angles), known.copy()
         for _ in range(_ROUNDS):
-            chosen = widest(widths, angles)
+            chosen = widest(widths, angles, gates)
             if chosen is None:
                 return None
             near = np.abs(np.arange(len(angles))[:, None, None] - chosen) <= _AROUND
@@ -184,7 +219,33 @@ class Clamping:
                 break
         else:
             return None
-        return self._candidate(clamp, feed, angles, np.where(known, widths, 0.0))
+        return self._candidate(clamp, feed, angles, widths, chosen, gates, known)
+
+    def barred(self, one: Candidate, bad: Index) -> Candidate | None:
+        """The widest strips without the angles at which something is in the way between the nodes; None where there
+        are none.
+
+        Parameters
+        ----------
+        one : Candidate
+        bad : (m,) array of int
+            Places among `Nodes.fine` where that was found, with the angles of its passes.
+        """
+        nodes, angles = self.nodes[one.feed], one.angles
+        along, step = (part[bad] for part in nodes.fine)
+        i = np.clip(np.searchsorted(nodes.along, along) - 1, 0, NODES[0] - 2)
+        k = np.clip(np.searchsorted(nodes.step, step) - 1, 0, NODES[1] - 2)
+        corners = np.array([one.chosen[i + di, k + dk] for di, dk in _CORNERS])
+        rows = np.arange(len(angles))[:, None]
+        j, place = np.nonzero((rows >= corners.min(axis=0) - _AROUND) & (rows <= corners.max(axis=0) + _AROUND))
+        uv = nodes.chart.uv(along, step)
+        shut = np.zeros((len(angles), len(bad)), dtype=bool)
+        shut[j, place] = ~self._free(uv[place], one.clamp.axes(angles)[j])
+        widths = one.widths.copy()
+        for di, dk in _CORNERS:
+            for one_place in range(len(bad)):
+                widths[shut[:, one_place], i[one_place] + di, k[one_place] + dk] = 0.0
+        return self._settled(one.clamp, one.feed, angles, widths, one.gates, one.known)
 
     def _free(self, uv: Array, axes: Array) -> NDArray[np.bool_]:
         """Whether the tool keeps all distances at contacts with axes, (n,)."""
@@ -198,7 +259,7 @@ class Clamping:
             free[some] = judged(group.cells, worth.tool, moves[some], table).blocked < 0
         return free
 
-    def cut(self, one: Candidate, share: float, inset: int = 0) -> ClampedCut | None:
+    def cut(self, one: Candidate, share: float, inset: int = 0) -> tuple[ClampedCut | None, Index]:
         """What cuts with the smoothest angles at which no strip is narrower than a share of the narrowest of its pass.
 
         Where the tool comes too near to something between the nodes, the angles of the nodes around are moved away.
@@ -214,26 +275,30 @@ class Clamping:
         -------
         ClampedCut or None
             None where moving does not help.
+        (m,) array of int
+            Places among `Nodes.fine` where something is in the way before anything is moved.
         """
-        nodes = self.nodes[one.feed]
-        low, high = bands(one.widths, one.angles, one.chosen, share)
+        nodes, first = self.nodes[one.feed], None
+        low, high = bands(np.where(one.known, one.widths, 0.0), one.angles, one.chosen, share, one.gates)
         gap, middle = inset * (one.angles[1] - one.angles[0]), (low + high) / 2
         low, high = np.minimum(low + gap, middle), np.maximum(high - gap, middle)
         for _ in range(_REPAIRS):
             made = self._with(one, smoothest(low, high, *nodes.ways))
-            moves = self._away(made)
+            bad = self._bad(made)
+            first = bad if first is None else first
+            if not len(bad):
+                return made, first
+            moves = self._away(made, bad)
             if moves is None:
-                return None
-            if not len(moves.turn):
-                return made
+                return None, first
             assert made.field is not None
             up, down = (self._pushed(nodes, moves, sense) for sense in (1.0, -1.0))
             if (np.minimum(up, down) > 0).any():
-                return None
+                return None, first
             low = np.where(up > 0, np.maximum(low, made.field.values + up), low)
             high = np.where(down > 0, np.minimum(high, made.field.values - down), high)
             low, high = np.where(down > 0, np.minimum(low, high), low), np.where(up > 0, np.maximum(low, high), high)
-        return None
+        return None, np.zeros(0, dtype=np.intp) if first is None else first
 
     def _with(self, one: Candidate, values: Array) -> ClampedCut:
         """What cuts with angles at the nodes."""
@@ -242,27 +307,30 @@ class Clamping:
         return ClampedCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, 0.0, one.feed, one.clamp,
                           AngleField(nodes.along, nodes.step, values))
 
-    def _away(self, cut: ClampedCut) -> _Moves | None:
-        """Places between the nodes at which something is in the way, and the least turns that help; None where none
-        does."""
+    def _bad(self, cut: ClampedCut) -> Index:
+        """Places among those between the nodes at which something is in the way."""
+        assert cut.clamp is not None and cut.field is not None
         nodes = self.nodes[cut.feed]
-        along, step = nodes.fine
-        uv, clamp = nodes.chart.uv(along, step), cut.clamp
+        return np.flatnonzero(~self._free(nodes.chart.uv(*nodes.fine), cut.clamp.axes(cut.field.at(*nodes.fine))))
+
+    def _away(self, cut: ClampedCut, bad: Index) -> _Moves | None:
+        """The least turns that help at places where something is in the way; None where none does."""
+        nodes, clamp = self.nodes[cut.feed], cut.clamp
         assert clamp is not None and cut.field is not None
-        here = cut.field.at(along, step)
-        bad = np.flatnonzero(~self._free(uv, clamp.axes(here)))
-        if len(bad) > _HOPELESS * len(uv):
+        if len(bad) > _HOPELESS * len(nodes.fine[0]):
             return None
+        along, step = (part[bad] for part in nodes.fine)
+        uv, here = nodes.chart.uv(along, step), cut.field.at(along, step)
         turn = np.zeros(len(bad))
         left = np.arange(len(bad))
         for size in _HELP:
             if not len(left):
                 break
             for sense in (1.0, -1.0):
-                free = self._free(uv[bad[left]], clamp.axes(here[bad[left]] + sense * size))
+                free = self._free(uv[left], clamp.axes(here[left] + sense * size))
                 turn[left[free & (turn[left] == 0)]] = sense * size
             left = left[turn[left] == 0]
-        return None if len(left) else _Moves(along[bad], step[bad], turn)
+        return None if len(left) else _Moves(along, step, turn)
 
     @staticmethod
     def _pushed(nodes: Nodes, moves: _Moves, sense: float) -> Array:
@@ -271,7 +339,7 @@ class Clamping:
         some = np.flatnonzero(moves.turn * sense > 0)
         i = np.clip(np.searchsorted(nodes.along, moves.along[some]) - 1, 0, NODES[0] - 2)
         k = np.clip(np.searchsorted(nodes.step, moves.step[some]) - 1, 0, NODES[1] - 2)
-        for di, dk in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        for di, dk in _CORNERS:
             np.maximum.at(out, (i + di, k + dk), np.abs(moves.turn[some]))
         return out
 

@@ -1,8 +1,9 @@
 """4+1 axes: one rotary axis of the machine clamped at the best angle, the other turning along the passes.
 
 Either axis may be the clamped one.  All clamped angles are screened, each with the widest strips that turning the free
-axis smoothly leaves; the best ones are examined with everything around, and a pattern search by exact counts of passes
-ends at the angle that is taken.  The best fixed axis stands beside them, so that no result is longer than that.
+axis smoothly leaves; the best ones are examined with everything around by exact counts of passes, and so are all
+angles near the best of these, half a degree apart.  The few with the least counts are laid over the face, and the
+shortest are taken.  The best fixed axis stands beside them, so that no result is longer than that.
 """
 
 from dataclasses import dataclass, replace
@@ -14,7 +15,9 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.feed.turning import following
 from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.kinematics import rotary_angles
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.clamping import Candidate, Clamping
@@ -24,21 +27,29 @@ from toolaxis.orient.mounted import mounting_of
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.worth import FEEDS
 from toolaxis.path.clamped import Clamp, ClampedCut
-from toolaxis.path.clamped_links import free_angles, on_the_circle
+from toolaxis.path.clamped_links import on_the_circle
 from toolaxis.path.count import Count
 from toolaxis.plan.orientation import Orientation
 
 Array = NDArray[np.float64]
 
-#: Clamped angles are screened so far apart, deg; how many of the best places are examined, and then searched.
-STEP_DEG, _EXAMINED, _SEARCHED = 3.0, 10, 3
+#: Clamped angles are screened so far apart, deg; how many of the best places are examined, and around how many of
+#: these, within that factor of the best, nearer ones are.
+STEP_DEG, _EXAMINED, _SEARCHED, _HOPEFUL = 3.0, 10, 2, 1.1
 #: How many of the best are counted with a moving axis, and how many are laid over the face, the best of which is taken.
-_RANKED, _LAID = 6, 2
-#: Steps of the search around a place, deg.
-_PATTERN = (2.0, 1.0, 0.5)
+_RANKED, _LAID = 8, 2
+#: Angles around a place that are examined lie so far apart, deg, so many of them on either side; a side on which the
+#: last two hold the best is followed further, up to so many.
+FINE_DEG, _SIDE, _FARTHEST = 0.5, 5, 30
+#: Angles of the clamped axis are the same within this, rad.
+_SAME = 1e-3
 #: How passes are tried: the share of the narrowest strip that is given up for smoothness, and by how many angles the
 #: free one stays away from those that must not be used.
 _TRIES = ((0.98, 0), (0.9, 1), (0.8, 2))
+#: Turning that makes passes longer by no more than this factor needs no smoother angles.
+_STEADY = 1.01
+#: How often angles are chosen without those that turned out to be in the way between the nodes.
+_LESSONS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,31 +185,55 @@ class Finder:
         ----------
         one : Candidate
         """
-        for number, (share, inset) in enumerate(_TRIES):
-            cut = self.search.cut(one, share, inset)
-            if cut is not None:
-                count = self.search.counted(cut)
-                return Choice(one, cut, count, number) if np.isfinite(count.length) else None
+        now = one
+        for _ in range(_LESSONS):
+            bad = np.zeros(0, dtype=np.intp)
+            for number, (share, inset) in enumerate(_TRIES):
+                cut, found = self.search.cut(now, share, inset)
+                if cut is not None:
+                    count = self.search.counted(cut)
+                    return Choice(now, cut, count, number) if np.isfinite(count.length) else None
+                bad = bad if len(bad) else found
+            after = self.search.barred(now, bad)
+            if after is None:
+                return None
+            now = after
         return None
 
     def around(self, start: Choice) -> Choice:
-        """The best clamped angle near one, by a pattern search.
+        """The best clamped angle near one.
 
         Parameters
         ----------
         start : Choice
         """
-        best, objective = start, self.search.job.worth.objective
-        for size in _PATTERN:
-            for sense in (1.0, -1.0):
-                while True:
-                    clamp = best.candidate.clamp
-                    near = self.search.clamp(clamp.which, clamp.angle + sense * np.radians(size))
-                    other = self.choice(near, best.candidate.feed)
-                    if other is None or not other.value(objective) < best.value(objective):
-                        break
-                    best = other
+        objective, middle, feed = self.search.job.worth.objective, start.candidate.clamp, start.candidate.feed
+        best = start
+        for sense in (1.0, -1.0):
+            k, last = 0, 0
+            while (k - last < 2 and k < _FARTHEST) or k < _SIDE:
+                k += 1
+                near = self.search.clamp(middle.which, middle.angle + sense * k * np.radians(FINE_DEG))
+                other = self.choice(near, feed)
+                if other is not None and other.value(objective) < best.value(objective):
+                    best, last = other, k
         return best
+
+    def moving(self, one: Choice) -> Choice:
+        """The same counted with a moving axis, by the way to try passes that makes the least of it.
+
+        Parameters
+        ----------
+        one : Choice
+        """
+        objective, found = self.search.job.worth.objective, []
+        for number in range(one.tried, min(one.tried + 2, len(_TRIES))):
+            cut = one.cut if number == one.tried else self.search.cut(one.candidate, *_TRIES[number])[0]
+            if cut is not None:
+                found.append(Choice(one.candidate, cut, self.search.counted(cut, False), number))
+            if found and found[0].value(objective) <= _STEADY * one.value(objective):
+                break
+        return min(found, key=lambda choice: choice.value(objective))
 
     def found(self, fixed: Orientation) -> list[Choice]:
         """The best clamped angles, best first, those at which the best fixed axis stands among them.
@@ -217,12 +252,21 @@ class Finder:
             self.search.job.progress.report("clamped angles examined", k, len(starts))
             found.append(self.choice(clamp, feed))
         best = sorted((one for one in found if one is not None), key=lambda one: one.value(objective))
-        for one in best[:_SEARCHED]:
-            self.around(one)
+        searched = list[Choice]()
+        for one in best:
+            if len(searched) < _SEARCHED and one.value(objective) <= _HOPEFUL * best[0].value(objective) and not any(
+                    _near(one, other) for other in searched):
+                searched.append(one)
+                self.around(one)
         every = sorted((one for one in self.known.values() if one is not None), key=lambda one: one.value(objective))
-        counts = [self.search.counted(one.cut, False) for one in every[:_RANKED]]
-        moving = [replace(one, count=count) for one, count in zip(every, counts, strict=False)]
-        return sorted(moving, key=lambda one: one.value(objective))
+        return sorted((self.moving(one) for one in every[:_RANKED]), key=lambda one: one.value(objective))
+
+
+def _near(one: Choice, other: Choice) -> bool:
+    """Whether two clamped angles are so near that one is looked at around the other."""
+    a, b = one.candidate, other.candidate
+    apart = abs(a.clamp.angle - b.clamp.angle)
+    return (a.clamp.which, a.feed) == (b.clamp.which, b.feed) and apart < _SIDE * np.radians(FINE_DEG) + _SAME
 
 
 def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
@@ -282,7 +326,7 @@ def _tried(search: Clamping, one: Choice, fixed: Orientation,
            refused: list[str]) -> tuple[Orientation, ToolPath | None] | None:
     """A clamped angle with its passes laid and proven, by the first way that the proof accepts; None without any."""
     for share, inset in _TRIES[one.tried:]:
-        cut = search.cut(one.candidate, share, inset)
+        cut, _ = search.cut(one.candidate, share, inset)
         if cut is None or cut.clamp is None:
             continue
         done = laid(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.clamp))
@@ -298,15 +342,34 @@ def _named(cut: ClampedCut) -> str:
     return f"{name} clamped at {degrees(cut.clamp.angle):.3f} deg, feed along {cut.feed}"
 
 
+def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str]]:
+    """Where the clamped axis stands and how the other turns, that which the machine takes first and the mirrored one
+    where its axes can take it, in words."""
+    machine = mounting.machine
+    along = following(machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0))
+    cut = path.kind[along.arrival] == Motion.CUT
+    taken = along.rotary[cut]
+    both = rotary_angles(machine, along.axes[cut], along.rotary[0], mounting.table_from_part)
+    rows = [taken]
+    for s in range(both.joints.shape[1]):
+        other = np.unwrap(both.joints[:, s], axis=0)
+        clamped = other[:, which]
+        if both.within[:, s].all() and np.ptp(clamped) < _SAME < abs(clamped[0] - taken[0, which]):
+            rows.append(other)
+    name, free = machine.rotary[which].name, machine.rotary[1 - which].name
+    return [(f"{name} clamped at {degrees(float(np.median(row[:, which]))):.3f} deg",
+             f"{free} turns from {degrees(row[:, 1 - which].min()):.2f} to {degrees(row[:, 1 - which].max()):.2f} deg")
+            for row in rows]
+
+
 def _told(search: Clamping, done: Laid, cut: ClampedCut, fixed: Orientation) -> Orientation:
     """What passes come to, in numbers and words."""
     assert done.path is not None and cut.clamp is not None
     on = done.path.kind == Motion.CUT
-    free = free_angles(done.path.axis, cut.clamp)[on]
     lean = float(angle_between(done.path.axis[on], done.path.normal[on]).mean())
-    name = cut.clamp.machine.rotary[1 - cut.clamp.which].name
-    words = [_named(cut),
-             f"{name} turns from {degrees(free.min()):.2f} to {degrees(free.max()):.2f} deg along the passes"]
+    first, *mirrored = _ways(search.mounting, cut.clamp.which, done.path)
+    words = [f"{first[0]}, feed along {cut.feed}", f"{first[1]} along the passes"]
+    words += [f"the same axes by the other solution: {where}, {turning}" for where, turning in mirrored]
     if fixed.axis is not None:
         words.append(f"the best fixed axis takes {fixed.passes} passes of {fixed.length:.0f} mm in all")
     return done.orientation(search.job, cut, (*words, CHECKED), search.looked + fixed.evaluations, lean)

@@ -3,8 +3,11 @@
 Nodes stand along the passes (i) and across them (k), angles on a grid (j).  Passes go from the middle one outwards;
 dynamic programming finds for each the angles with the widest strip against a charge on turning, along it and from the
 pass beside it.  Around these angles lie bands in which the strip stays as wide, and the smoothest angle inside all
-bands is a bounded linear least-squares problem.
+bands is a bounded linear least-squares problem.  Where the axis must not pass the normal, angles on its two sides are
+kept apart: from one node to the next the side stays.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +29,32 @@ _EXCHANGES, _TOUCH = 60, 1e-10
 _MOST = 0.5
 
 
-def widest(widths: Array, angles: Array) -> Index | None:
+class Gates(NamedTuple):
+    """Where a turning axis passes nearest to the normal.
+
+    Attributes
+    ----------
+    at : (i, k) array
+        That angle at each node, without whole turns between neighbours, rad.
+    shut : (i, k) array of bool
+        Whether the axis must not pass it there.
+    """
+
+    at: Array
+    shut: Bools
+
+    def sides(self, angles: Array) -> Index:
+        """On which side angles lie, (j, i, k): numbers that grow by one at each time that the normal is passed.
+
+        Parameters
+        ----------
+        angles : (j,) array
+            rad
+        """
+        return np.asarray(np.floor((angles[:, None, None] - self.at) / (2 * np.pi)).astype(np.intp))
+
+
+def widest(widths: Array, angles: Array, gates: Gates | None = None) -> Index | None:
     """The angles with the widest strips that turn gently, (i, k) places on the grid of angles.
 
     Parameters
@@ -35,6 +63,8 @@ def widest(widths: Array, angles: Array) -> Index | None:
         Strip widths of each angle at each node in one unit; 0 where the angle must not be used.
     angles : (j,) array
         Even, rad.
+    gates : Gates, optional
+        That are not passed between two nodes of which one shuts.
 
     Returns
     -------
@@ -50,18 +80,21 @@ def widest(widths: Array, angles: Array) -> Index | None:
     least = best.min(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         price = np.where(widths > 0, (np.where(np.isfinite(least), least, 0.0) / widths) ** _POWER, np.inf)
-    apart = np.abs(angles[:, None] - angles)
-    turn, usable = np.where(apart <= _MOST, (apart / _TENTH) ** 2, np.inf), widths > 0
+    turn, usable = _Turns.between(angles), widths > 0
+    sides, shut = (np.zeros(widths.shape, dtype=np.intp), np.zeros(best.shape, dtype=bool)) if gates is None else (
+        gates.sides(angles), gates.shut)
     chosen = np.empty(best.shape, dtype=np.intp)
     middle = best.shape[1] // 2
-    chosen[:, middle] = _cheapest(price[:, :, middle], turn, usable[:, :, middle])
+    chosen[:, middle] = _cheapest(price[:, :, middle], turn, usable[:, :, middle], sides[:, :, middle],
+                                  shut[:, middle])
     for k in (*range(middle + 1, best.shape[1]), *range(middle - 1, -1, -1)):
         last = k - 1 if k > middle else k + 1
         walls = _walls(usable[:, :, k], usable[:, :, last])
         beside = chosen[:, last]
         over = walls != np.take_along_axis(walls, beside[None], axis=0)
-        charge = np.where(over, np.inf, _ACROSS * turn[:, beside])
-        chosen[:, k] = _cheapest(price[:, :, k] + charge, turn, usable[:, :, k])
+        over |= (sides[:, :, k] != sides[beside, np.arange(len(beside)), last]) & (shut[:, k] | shut[:, last])
+        charge = np.where(over, np.inf, _ACROSS * turn.beside(beside))
+        chosen[:, k] = _cheapest(price[:, :, k] + charge, turn, usable[:, :, k], sides[:, :, k], shut[:, k])
     steps = (np.abs(np.diff(angles[chosen], axis=axis)).max(initial=0.0) for axis in (0, 1))
     used = np.take_along_axis(widths, chosen[None], axis=0)[0]
     return chosen if (used > 0).all() and max(steps) <= _MOST else None
@@ -72,19 +105,47 @@ def _walls(one: Bools, other: Bools) -> Index:
     return np.asarray(np.cumsum(~(one | other), axis=0))
 
 
-def _cheapest(price: Array, turn: Array, usable: Bools) -> Index:
+class _Turns(NamedTuple):
+    """Turns between angles of a grid: from which ones each can be turned to, (j, n), and the price of that, infinite
+    beyond the ends of the grid."""
+
+    origin: Index
+    price: Array
+
+    @classmethod
+    def between(cls, angles: Array) -> "_Turns":
+        gap = float(angles[1] - angles[0]) if len(angles) > 1 else _MOST
+        most = min(int(_MOST / gap + 1e-9), len(angles) - 1)
+        step = np.arange(-most, most + 1)
+        origin = np.arange(len(angles))[:, None] + step
+        inside = (origin >= 0) & (origin < len(angles))
+        return cls(np.where(inside, origin, 0), np.where(inside, (step * (gap / _TENTH)) ** 2, np.inf))
+
+    def beside(self, angles: Index) -> Array:
+        """The price of turning to each angle from those of other nodes (i,), (j, i); infinite where it is a jump."""
+        middle = self.price.shape[1] // 2
+        step = angles - np.arange(len(self.price))[:, None]
+        near = np.abs(step) <= middle
+        return np.where(near, self.price[np.arange(len(self.price))[:, None], np.where(near, step, 0) + middle], np.inf)
+
+
+def _cheapest(price: Array, turns: _Turns, usable: Bools, sides: Index, shut: Bools) -> Index:
     """Places of the angles (i,) with the least sum of prices (j, i) and charges on turning.
 
-    An angle that both of two nodes forbid is not turned across between them.
+    An angle that both of two nodes forbid is not turned across between them, nor a gate that one of them shuts.
     """
     count = price.shape[1]
     walls = _walls(usable[:, :-1], usable[:, 1:])
-    total, origin = price[:, 0].copy(), np.empty((count, len(price)), dtype=np.intp)
+    total, origin, rows = price[:, 0].copy(), np.empty((count, len(price)), dtype=np.intp), np.arange(len(price))
     for i in range(1, count):
         wall = walls[:, i - 1]
-        ways = total[None] + _ALONG * turn + np.where(wall[:, None] == wall, 0.0, np.inf)
-        origin[i] = ways.argmin(axis=1)
-        total = ways[np.arange(len(total)), origin[i]] + price[:, i]
+        way = wall[turns.origin] == wall[:, None]
+        if shut[i - 1] or shut[i]:
+            way &= sides[turns.origin, i - 1] == sides[:, i, None]
+        ways = np.where(way, total[turns.origin] + _ALONG * turns.price, np.inf)
+        best = ways.argmin(axis=1)
+        origin[i] = turns.origin[rows, best]
+        total = ways[rows, best] + price[:, i]
     chosen = np.empty(count, dtype=np.intp)
     chosen[-1] = int(total.argmin())
     for i in range(count - 1, 0, -1):
@@ -103,7 +164,8 @@ def narrowest(widths: Array, chosen: Index) -> Array:
     return np.asarray(np.take_along_axis(widths, chosen[None], axis=0)[0].min(axis=0))
 
 
-def bands(widths: Array, angles: Array, chosen: Index, share: float) -> tuple[Array, Array]:
+def bands(widths: Array, angles: Array, chosen: Index, share: float,
+          gates: Gates | None = None) -> tuple[Array, Array]:
     """Angles around those chosen at which no strip is narrower than a share of the narrowest of its pass, (i, k) each.
 
     Parameters
@@ -114,6 +176,8 @@ def bands(widths: Array, angles: Array, chosen: Index, share: float) -> tuple[Ar
     chosen : (i, k) array of int
     share : float
         Of the width that a pass has at its narrowest place, 0 to 1.
+    gates : Gates, optional
+        No band goes through one that is shut.
 
     Returns
     -------
@@ -121,6 +185,9 @@ def bands(widths: Array, angles: Array, chosen: Index, share: float) -> tuple[Ar
         rad; up to half a step short of the first angle that does not do.
     """
     good = widths >= share * narrowest(widths, chosen)
+    if gates is not None:
+        sides = gates.sides(angles)
+        good &= ~gates.shut | (sides == np.take_along_axis(sides, chosen[None], axis=0))
     low, high, count = chosen.copy(), chosen.copy(), len(angles)
     for _ in range(count):
         down, up = np.maximum(low - 1, 0), np.minimum(high + 1, count - 1)
