@@ -7,6 +7,7 @@ from .cam import tool_from as tool_from
 from .defaults import defaults as defaults
 from .inputs import Inputs as Inputs
 from .inputs import inputs_of as inputs_of
+from .machines import limits_from
 from .objects import is_plan, plan_of
 from .results import apply as apply
 from .results import keep_verdict as keep_verdict
@@ -42,7 +43,7 @@ def task(inputs):
 
         part, bodies = source.read(progress)
         faces = None if inputs.blades and source.complete(part) else source.numbers
-        return ta.plan(part, tool, inputs.scallop, machine=inputs.limits or None, faces=faces,
+        return ta.plan(part, tool, inputs.scallop, machine=limits_from(inputs.limits, tool), faces=faces,
                        regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
                        compare=inputs.compare, division=division, objective=inputs.objective,
                        allowance=inputs.allowance, direction=inputs.direction,
