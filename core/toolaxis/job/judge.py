@@ -115,7 +115,8 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     """
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
-            "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing)],
+            "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
+                        *(f"between operations: {why}" for why in plan.in_the_way)],
             "not_checked": list(not_judged(plan, verdict)),
             "operations": [_operation_document(op) for op in verdict.operations]}
 

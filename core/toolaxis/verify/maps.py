@@ -1,7 +1,7 @@
 """Maps over a face: scallop left and gouge, the worst places, the share within a limit, and zones to clean up."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 
 #: Rays around which the worst is looked for more closely, rounds of that, and how much closer each looks.
 _STARTS, _ROUNDS, _SHRINK = 24, 5, 0.4
+#: What a map has for every ray.
+_PER_RAY = ("uv", "point", "weight", "border", "remaining", "gouge", "cut_by", "gouged_by")
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,12 @@ class SurfaceMap:
     def area(self) -> float:
         """Area that the rays stand for, mm^2."""
         return float(self.weight.sum())
+
+    def touched(self) -> "SurfaceMap":
+        """The map with only those rays that something cut or gouged."""
+        rows = np.flatnonzero((self.cut_by >= 0) | (self.gouged_by >= 0))
+        kept = {name: getattr(self, name)[rows] for name in _PER_RAY}
+        return replace(self, **kept)
 
     def share_within(self, limit: float) -> float:
         """Share of the area left no higher than a limit, 0 to 1.

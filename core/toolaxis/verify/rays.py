@@ -1,6 +1,7 @@
 """Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more on the border."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import sqrt
 
 import numpy as np
@@ -18,6 +19,9 @@ SPACING, MOST_RAYS = 0.5, 400_000
 _R2 = (0.7548776662466927, 0.5698402909980532)
 
 _FINE = 129
+
+#: Faces whose rays are kept.
+_KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +60,9 @@ def default_spacing(face: Face) -> float:
     return max(min(SPACING, size / 150), size / sqrt(MOST_RAYS))
 
 
+@lru_cache(maxsize=_KEPT)
 def face_rays(face: Face, spacing: float | None = None) -> Rays:
-    """Rays over a face.
+    """Rays over a face; those of the last faces are kept, since operations side by side look at the same neighbours.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class OperationVerdict:
     reasons : tuple of str
         Sentences: why it failed; what was not checked.
     maps : tuple of SurfaceMap
-        Of the targets, then of the skin.
+        Of the targets, then of the skin; of the skin only the rays that something cut or gouged.
     """
 
     name: str
@@ -246,7 +246,8 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, .
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
         reached_max, share, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, sum(len(one.uv) for one in maps),
-        max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes), maps)
+        max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
+        (*targets, *(one.touched() for one in skin)))
 
 
 def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
