@@ -1,0 +1,1438 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de" sourcelanguage="en">
+ <context>
+  <name>QObject</name>
+  <message>
+   <source>Tool Axis</source>
+   <translation>Tool Axis</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis</name>
+  <message>
+   <source>, missed by {}</source>
+   <translation>, verfehlt um {}</translation>
+  </message>
+  <message>
+   <source>Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip width.</source>
+   <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
+  </message>
+  <message>
+   <source>Area within it</source>
+   <translation>Fläche innerhalb</translation>
+  </message>
+  <message>
+   <source>Blade {}</source>
+   <translation>Schaufel {}</translation>
+  </message>
+  <message>
+   <source>Clean-up {}</source>
+   <translation>Nacharbeit {}</translation>
+  </message>
+  <message>
+   <source>Click a point: the plan is computed again with that many axes.</source>
+   <translation>Ein Klick auf einen Punkt: der Plan wird mit so vielen Achsen neu berechnet.</translation>
+  </message>
+  <message>
+   <source>Click on the map to try an axis.</source>
+   <translation>Ein Klick in die Karte probiert eine Achse aus.</translation>
+  </message>
+  <message>
+   <source>Copy of {}</source>
+   <translation>Kopie von {}</translation>
+  </message>
+  <message>
+   <source>Cutter clearance</source>
+   <translation>Abstand des Fräsers</translation>
+  </message>
+  <message>
+   <source>Cutting length</source>
+   <translation>Schnittlänge</translation>
+  </message>
+  <message>
+   <source>Deepest gouge</source>
+   <translation>Tiefste Verletzung</translation>
+  </message>
+  <message>
+   <source>Diameter</source>
+   <translation>Durchmesser</translation>
+  </message>
+  <message>
+   <source>Every axis can be held. OK puts the machine into the document.</source>
+   <translation>Jede Achse kann gehalten werden. OK stellt die Maschine ins Dokument.</translation>
+  </message>
+  <message>
+   <source>Every axis can be held. Travels are not looked at: the tool has no holder.</source>
+   <translation>Jede Achse kann gehalten werden. Verfahrwege werden nicht geprüft: das Werkzeug hat keinen Halter.</translation>
+  </message>
+  <message>
+   <source>Every face has an axis. OK puts them into the document.</source>
+   <translation>Jede Fläche hat eine Achse. OK stellt sie ins Dokument.</translation>
+  </message>
+  <message>
+   <source>Face {}</source>
+   <translation>Fläche {}</translation>
+  </message>
+  <message>
+   <source>Face {} (turned copy)</source>
+   <translation>Fläche {} (gedrehte Kopie)</translation>
+  </message>
+  <message>
+   <source>Finishing {}</source>
+   <translation>Schlichten {}</translation>
+  </message>
+  <message>
+   <source>Folder</source>
+   <translation>Ordner</translation>
+  </message>
+  <message>
+   <source>Give a folder.</source>
+   <translation>Bitte einen Ordner angeben.</translation>
+  </message>
+  <message>
+   <source>Gouge allowed</source>
+   <translation>Erlaubte Verletzung</translation>
+  </message>
+  <message>
+   <source>Gouge, at most</source>
+   <translation>Verletzung, höchstens</translation>
+  </message>
+  <message>
+   <source>Height</source>
+   <translation>Höhe</translation>
+  </message>
+  <message>
+   <source>Highest scallop</source>
+   <translation>Höchste Rille</translation>
+  </message>
+  <message>
+   <source>Holder clearance</source>
+   <translation>Abstand des Halters</translation>
+  </message>
+  <message>
+   <source>Inside tolerance</source>
+   <translation>Innerhalb der Toleranz</translation>
+  </message>
+  <message>
+   <source>Job {}</source>
+   <translation>Auftrag {}</translation>
+  </message>
+  <message>
+   <source>Left to clean-up</source>
+   <translation>Für die Nacharbeit</translation>
+  </message>
+  <message>
+   <source>Length against the number of orientations</source>
+   <translation>Länge über der Anzahl der Orientierungen</translation>
+  </message>
+  <message>
+   <source>Looking at all operations</source>
+   <translation>Alle Operationen werden betrachtet</translation>
+  </message>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
+  </message>
+  <message>
+   <source>Machine file</source>
+   <translation>Maschinendatei</translation>
+  </message>
+  <message>
+   <source>Machine {}</source>
+   <translation>Maschine {}</translation>
+  </message>
+  <message>
+   <source>Make CAM jobs</source>
+   <translation>CAM-Aufträge anlegen</translation>
+  </message>
+  <message>
+   <source>Map of the tool axes</source>
+   <translation>Karte der Werkzeugachsen</translation>
+  </message>
+  <message>
+   <source>No axis is free.</source>
+   <translation>Keine Achse ist frei.</translation>
+  </message>
+  <message>
+   <source>Not held by this machine: {}</source>
+   <translation>Von dieser Maschine nicht zu halten: {}</translation>
+  </message>
+  <message>
+   <source>Not in the jobs, for want of an axis: {}</source>
+   <translation>Nicht in den Aufträgen, weil eine Achse fehlt: {}</translation>
+  </message>
+  <message>
+   <source>Not inside tolerance: {}</source>
+   <translation>Nicht innerhalb der Toleranz: {}</translation>
+  </message>
+  <message>
+   <source>Nothing is selected: select faces or a body in the 3D view first</source>
+   <translation>Nichts ist ausgewählt: bitte zuerst Flächen oder einen Körper in der 3D-Ansicht auswählen</translation>
+  </message>
+  <message>
+   <source>Orientation {}</source>
+   <translation>Orientierung {}</translation>
+  </message>
+  <message>
+   <source>Orientations</source>
+   <translation>Orientierungen</translation>
+  </message>
+  <message>
+   <source>Outcome</source>
+   <translation>Ergebnis</translation>
+  </message>
+  <message>
+   <source>Passes</source>
+   <translation>Bahnen</translation>
+  </message>
+  <message>
+   <source>Passes {}</source>
+   <translation>Bahnen {}</translation>
+  </message>
+  <message>
+   <source>Pause</source>
+   <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Plan</source>
+   <translation>Plan</translation>
+  </message>
+  <message>
+   <source>Plan orientations</source>
+   <translation>Orientierungen planen</translation>
+  </message>
+  <message>
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <source>Press Compute to find the axes.</source>
+   <translation>Berechnen findet die Achsen.</translation>
+  </message>
+  <message>
+   <source>Reading the part</source>
+   <translation>Das Teil wird gelesen</translation>
+  </message>
+  <message>
+   <source>Removing material</source>
+   <translation>Material wird abgetragen</translation>
+  </message>
+  <message>
+   <source>Results hold; verdict: {}</source>
+   <translation>Die Ergebnisse gelten; Urteil: {}</translation>
+  </message>
+  <message>
+   <source>Roman's rule</source>
+   <translation>Regel von Roman</translation>
+  </message>
+  <message>
+   <source>Scallop limit</source>
+   <translation>Grenze der Rillenhöhe</translation>
+  </message>
+  <message>
+   <source>Select one or more faces in the 3D view and press Add selected</source>
+   <translation>Bitte eine oder mehrere Flächen in der 3D-Ansicht auswählen und Auswahl hinzufügen drücken</translation>
+  </message>
+  <message>
+   <source>Select one sub-surface in the tree, and one line that cuts it if it shall not be cut in the middle.</source>
+   <translation>Bitte eine Teilfläche im Baum auswählen, und eine Linie, die sie zerteilt, wenn es nicht in der Mitte sein soll.</translation>
+  </message>
+  <message>
+   <source>Select two or more sub-surfaces of one face in the tree first.</source>
+   <translation>Bitte zuerst zwei oder mehr Teilflächen einer Fläche im Baum auswählen.</translation>
+  </message>
+  <message>
+   <source>Shank clearance</source>
+   <translation>Abstand des Schafts</translation>
+  </message>
+  <message>
+   <source>Solution {}</source>
+   <translation>Lösung {}</translation>
+  </message>
+  <message>
+   <source>Something has changed: compute again.</source>
+   <translation>Etwas hat sich geändert: bitte neu berechnen.</translation>
+  </message>
+  <message>
+   <source>Stale: {}; plan it again</source>
+   <translation>Überholt: {}; bitte neu planen</translation>
+  </message>
+  <message>
+   <source>Stopped</source>
+   <translation>Angehalten</translation>
+  </message>
+  <message>
+   <source>Stopped after {} of the faces; OK puts these into the document.</source>
+   <translation>Nach {} der Flächen angehalten; OK stellt diese ins Dokument.</translation>
+  </message>
+  <message>
+   <source>Stopped; the document is unchanged.</source>
+   <translation>Angehalten; das Dokument ist unverändert.</translation>
+  </message>
+  <message>
+   <source>Stopped; the folder is as it was.</source>
+   <translation>Angehalten; der Ordner ist wie zuvor.</translation>
+  </message>
+  <message>
+   <source>Stopping</source>
+   <translation>Wird angehalten</translation>
+  </message>
+  <message>
+   <source>Strip width</source>
+   <translation>Streifenbreite</translation>
+  </message>
+  <message>
+   <source>Sub-surface {}</source>
+   <translation>Teilfläche {}</translation>
+  </message>
+  <message>
+   <source>The map could not be drawn.</source>
+   <translation>Die Karte konnte nicht gezeichnet werden.</translation>
+  </message>
+  <message>
+   <source>The map is being drawn.</source>
+   <translation>Die Karte wird gezeichnet.</translation>
+  </message>
+  <message>
+   <source>The map of the tool axes appears here after Compute.</source>
+   <translation>Nach dem Berechnen erscheint hier die Karte der Werkzeugachsen.</translation>
+  </message>
+  <message>
+   <source>The operation was deleted</source>
+   <translation>Die Operation wurde gelöscht</translation>
+  </message>
+  <message>
+   <source>The part was deleted: select other faces</source>
+   <translation>Das Teil wurde gelöscht: bitte andere Flächen auswählen</translation>
+  </message>
+  <message>
+   <source>The verdict could not be kept: {}</source>
+   <translation>Das Urteil konnte nicht aufbewahrt werden: {}</translation>
+  </message>
+  <message>
+   <source>There is no map.</source>
+   <translation>Es gibt keine Karte.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation for a machine: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation für eine Maschine: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to make a job of: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation für einen Auftrag: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to recompute: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation, die neu zu berechnen wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to verify: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation, die zu prüfen wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to write: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation, die zu schreiben wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>This axis can be used.</source>
+   <translation>Diese Achse ist brauchbar.</translation>
+  </message>
+  <message>
+   <source>This axis cannot be used.</source>
+   <translation>Diese Achse ist nicht brauchbar.</translation>
+  </message>
+  <message>
+   <source>Tilt from Z</source>
+   <translation>Neigung gegen Z</translation>
+  </message>
+  <message>
+   <source>Tool Axis: {}; tool axis {} in the document</source>
+   <translation>Tool Axis: {}; Werkzeugachse {} im Dokument</translation>
+  </message>
+  <message>
+   <source>Tool {}</source>
+   <translation>Werkzeug {}</translation>
+  </message>
+  <message>
+   <source>Tried</source>
+   <translation>Ausprobiert</translation>
+  </message>
+  <message>
+   <source>Trying this axis...</source>
+   <translation>Diese Achse wird ausprobiert...</translation>
+  </message>
+  <message>
+   <source>Trying this axis: {}...</source>
+   <translation>Diese Achse wird ausprobiert: {}...</translation>
+  </message>
+  <message>
+   <source>Turn about Z</source>
+   <translation>Drehung um Z</translation>
+  </message>
+  <message>
+   <source>Verify</source>
+   <translation>Prüfen</translation>
+  </message>
+  <message>
+   <source>Work coordinates {}</source>
+   <translation>Werkstückkoordinaten {}</translation>
+  </message>
+  <message>
+   <source>above the limit</source>
+   <translation>über der Grenze</translation>
+  </message>
+  <message>
+   <source>axis tried</source>
+   <translation>ausprobierte Achse</translation>
+  </message>
+  <message>
+   <source>cancelled</source>
+   <translation>abgebrochen</translation>
+  </message>
+  <message>
+   <source>checking for gouges and collisions</source>
+   <translation>Verletzungen und Kollisionen werden geprüft</translation>
+  </message>
+  <message>
+   <source>chosen axis</source>
+   <translation>gewählte Achse</translation>
+  </message>
+  <message>
+   <source>different axes</source>
+   <translation>verschiedene Achsen</translation>
+  </message>
+  <message>
+   <source>drawing the map</source>
+   <translation>die Karte wird gezeichnet</translation>
+  </message>
+  <message>
+   <source>far</source>
+   <translation>weit</translation>
+  </message>
+  <message>
+   <source>feasible</source>
+   <translation>machbar</translation>
+  </message>
+  <message>
+   <source>forbidden: {}{}, {}</source>
+   <translation>verboten: {}{}, {}</translation>
+  </message>
+  <message>
+   <source>infeasible (proven)</source>
+   <translation>unmöglich (bewiesen)</translation>
+  </message>
+  <message>
+   <source>machine {}</source>
+   <translation>Maschine {}</translation>
+  </message>
+  <message>
+   <source>making passes</source>
+   <translation>Bahnen werden gemacht</translation>
+  </message>
+  <message>
+   <source>mean normal</source>
+   <translation>mittlere Normale</translation>
+  </message>
+  <message>
+   <source>no other body in the document</source>
+   <translation>kein anderer Körper im Dokument</translation>
+  </message>
+  <message>
+   <source>no position reaches it</source>
+   <translation>keine Stellung erreicht sie</translation>
+  </message>
+  <message>
+   <source>none</source>
+   <translation>keines</translation>
+  </message>
+  <message>
+   <source>none found</source>
+   <translation>keine gefunden</translation>
+  </message>
+  <message>
+   <source>not checked</source>
+   <translation>nicht geprüft</translation>
+  </message>
+  <message>
+   <source>not reached</source>
+   <translation>nicht erreicht</translation>
+  </message>
+  <message>
+   <source>optimal (proven)</source>
+   <translation>optimal (bewiesen)</translation>
+  </message>
+  <message>
+   <source>other good axes</source>
+   <translation>andere gute Achsen</translation>
+  </message>
+  <message>
+   <source>over {}</source>
+   <translation>über {}</translation>
+  </message>
+  <message>
+   <source>screening</source>
+   <translation>Vorauswahl</translation>
+  </message>
+  <message>
+   <source>strip width</source>
+   <translation>Streifenbreite</translation>
+  </message>
+  <message>
+   <source>strip width {}, about {:.0f} passes, {}</source>
+   <translation>Streifenbreite {}, etwa {:.0f} Bahnen, {}</translation>
+  </message>
+  <message>
+   <source>typed in below</source>
+   <translation>unten eingegeben</translation>
+  </message>
+  <message>
+   <source>{:.0f} s</source>
+   <translation>{:.0f} s</translation>
+  </message>
+  <message>
+   <source>{:.0f}° from the mean normal</source>
+   <translation>{:.0f}° von der mittleren Normalen</translation>
+  </message>
+  <message>
+   <source>{} (locked)</source>
+   <translation>{} (gesperrt)</translation>
+  </message>
+  <message>
+   <source>{} (turned copy)</source>
+   <translation>{} (gedrehte Kopie)</translation>
+  </message>
+  <message>
+   <source>{} ({} of {})</source>
+   <translation>{} ({} von {})</translation>
+  </message>
+  <message>
+   <source>{} at ({}, {}, {}) on face {}</source>
+   <translation>{} bei ({}, {}, {}) auf Fläche {}</translation>
+  </message>
+  <message>
+   <source>{} axes, {} sub-surfaces: {}, {:.1f} % less than the first</source>
+   <translation>{} Achsen, {} Teilflächen: {}, {:.1f} % weniger als beim ersten</translation>
+  </message>
+  <message>
+   <source>{} files in {}</source>
+   <translation>{} Dateien in {}</translation>
+  </message>
+  <message>
+   <source>{} is stale: {}. Recompute it.</source>
+   <translation>{} ist überholt: {}. Bitte neu berechnen.</translation>
+  </message>
+  <message>
+   <source>{} meet by {} mm</source>
+   <translation>{} treffen sich um {} mm</translation>
+  </message>
+  <message>
+   <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
+   <translation>{} von {} Flächen haben eine Achse; die Gründe stehen auf dem Reiter Achse.</translation>
+  </message>
+  <message>
+   <source>{} of {} sub-surfaces</source>
+   <translation>{} von {} Teilflächen</translation>
+  </message>
+  <message>
+   <source>{} operations: plan.json and their CL files are written.</source>
+   <translation>{} Operationen: plan.json und ihre CL-Dateien werden geschrieben.</translation>
+  </message>
+  <message>
+   <source>{} row {}: {} '{}' is not a length</source>
+   <translation>{} Zeile {}: {} '{}' ist keine Länge</translation>
+  </message>
+  <message>
+   <source>{}: no axis</source>
+   <translation>{}: keine Achse</translation>
+  </message>
+  <message>
+   <source>{}: no axis looked at yet</source>
+   <translation>{}: noch keine Achse betrachtet</translation>
+  </message>
+  <message>
+   <source>{}: not begun</source>
+   <translation>{}: nicht begonnen</translation>
+  </message>
+  <message>
+   <source>{}: the axes looked at so far</source>
+   <translation>{}: die bisher betrachteten Achsen</translation>
+  </message>
+  <message>
+   <source>{}: {}. Assumed: {}.</source>
+   <translation>{}: {}. Angenommen: {}.</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisExport</name>
+  <message>
+   <source>A program holds rotary angles, so it is written for one machine. The plan itself needs none.</source>
+   <translation>Ein Programm enthält Winkel der Drehachsen und wird deshalb für eine Maschine geschrieben. Der Plan selbst braucht keine.</translation>
+  </message>
+  <message>
+   <source>Chooses a folder.</source>
+   <translation>Wählt einen Ordner.</translation>
+  </message>
+  <message>
+   <source>Export</source>
+   <translation>Exportieren</translation>
+  </message>
+  <message>
+   <source>Folder</source>
+   <translation>Ordner</translation>
+  </message>
+  <message>
+   <source>Folder that the files are written into. Files of an earlier plan there are replaced, others stay.</source>
+   <translation>Ordner, in den die Dateien geschrieben werden. Dateien eines früheren Plans dort werden ersetzt, andere bleiben.</translation>
+  </message>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
+  </message>
+  <message>
+   <source>Machine that the program is for: its rotary angles stand in it.</source>
+   <translation>Maschine, für die das Programm ist: ihre Drehwinkel stehen darin.</translation>
+  </message>
+  <message>
+   <source>NC program besides plan.json and the CL files, with its setup sheet.</source>
+   <translation>NC-Programm neben plan.json und den CL-Dateien, mit Einrichteblatt.</translation>
+  </message>
+  <message>
+   <source>Origin on the table</source>
+   <translation>Ursprung auf dem Tisch</translation>
+  </message>
+  <message>
+   <source>Program</source>
+   <translation>Programm</translation>
+  </message>
+  <message>
+   <source>Report, one page for the browser</source>
+   <translation>Bericht, eine Seite für den Browser</translation>
+  </message>
+  <message>
+   <source>Stop</source>
+   <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Stops; the folder stays as it is.</source>
+   <translation>Hält an; der Ordner bleibt, wie er ist.</translation>
+  </message>
+  <message>
+   <source>The dialect of the controller. The program is the one that the command toolaxis post writes.</source>
+   <translation>Der Dialekt der Steuerung. Das Programm ist das, welches der Befehl toolaxis post schreibt.</translation>
+  </message>
+  <message>
+   <source>The files that were written.</source>
+   <translation>Die geschriebenen Dateien.</translation>
+  </message>
+  <message>
+   <source>Write</source>
+   <translation>Schreiben</translation>
+  </message>
+  <message>
+   <source>Writes all files, or none.</source>
+   <translation>Schreibt alle Dateien oder keine.</translation>
+  </message>
+  <message>
+   <source>Writes the plan as one HTML page as well; that needs the Python package jinja2.</source>
+   <translation>Schreibt den Plan auch als eine HTML-Seite; dazu braucht es das Python-Paket jinja2.</translation>
+  </message>
+  <message>
+   <source>X of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>X des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>Y of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>Y des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>Z of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>Z des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>…</source>
+   <translation>…</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisMachine</name>
+  <message>
+   <source>Look from the machine's bed</source>
+   <translation>Vom Maschinenbett aus betrachten</translation>
+  </message>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
+  </message>
+  <message>
+   <source>Machines of the library, of the folder named in the preferences, and of FreeCAD.</source>
+   <translation>Maschinen der Bibliothek, des in den Einstellungen genannten Ordners und von FreeCAD.</translation>
+  </message>
+  <message>
+   <source>Moves the machine from operation to operation.</source>
+   <translation>Bewegt die Maschine von Operation zu Operation.</translation>
+  </message>
+  <message>
+   <source>Opens a machine file: TOML, or one of FreeCAD (.fcm).</source>
+   <translation>Öffnet eine Maschinendatei: TOML oder eine von FreeCAD (.fcm).</translation>
+  </message>
+  <message>
+   <source>Origin on the table</source>
+   <translation>Ursprung auf dem Tisch</translation>
+  </message>
+  <message>
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <source>Shows the index moves from operation to operation: up, turn, over, down.</source>
+   <translation>Zeigt die Schwenkbewegungen von Operation zu Operation: hoch, drehen, hinüber, hinab.</translation>
+  </message>
+  <message>
+   <source>The camera stays with the machine's bed, so that the table turns; otherwise it stays with the part.</source>
+   <translation>Die Kamera bleibt beim Maschinenbett, so dass sich der Tisch dreht; sonst bleibt sie beim Teil.</translation>
+  </message>
+  <message>
+   <source>The machine whose rotary axes are to hold the tool axes. Its ranges, travels and bodies are looked at for every operation.</source>
+   <translation>Die Maschine, deren Drehachsen die Werkzeugachsen halten sollen. Ihre Bereiche, Verfahrwege und Körper werden für jede Operation betrachtet.</translation>
+  </message>
+  <message>
+   <source>Two rotary axes hold almost every tool axis in two ways. The bold one is taken: nearest to the operation before, inside all ranges and travels, and with no bodies that meet. What speaks against a solution stands below its angles.</source>
+   <translation>Zwei Drehachsen halten fast jede Werkzeugachse auf zwei Arten. Die fett gedruckte wird genommen: der vorigen Operation am nächsten, innerhalb aller Bereiche und Verfahrwege und ohne Körper, die sich treffen. Was gegen eine Lösung spricht, steht unter ihren Winkeln.</translation>
+  </message>
+  <message>
+   <source>Where the rotary axes stand for each operation, in both solutions. Click one to see it.</source>
+   <translation>Wo die Drehachsen bei jeder Operation stehen, in beiden Lösungen. Ein Klick zeigt die Lösung.</translation>
+  </message>
+  <message>
+   <source>X of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>X des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>Y of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>Y des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>Z of the document's origin in machine coordinates, all axes at zero, in mm.</source>
+   <translation>Z des Ursprungs des Dokuments in Maschinenkoordinaten, alle Achsen auf null, in mm.</translation>
+  </message>
+  <message>
+   <source>…</source>
+   <translation>…</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisOperation</name>
+  <message>
+   <source>Moves tool and holder along the passes.</source>
+   <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
+  </message>
+  <message>
+   <source>Opens the planning panel with the inputs of this operation.</source>
+   <translation>Öffnet die Planung mit den Eingaben dieser Operation.</translation>
+  </message>
+  <message>
+   <source>Operation</source>
+   <translation>Operation</translation>
+  </message>
+  <message>
+   <source>Plan again...</source>
+   <translation>Neu planen...</translation>
+  </message>
+  <message>
+   <source>Removes material along the passes.</source>
+   <translation>Trägt entlang der Bahnen Material ab.</translation>
+  </message>
+  <message>
+   <source>Tool at</source>
+   <translation>Werkzeug bei</translation>
+  </message>
+  <message>
+   <source>Verify</source>
+   <translation>Prüfen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisPlan</name>
+  <message>
+   <source> rev/min</source>
+   <translation> U/min</translation>
+  </message>
+  <message>
+   <source>A tool controller or tool bit of the document, or a cutter typed in below.</source>
+   <translation>Ein Werkzeug des Dokuments, oder ein Fräser, dessen Maße unten stehen.</translation>
+  </message>
+  <message>
+   <source>Add row</source>
+   <translation>Zeile anfügen</translation>
+  </message>
+  <message>
+   <source>Add selected</source>
+   <translation>Auswahl hinzufügen</translation>
+  </message>
+  <message>
+   <source>Add the faces selected in the 3D view; a body stands for all its sculptured faces.</source>
+   <translation>Fügt die in der 3D-Ansicht ausgewählten Flächen hinzu; ein Körper steht für alle seine Freiformflächen.</translation>
+  </message>
+  <message>
+   <source>Allowance</source>
+   <translation>Aufmaß</translation>
+  </message>
+  <message>
+   <source>Allowed</source>
+   <translation>Erlaubt</translation>
+  </message>
+  <message>
+   <source>Also plans the same faces by other methods, and lists what they come to.</source>
+   <translation>Plant dieselben Flächen auch mit anderen Verfahren und stellt die Ergebnisse nebeneinander.</translation>
+  </message>
+  <message>
+   <source>Axes</source>
+   <translation>Achsen</translation>
+  </message>
+  <message>
+   <source>Axis</source>
+   <translation>Achse</translation>
+  </message>
+  <message>
+   <source>Axis locked</source>
+   <translation>Achse gesperrt</translation>
+  </message>
+  <message>
+   <source>Back to the best</source>
+   <translation>Zurück zur besten</translation>
+  </message>
+  <message>
+   <source>Ball</source>
+   <translation>Kugel</translation>
+  </message>
+  <message>
+   <source>Bodies to avoid</source>
+   <translation>Zu meidende Körper</translation>
+  </message>
+  <message>
+   <source>Bull nose</source>
+   <translation>Torusfräser</translation>
+  </message>
+  <message>
+   <source>Compare with other methods</source>
+   <translation>Mit anderen Verfahren vergleichen</translation>
+  </message>
+  <message>
+   <source>Compute</source>
+   <translation>Berechnen</translation>
+  </message>
+  <message>
+   <source>Corner radius</source>
+   <translation>Eckenradius</translation>
+  </message>
+  <message>
+   <source>Diameter</source>
+   <translation>Durchmesser</translation>
+  </message>
+  <message>
+   <source>Diameter at each height. Empty: as thick as the upper end of the cutter.</source>
+   <translation>Durchmesser in jeder Höhe. Leer: so dick wie das obere Ende des Fräsers.</translation>
+  </message>
+  <message>
+   <source>Diameter at each height. Empty: the holder is not checked.</source>
+   <translation>Durchmesser in jeder Höhe. Leer: der Halter wird nicht geprüft.</translation>
+  </message>
+  <message>
+   <source>Direction</source>
+   <translation>Richtung</translation>
+  </message>
+  <message>
+   <source>Division</source>
+   <translation>Aufteilung</translation>
+  </message>
+  <message>
+   <source>Faces</source>
+   <translation>Flächen</translation>
+  </message>
+  <message>
+   <source>Feed locked</source>
+   <translation>Vorschub gesperrt</translation>
+  </message>
+  <message>
+   <source>Feed rate</source>
+   <translation>Vorschub</translation>
+  </message>
+  <message>
+   <source>Flat end mill</source>
+   <translation>Schaftfräser</translation>
+  </message>
+  <message>
+   <source>From</source>
+   <translation>Von</translation>
+  </message>
+  <message>
+   <source>From the tip to the lower face of the holder.</source>
+   <translation>Von der Spitze bis zur Unterseite des Halters.</translation>
+  </message>
+  <message>
+   <source>Greatest angle</source>
+   <translation>Größter Winkel</translation>
+  </message>
+  <message>
+   <source>Greatest height left between neighbouring passes.</source>
+   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Half angle</source>
+   <translation>Halber Winkel</translation>
+  </message>
+  <message>
+   <source>Holder, heights from its lower face</source>
+   <translation>Halter, Höhen ab seiner Unterseite</translation>
+  </message>
+  <message>
+   <source>How many different axes there are in all; automatic: every number is tried, and a curve shows what each comes to.</source>
+   <translation>Wie viele verschiedene Achsen es insgesamt gibt; selbsttätig: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
+  </message>
+  <message>
+   <source>How the axis of each sub-surface is found; all but the first two are there for comparison.</source>
+   <translation>Wie die Achse jeder Teilfläche gefunden wird; alle außer den ersten beiden dienen dem Vergleich.</translation>
+  </message>
+  <message>
+   <source>Inclination of the side from the axis.</source>
+   <translation>Neigung der Seite gegen die Achse.</translation>
+  </message>
+  <message>
+   <source>Into how many sub-surfaces each face is divided; automatic: as many as pay for their index moves, around bosses too.</source>
+   <translation>In wie viele Teilflächen jede Fläche geteilt wird; selbsttätig: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
+  </message>
+  <message>
+   <source>Job</source>
+   <translation>Auftrag</translation>
+  </message>
+  <message>
+   <source>Keep this axis, and the border of its sub-surface, when the plan is computed again.</source>
+   <translation>Diese Achse und die Grenze ihrer Teilfläche behalten, wenn der Plan neu berechnet wird.</translation>
+  </message>
+  <message>
+   <source>Keep this feed direction, and the border of its sub-surface, when the plan is computed again.</source>
+   <translation>Diese Vorschubrichtung und die Grenze ihrer Teilfläche behalten, wenn der Plan neu berechnet wird.</translation>
+  </message>
+  <message>
+   <source>Least</source>
+   <translation>Kleinste</translation>
+  </message>
+  <message>
+   <source>Limits</source>
+   <translation>Grenzen</translation>
+  </message>
+  <message>
+   <source>Limits of the tool axis</source>
+   <translation>Grenzen der Werkzeugachse</translation>
+  </message>
+  <message>
+   <source>Method</source>
+   <translation>Verfahren</translation>
+  </message>
+  <message>
+   <source>Middle</source>
+   <translation>Mitte</translation>
+  </message>
+  <message>
+   <source>Moves tool and holder along the passes.</source>
+   <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
+  </message>
+  <message>
+   <source>Other feed</source>
+   <translation>Anderer Vorschub</translation>
+  </message>
+  <message>
+   <source>Passes</source>
+   <translation>Bahnen</translation>
+  </message>
+  <message>
+   <source>Plan one blade, turn it</source>
+   <translation>Eine Schaufel planen und drehen</translation>
+  </message>
+  <message>
+   <source>Plan orientations</source>
+   <translation>Orientierungen planen</translation>
+  </message>
+  <message>
+   <source>Plan the face with the axis that the search found.</source>
+   <translation>Plant die Fläche mit der Achse, die die Suche gefunden hat.</translation>
+  </message>
+  <message>
+   <source>Plan the face with the axis that was tried.</source>
+   <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
+  </message>
+  <message>
+   <source>Remove</source>
+   <translation>Entfernen</translation>
+  </message>
+  <message>
+   <source>Remove row</source>
+   <translation>Zeile entfernen</translation>
+  </message>
+  <message>
+   <source>Remove the marked faces from the list.</source>
+   <translation>Entfernt die markierten Flächen aus der Liste.</translation>
+  </message>
+  <message>
+   <source>Roman's rule</source>
+   <translation>Regel von Roman</translation>
+  </message>
+  <message>
+   <source>Scallop height</source>
+   <translation>Rillenhöhe</translation>
+  </message>
+  <message>
+   <source>Shank, heights from the tip</source>
+   <translation>Schaft, Höhen ab der Spitze</translation>
+  </message>
+  <message>
+   <source>Shape</source>
+   <translation>Form</translation>
+  </message>
+  <message>
+   <source>Spindle</source>
+   <translation>Spindel</translation>
+  </message>
+  <message>
+   <source>Stick-out</source>
+   <translation>Auskraglänge</translation>
+  </message>
+  <message>
+   <source>Stock left on the faces.</source>
+   <translation>Was auf den Flächen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Stop</source>
+   <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Sub-surfaces</source>
+   <translation>Teilflächen</translation>
+  </message>
+  <message>
+   <source>Tapered</source>
+   <translation>Kegelig</translation>
+  </message>
+  <message>
+   <source>The face whose map is shown.</source>
+   <translation>Die Fläche, deren Karte gezeigt wird.</translation>
+  </message>
+  <message>
+   <source>The faces to machine; each gets a tool axis of its own.</source>
+   <translation>Die zu bearbeitenden Flächen; jede bekommt eine eigene Werkzeugachse.</translation>
+  </message>
+  <message>
+   <source>The rest of the part is always kept clear of; ticked bodies too.</source>
+   <translation>Der Rest des Teils wird immer gemieden, angekreuzte Körper auch.</translation>
+  </message>
+  <message>
+   <source>Tilt</source>
+   <translation>Neigung</translation>
+  </message>
+  <message>
+   <source>Tool</source>
+   <translation>Werkzeug</translation>
+  </message>
+  <message>
+   <source>Tool at</source>
+   <translation>Werkzeug bei</translation>
+  </message>
+  <message>
+   <source>Try the passes along the other parameter lines, with the same axis.</source>
+   <translation>Probiert mit derselben Achse die Bahnen entlang der anderen Parameterlinien aus.</translation>
+  </message>
+  <message>
+   <source>Turn</source>
+   <translation>Drehung</translation>
+  </message>
+  <message>
+   <source>Use this axis</source>
+   <translation>Diese Achse verwenden</translation>
+  </message>
+  <message>
+   <source>What the tool axis is chosen by.</source>
+   <translation>Wonach die Werkzeugachse gewählt wird.</translation>
+  </message>
+  <message>
+   <source>Where all faces of a part with blades are chosen, one blade is planned, and what is done there is turned to the others and proven there.</source>
+   <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant; was dort geschieht, wird zu den anderen gedreht und dort bewiesen.</translation>
+  </message>
+  <message>
+   <source>Where the corner arc ends; of a tapered cutter, at its tip.</source>
+   <translation>Wo der Eckenbogen endet; bei einem kegeligen Fräser an der Spitze.</translation>
+  </message>
+  <message>
+   <source>any axis</source>
+   <translation>jede Achse</translation>
+  </message>
+  <message>
+   <source>at most</source>
+   <translation>höchstens</translation>
+  </message>
+  <message>
+   <source>automatic</source>
+   <translation>selbsttätig</translation>
+  </message>
+  <message>
+   <source>ball end, mean normals</source>
+   <translation>Kugelfräser, mittlere Normalen</translation>
+  </message>
+  <message>
+   <source>best of hemisphere</source>
+   <translation>beste der Halbkugel</translation>
+  </message>
+  <message>
+   <source>climb</source>
+   <translation>Gleichlauf</translation>
+  </message>
+  <message>
+   <source>cone</source>
+   <translation>Kegel</translation>
+  </message>
+  <message>
+   <source>conventional</source>
+   <translation>Gegenlauf</translation>
+  </message>
+  <message>
+   <source>cutting length</source>
+   <translation>Schnittlänge</translation>
+  </message>
+  <message>
+   <source>mean normals</source>
+   <translation>mittlere Normalen</translation>
+  </message>
+  <message>
+   <source>number</source>
+   <translation>Anzahl</translation>
+  </message>
+  <message>
+   <source>number of passes</source>
+   <translation>Anzahl der Bahnen</translation>
+  </message>
+  <message>
+   <source>one axis for all</source>
+   <translation>eine Achse für alle</translation>
+  </message>
+  <message>
+   <source>one each</source>
+   <translation>je eine</translation>
+  </message>
+  <message>
+   <source>sectors</source>
+   <translation>Sektoren</translation>
+  </message>
+  <message>
+   <source>tilt and turn</source>
+   <translation>Neigung und Drehung</translation>
+  </message>
+  <message>
+   <source>whole faces</source>
+   <translation>ganze Flächen</translation>
+  </message>
+  <message>
+   <source>zigzag</source>
+   <translation>hin und her</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisPreferences</name>
+  <message>
+   <source> mm</source>
+   <translation> mm</translation>
+  </message>
+  <message>
+   <source> mm/min</source>
+   <translation> mm/min</translation>
+  </message>
+  <message>
+   <source> rev/min</source>
+   <translation> U/min</translation>
+  </message>
+  <message>
+   <source>Colour of the cutting motion.</source>
+   <translation>Farbe der schneidenden Bewegung.</translation>
+  </message>
+  <message>
+   <source>Colour of the motion between passes.</source>
+   <translation>Farbe der Bewegung zwischen den Bahnen.</translation>
+  </message>
+  <message>
+   <source>Colours while a plan is looked at</source>
+   <translation>Farben, während ein Plan betrachtet wird</translation>
+  </message>
+  <message>
+   <source>Cuts</source>
+   <translation>Schnitte</translation>
+  </message>
+  <message>
+   <source>Feed rate</source>
+   <translation>Vorschub</translation>
+  </message>
+  <message>
+   <source>Feed rate of the cutting motion.</source>
+   <translation>Vorschub der schneidenden Bewegung.</translation>
+  </message>
+  <message>
+   <source>Folder</source>
+   <translation>Ordner</translation>
+  </message>
+  <message>
+   <source>General</source>
+   <translation>Allgemein</translation>
+  </message>
+  <message>
+   <source>Greatest height left between neighbouring passes.</source>
+   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Links</source>
+   <translation>Verbindungen</translation>
+  </message>
+  <message>
+   <source>Machine files in this folder are offered besides those of the library: TOML, and FreeCAD's .fcm.</source>
+   <translation>Maschinendateien in diesem Ordner werden neben denen der Bibliothek angeboten: TOML und .fcm von FreeCAD.</translation>
+  </message>
+  <message>
+   <source>Machines</source>
+   <translation>Maschinen</translation>
+  </message>
+  <message>
+   <source>New plans</source>
+   <translation>Neue Pläne</translation>
+  </message>
+  <message>
+   <source>Scallop height</source>
+   <translation>Rillenhöhe</translation>
+  </message>
+  <message>
+   <source>Short form of the cutter, such as torus:12x1, ball:8, flat:20 or tapered:6x3x4. Empty: one that fits the part.</source>
+   <translation>Kurzform des Fräsers, etwa torus:12x1, ball:8, flat:20 oder tapered:6x3x4. Leer: einer, der zum Teil passt.</translation>
+  </message>
+  <message>
+   <source>Spindle</source>
+   <translation>Spindel</translation>
+  </message>
+  <message>
+   <source>Spindle speed.</source>
+   <translation>Drehzahl der Spindel.</translation>
+  </message>
+  <message>
+   <source>Tool</source>
+   <translation>Werkzeug</translation>
+  </message>
+  <message>
+   <source>by the part</source>
+   <translation>nach dem Teil</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisVerify</name>
+  <message>
+   <source>A click zooms to the point.</source>
+   <translation>Ein Klick zeigt den Punkt aus der Nähe.</translation>
+  </message>
+  <message>
+   <source>Operation</source>
+   <translation>Operation</translation>
+  </message>
+  <message>
+   <source>Painted</source>
+   <translation>Gezeigt</translation>
+  </message>
+  <message>
+   <source>Stop</source>
+   <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Verify</source>
+   <translation>Prüfen</translation>
+  </message>
+  <message>
+   <source>What the colours on the face show.</source>
+   <translation>Was die Farben auf der Fläche zeigen.</translation>
+  </message>
+  <message>
+   <source>Worst points; a click zooms to one</source>
+   <translation>Schlimmste Stellen; ein Klick zeigt eine aus der Nähe</translation>
+  </message>
+  <message>
+   <source>gouge</source>
+   <translation>Verletzung</translation>
+  </message>
+  <message>
+   <source>scallop height</source>
+   <translation>Rillenhöhe</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Examples</name>
+  <message>
+   <source>Biquintic patch</source>
+   <translation>Biquintische Fläche</translation>
+  </message>
+  <message>
+   <source>Blisk with 16 blades</source>
+   <translation>Blisk mit 16 Schaufeln</translation>
+  </message>
+  <message>
+   <source>Face with a boss</source>
+   <translation>Fläche mit einem Zapfen</translation>
+  </message>
+  <message>
+   <source>Face with an irregular outline</source>
+   <translation>Fläche mit unregelmäßigem Umriss</translation>
+  </message>
+  <message>
+   <source>Face with three bosses</source>
+   <translation>Fläche mit drei Zapfen</translation>
+  </message>
+  <message>
+   <source>Freeform face</source>
+   <translation>Freiformfläche</translation>
+  </message>
+  <message>
+   <source>Hyperbolic paraboloid</source>
+   <translation>Hyperbolisches Paraboloid</translation>
+  </message>
+  <message>
+   <source>Impeller with nine blades</source>
+   <translation>Laufrad mit neun Schaufeln</translation>
+  </message>
+  <message>
+   <source>Manta surface</source>
+   <translation>Manta-Fläche</translation>
+  </message>
+  <message>
+   <source>Opens this example part in a document of its own</source>
+   <translation>Öffnet dieses Beispielteil in einem eigenen Dokument</translation>
+  </message>
+  <message>
+   <source>Saddle</source>
+   <translation>Sattel</translation>
+  </message>
+  <message>
+   <source>Skin of six faces</source>
+   <translation>Haut aus sechs Flächen</translation>
+  </message>
+  <message>
+   <source>Strong waves</source>
+   <translation>Starke Wellen</translation>
+  </message>
+  <message>
+   <source>Trimmed face with a hole</source>
+   <translation>Getrimmte Fläche mit Loch</translation>
+  </message>
+  <message>
+   <source>Turbine blade</source>
+   <translation>Turbinenschaufel</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Export</name>
+  <message>
+   <source>Export</source>
+   <translation>Exportieren</translation>
+  </message>
+  <message>
+   <source>Writes plan.json, CL files, an NC program with its setup sheet, and a report</source>
+   <translation>Schreibt plan.json, CL-Dateien, ein NC-Programm mit Einrichteblatt und einen Bericht</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Machine</name>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
+  </message>
+  <message>
+   <source>Picks a machine, shows where its rotary axes stand for each operation, and its index moves</source>
+   <translation>Wählt eine Maschine und zeigt, wo ihre Drehachsen bei jeder Operation stehen, und ihre Schwenkbewegungen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_MakeJobs</name>
+  <message>
+   <source>Make CAM Jobs</source>
+   <translation>CAM-Aufträge anlegen</translation>
+  </message>
+  <message>
+   <source>Makes jobs of FreeCAD's CAM workbench from operations: stock, tool and passes for each orientation, ready for a post-processor</source>
+   <translation>Macht aus Operationen Aufträge des FreeCAD-Arbeitsbereichs CAM: Rohteil, Werkzeug und Bahnen für jede Orientierung, bereit für einen Postprozessor</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Merge</name>
+  <message>
+   <source>Merge Sub-Surfaces</source>
+   <translation>Teilflächen vereinen</translation>
+  </message>
+  <message>
+   <source>Puts the selected sub-surfaces of a face together and plans them again</source>
+   <translation>Vereint die ausgewählten Teilflächen einer Fläche und plant sie neu</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_PlanOrientations</name>
+  <message>
+   <source>Finds the best fixed tool axis for each selected face, its work coordinate system and its passes</source>
+   <translation>Findet für jede ausgewählte Fläche die beste feste Werkzeugachse, ihr Werkstückkoordinatensystem und ihre Bahnen</translation>
+  </message>
+  <message>
+   <source>Plan Orientations</source>
+   <translation>Orientierungen planen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Recompute</name>
+  <message>
+   <source>Plans the selected operation again, for the part as it is now</source>
+   <translation>Plant die ausgewählte Operation neu, für das Teil in seinem jetzigen Zustand</translation>
+  </message>
+  <message>
+   <source>Recompute</source>
+   <translation>Neu berechnen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Split</name>
+  <message>
+   <source>Cuts the selected sub-surface apart: along a wire or sketch that is selected with it, out of the face where that is closed, else in the middle</source>
+   <translation>Zerteilt die ausgewählte Teilfläche: entlang eines mit ausgewählten Linienzugs oder einer Skizze, aus der Fläche heraus, wo diese geschlossen sind, sonst in der Mitte</translation>
+  </message>
+  <message>
+   <source>Split Sub-Surface</source>
+   <translation>Teilfläche zerteilen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Verify</name>
+  <message>
+   <source>Removes material along the passes and shows scallops and gouges on the faces</source>
+   <translation>Trägt entlang der Bahnen Material ab und zeigt Rillen und Verletzungen auf den Flächen</translation>
+  </message>
+  <message>
+   <source>Verify</source>
+   <translation>Prüfen</translation>
+  </message>
+ </context>
+ <context>
+  <name>Workbench</name>
+  <message>
+   <source>&amp;Tool Axis</source>
+   <translation>&amp;Tool Axis</translation>
+  </message>
+  <message>
+   <source>Examples</source>
+   <translation>Beispiele</translation>
+  </message>
+  <message>
+   <source>Tool Axis</source>
+   <translation>Tool Axis</translation>
+  </message>
+  <message>
+   <source>Tool axes, work coordinate systems and passes for sculptured faces</source>
+   <translation>Werkzeugachsen, Werkstückkoordinatensysteme und Bahnen für Freiformflächen</translation>
+  </message>
+ </context>
+</TS>
