@@ -15,6 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
 EXAMPLES = ROOT / "examples"
+DIVIDED = ("freeform", "ball:12", "0.3", "--regions", "2", "--method", "normal")
 PLANS = {"freeform": ("torus:12x1", "0.05"), "trimmed": ("ball:8", "0.05")}
 LONG_PLANS = {
     "saddle": ("torus:12x1", "0.02"), "hyperbolic_paraboloid": ("torus:10x1", "0.01"),
@@ -33,10 +34,16 @@ def copied(name, folder):
 
 def write_plans(folder, jobs):
     for name, (tool, scallop) in jobs.items():
-        command = [sys.executable, "-m", "toolaxis.cli.main", "plan", str(copied(name, folder)), "--tool", tool,
-                   "--scallop", scallop, "--no-pictures", "--out", str(folder / name)]
-        run = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT / "core")}, check=False)
-        assert run.returncode in (0, 1), f"the command ended with {run.returncode}"
+        write_plan(copied(name, folder), (tool, scallop), folder / name)
+
+
+def write_plan(path, asked, folder):
+    """The command's plan of a part in a folder."""
+    tool, scallop, *more = asked
+    command = [sys.executable, "-m", "toolaxis.cli.main", "plan", str(path), "--tool", tool, "--scallop", scallop,
+               "--no-pictures", "--out", str(folder), *more]
+    run = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT / "core")}, check=False)
+    assert run.returncode in (0, 1), f"the command ended with {run.returncode}"
 
 
 def write_figures(folder, jobs):
@@ -59,4 +66,5 @@ if __name__ == "__main__":
     target, long = Path(sys.argv[1]), "--long" in sys.argv
     target.mkdir(parents=True, exist_ok=True)
     write_figures(target, FIGURES | (LONG_FIGURES if long else {}))
+    write_plan(copied(DIVIDED[0], target), DIVIDED[1:], target / "divided" / "out")
     write_plans(target, PLANS | (LONG_PLANS if long else {}))

@@ -117,3 +117,22 @@ def test_the_search_through_freecad_comes_to_the_same_plan(commands, again):
         # Symmetric faces have two best axes; which one is found, and how closely, hangs on the kernel's last digits.
         assert ours["orientation"]["length"] == pytest.approx(theirs["orientation"]["length"], rel=1e-3)
         assert ours["travel"] == pytest.approx(theirs["travel"], rel=1e-3)
+
+
+def test_a_division_comes_to_the_same_through_the_document(prepared):
+    """Sub-surfaces in the tree against the command's: labels, axes and lengths."""
+    from freecad.toolaxis import bridge
+
+    theirs = json.loads((FOLDER / "divided" / "out" / "plan.json").read_text())
+    asked = theirs["inputs"]
+    with imported("freeform") as thing:
+        made = bridge.plan(thing.Document, (thing, theirs["operations"][0]["face"]), theirs["tool"]["name"],
+                           asked["scallop"], regions=2, method=asked["method"], shank=None, holder=None,
+                           feedrate=asked["feedrate"])
+        assert len(made) == len(theirs["operations"]) == 2
+        for ours, op in zip(made, theirs["operations"], strict=True):
+            assert json.loads(ours.Details)["label"] == op["label"]
+            assert tuple(ours.Axis) == pytest.approx(op["orientation"]["axis"], abs=1e-6)
+            assert ours.Passes == op["orientation"]["passes"]
+            assert ours.CuttingLength.Value == pytest.approx(op["orientation"]["length"], rel=1e-6)
+            assert ours.LeftToCleanUp == pytest.approx(op["orientation"]["unreached"], abs=1e-9)
