@@ -106,11 +106,22 @@ def test_a_job_is_the_same_wherever_it_lies_and_another_one_with_every_other_set
             {"memory": 900}]
     other = [{"part": here / "b.step"}, {"tool": "ball:6"}, {"scallop": 0.2}, {"faces": "1"}, {"regions": 2},
              {"stickout": 30}, {"obstacles": [here / "b.step"]}, {"machine": "mikron-ucp-710"}, {"verify": True},
-             {"limits": "cone:0,0,1,45"}, {"feedrate": 500}, {"compare": True}, {"pictures": True}]
+             {"limits": "cone:0,0,1,45"}, {"feedrate": 500}, {"compare": True}, {"pictures": True},
+             {"strategy": "multiscale"}, {"strategy": "multiscale", "roughness": 0.8}]
     keys = [read_jobs([{**first, **change}])[0].key for change in same]
     assert len(set(keys)) == 1
     others = [read_jobs([{**first, **change}])[0].key for change in other]
     assert len({keys[0], *others}) == len(other) + 1
+
+
+def test_roughness_is_told_in_micrometres_and_only_where_it_is_looked_at(here: Path) -> None:
+    job = {"part": here / "a.step", "tool": "torus:10x3", "scallop": 0.1}
+    asked = [{"strategy": "multiscale", "roughness": 0.8}, {"strategy": "multiscale"}, {}]
+    assert [read_jobs([{**job, **more}])[0].task().options["roughness"] for more in asked] == [0.0008, None, None]
+    for wrong, said in (({"roughness": 0.8}, "does not look at it"),
+                        ({"strategy": "multiscale", "roughness": -1}, "above zero")):
+        with pytest.raises(InvalidInput, match=said):
+            read_jobs([{**job, **wrong}])
 
 
 def test_a_part_that_changes_while_the_batch_runs_is_told(here: Path) -> None:

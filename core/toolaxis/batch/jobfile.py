@@ -15,7 +15,7 @@ from toolaxis import __version__
 from toolaxis.batch.task import Source, Task
 from toolaxis.cad.loading import load
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.job.spec import Spec, by_strategy
+from toolaxis.job.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.catalogue import load_machine, machine_to_toml
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import parse_limits
@@ -29,7 +29,7 @@ _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str
            "feedrate": float, "spindle": float, "rapid": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
-        "strategy": str}
+        "strategy": str, "roughness": float}
 #: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
 KEYS = ("name", "part", "tool", "machine", "obstacles", *_INPUTS, *_ASKED, *_OWN)
 _NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
@@ -50,7 +50,7 @@ class Wanted:
     bodies : tuple
         The part, then the obstacles: paths, or what `toolaxis.load` made of objects.
     own : dict
-        compare, strategy, verify, pictures, timeout and memory.
+        compare, strategy, roughness (micrometres, or None), verify, pictures, timeout and memory.
     key : str
         SHA-256 of all that the plan depends on: the same for the same plan, another one for another.
     """
@@ -78,7 +78,7 @@ class Wanted:
         options = {**{name: getattr(inputs, name) for name in _INPUTS if name != "scallop"},
                    "scallop": inputs.scallop, "faces": self.spec.numbers, "regions": self.spec.regions,
                    "orientations": self.spec.orientations, "offset": self.spec.place, "compare": self.own["compare"],
-                   "strategy": self.own["strategy"]}
+                   "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"])}
         return Task(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options, self.own["verify"],
                     self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
 
@@ -173,11 +173,17 @@ def _checked(row: dict[str, Any], folder: Path) -> Wanted:
     tool = _tool(tool, spec)
     _check_rest(spec, machine)
     own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "timeout": None, "memory": None,
-           "strategy": "indexed",
+           "strategy": "indexed", "roughness": None,
            **{name: values[name] for name in _OWN if name in values}}
     by_strategy(own["strategy"], spec.inputs.method, spec.inputs.objective)
+    roughness_for(own["strategy"], _in_mm(own["roughness"]))
     key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
     return Wanted(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
+
+
+def _in_mm(roughness: float | None) -> float | None:
+    """Ra as it is planned with, from micrometres."""
+    return None if roughness is None else roughness / 1000
 
 
 def _check_rest(spec: Spec, machine: Machine | None) -> None:
@@ -270,5 +276,6 @@ def _key(spec: Spec, tool: Tool, machine: Machine | None, own: Mapping[str, Any]
              "inputs": asdict(spec.inputs), "tool": tool_document(tool),
              "machine": "" if machine is None else machine_to_toml(machine),
              "sources": [source.sha256 for source in sources], "version": __version__,
-             **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")}}
+             **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")},
+             **({} if own["roughness"] is None else {"roughness": own["roughness"]})}
     return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()
