@@ -5,6 +5,8 @@ import FreeCAD
 from ..places import carried, follow, matrix_of
 from .properties import Property, assign, ensure
 
+translate = FreeCAD.Qt.translate
+
 _PROPERTIES = (
     Property("String", "Shows", "Tool Axis", "What it shows", True),
     Property("Color", "Colour", "Tool Axis", "Its colour", True, True),
@@ -63,8 +65,8 @@ def show_surface(operation, op, chain, colour):
         _fill(thing, made, _HATCH if what == CLEAN_UP else colour)
         thing.setExpression("Placement", None)
         follow(thing, chain, "Frame")
-        thing.Label = FreeCAD.Qt.translate("ToolAxis", "Sub-surface {}" if what == SURFACE else "Clean-up {}").format(
-            operation.Label)
+        title = translate("ToolAxis", "Sub-surface {}") if what == SURFACE else translate("ToolAxis", "Clean-up {}")
+        thing.Label = title.format(operation.Label)
 
 
 def _added(operation, what):

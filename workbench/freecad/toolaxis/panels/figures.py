@@ -97,7 +97,8 @@ def fill_baselines(table, rows):
     """
     from toolaxis.plan.baseline import METHOD_NAMES
 
-    heads = [translate("ToolAxis", name) for name in ("Method", "Axes", "Passes", "Length")]
+    heads = [translate("ToolAxisPlan", "Method"), translate("ToolAxisPlan", "Axes"), translate("ToolAxis", "Passes"),
+             translate("ToolAxis", "Cutting length")]
     table.setVisible(bool(rows))
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
