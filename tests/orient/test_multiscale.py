@@ -29,6 +29,7 @@ from toolaxis.orient.lane import (
 )
 from toolaxis.orient.multiscale import smoothed
 from toolaxis.orient.multiscale_pins import pinned
+from toolaxis.orient.multiscale_plan import racing
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
@@ -172,6 +173,13 @@ def test_a_roughness_that_no_orientation_gives_is_told_with_the_best() -> None:
 def test_a_face_too_hollow_for_the_cutter_is_told() -> None:
     with pytest.raises(InvalidInput, match=r"no orientation near .* free of gouging"):
         beginnings(lane(patch(np.array([[6.0, 0, -2, 0, 6]] * 5), size=6.0), apart=0.1))
+
+
+def test_where_axes_race_the_feed_that_is_left_is_told() -> None:
+    rates, points = np.array([[0.5, 1.0], [8.0, 1.0], [3.0, 0.0], [0.0, 2.0]]), np.arange(12.0).reshape(4, 3)
+    said, = racing(rates, np.array([2.0, np.inf]), 800 / 60, points)
+    assert "on 50.0 % of the passes" in said and "down to 200 mm/min at [3.0, 4.0, 5.0]" in said
+    assert racing(rates, np.array([8.0, 2.0]), 800 / 60, points) == ()
 
 
 def test_wishes_that_make_no_sense() -> None:

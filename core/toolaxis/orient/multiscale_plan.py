@@ -101,16 +101,36 @@ def words(search: Multiscale, one: Found) -> tuple[str, ...]:
     rates = np.abs(np.concatenate([lane.spline.velocities(lane.lane.places, lane.lane.durations)
                                    for lane in one.lanes]))
     most = np.array([axis.drive.velocity if axis.drive else np.inf for axis in search.mounting.machine.rotary])
-    slow = float((rates > most).any(axis=1).mean())
-    slower = (f"rotary axes would pass their velocity on {100 * slow:.1f} % of the passes: the control feeds slower "
-              "there",) if slow > 0 else ()
+    points = np.concatenate([search.face.evaluate(lane.lane.uv[1:]).point for lane in one.lanes])
     return (f"Ra {1000 * one.roughness.mean():.3f} um in the mean and {1000 * one.roughness.max():.3f} um at most of "
             f"{len(one.uv)} places, {1000 * search.roughness:g} um allowed",
             f"section strip width {wide.min():.3f} to {wide.max():.3f} mm at a height of {search.wish.scallop:g} mm, "
             f"{low:.4f} to {high:.4f} mm expected",
             f"lean {degrees(lean.min()):.2f} to {degrees(lean.max()):.2f} deg; rotary axes turn by "
             f"{degrees(float(rates.max())):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squares "
-            f"sum to {one.cost:.4g} (rad/s)^2", *slower, CHECKED)
+            f"sum to {one.cost:.4g} (rad/s)^2", *racing(rates, most, search.speed, points), CHECKED)
+
+
+def racing(rates: Array, most: Array, speed: float, points: Array) -> tuple[str, ...]:
+    """A sentence on where rotary axes would pass their velocity, and what the feed comes down to; none where nowhere.
+
+    Parameters
+    ----------
+    rates : (n, m) array
+        Of the rotary axes at the programmed feed, rad/s, not below zero.
+    most : (m,) array
+        What they can do, rad/s.
+    speed : float
+        The programmed feed, mm/s.
+    points : (n, 3) array
+        Where that is, mm.
+    """
+    share = (rates / most).max(axis=1)
+    if not (share > 1).any():
+        return ()
+    place = np.round(points[int(share.argmax())], 1).tolist()
+    return (f"rotary axes would pass their velocity on {100 * float((share > 1).mean()):.1f} % of the passes: the "
+            f"control feeds slower there, down to {60 * speed / float(share.max()):.0f} mm/min at {place}",)
 
 
 def constant_lead(search: Multiscale, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:
