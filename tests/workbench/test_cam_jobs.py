@@ -277,3 +277,37 @@ def test_work_planes_are_used_where_jobs_have_them(document, parts, monkeypatch)
     for one, (operation, op) in zip(job.Operations.Group, made, strict=True):
         assert one.Workplane.Stands.isSame(frame_of(operation).Placement, 1e-9)
         check_on_cl(text, one, op, one.Workplane.Stands, np.eye(4))
+
+
+def turned_copy(document, operation, face):
+    """A link like those that show an operation on another blade."""
+    link = document.addObject("App::Link", "Turned")
+    link.LinkedObject = operation
+    link.addProperty("App::PropertyPlacement", "Turn")
+    link.addProperty("App::PropertyString", "Face")
+    link.Placement = link.Turn = Placement(Vector(), Rotation(Vector(0, 0, 1), 90))
+    link.Face, link.Label = face, "Another blade"
+    return link
+
+
+def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path):
+    from freecad.toolaxis.exporting import export
+
+    from toolaxis.job.folder import read_plan
+
+    thing = parts.block(document)
+    name = parts.sculptured_name(thing)
+    operation, op = planned(document, parts, thing, name)
+    link = turned_copy(document, operation, name)
+    document.recompute()
+    jobs = make_jobs(document, operation)
+    assert [job.Operations.Group[0].MadeFor for job in jobs] == [operation.Label, "Another blade"]
+    assert [job.Fixtures for job in jobs] == [["G54"], ["G55"]] and jobs_of(operation) == jobs
+    frame = link.Placement.multiply(frame_of(operation).Placement)
+    check_on_cl(posted(jobs[1]), jobs[1].Operations.Group[0], op, frame, matrix_of(link.Placement))
+    export(operation, tmp_path / "plan")
+    first, second = read_plan(tmp_path / "plan").operations
+    turn = matrix_of(link.Placement)[:3, :3]
+    assert np.abs(second.path.cl - first.path.cl @ turn.T).max() < 2e-6
+    assert np.abs(second.orientation.axis - turn @ first.orientation.axis).max() < 1e-9
+    assert np.abs(second.frame.x - turn @ first.frame.x).max() < 1e-9

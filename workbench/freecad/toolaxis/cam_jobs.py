@@ -11,6 +11,7 @@ import FreeCAD
 
 from .arguments import document_of, operation_of
 from .cam_setup import Passes, add_passes, bare_job, safe_height, tool_of
+from .objects.copies import turned_copies
 from .objects.transaction import one_step
 from .places import placement_from
 
@@ -49,16 +50,16 @@ def make_jobs(document, operations):
     several = operations if isinstance(operations, list | tuple) else [operations]
     operations = [operation_of(one) for one in several]
     document.recompute()
-    ready = [_ready(operation) for operation in operations if operation.Motions or operation.Stale]
+    ready = [one for operation in operations if operation.Motions or operation.Stale for one in _ready(operation)]
     if not ready:
         raise InvalidInput("there is no operation with passes: select faces and run Plan Orientations first")
     with one_step(document, translate("ToolAxis", "Make CAM jobs")), _active(document):
-        kept = _take_away(document, [one.operation for one in ready])
+        kept = _take_away(document, list({one.operation.Name: one.operation for one in ready}.values()))
         groups = _by_axis(ready)
         jobs = (_on_planes(document, groups) if _has_planes() else None) or [
             _job(document, group, offset) for group, offset in zip(groups, _offsets(len(groups)), strict=True)]
         for job, one in zip(jobs, groups, strict=False):
-            for name, value in kept.get(one[0].operation.Name, {}).items():
+            for name, value in kept.get(one[0].label, {}).items():
                 setattr(job, name, value)
         document.recompute()
     return jobs
@@ -75,7 +76,7 @@ def jobs_of(operation):
 
 
 def _ready(operation):
-    """An operation checked and read."""
+    """An operation checked and read, and its turned copies on other blades."""
     from toolaxis.errors import InvalidInput
 
     from .bridge import inputs_of
@@ -86,7 +87,10 @@ def _ready(operation):
     if reasons:
         raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
     inputs, standing = inputs_of(operation), Standing.of(operation)
-    return Passes(operation, inputs, inputs.assembled(), standing.path, standing.matrix, inputs.job().rapid)
+    stands = [(standing, operation.Label), *((standing.turned(link.Placement, 0), link.Label)
+                                             for link in turned_copies(operation))]
+    return [Passes(operation, inputs, inputs.assembled(), one.path, one.matrix, inputs.job().rapid, label)
+            for one, label in stands]
 
 
 def _by_axis(ready):
@@ -167,9 +171,9 @@ def _made(document, operations):
 
 
 def _take_away(document, operations):
-    """Remove what was made of some operations before; what is kept of their jobs, by the operations' names."""
+    """Remove what was made of some operations before; what is kept of their jobs, by what the passes are for."""
     found = _made(document, operations)
-    kept = {made.OrientedFrom.Name: {name: getattr(job, name) for name in _KEPT} for job, made in found}
+    kept = {made.MadeFor: {name: getattr(job, name) for name in _KEPT} for job, made in found}
     gone = {made.Name for _, made in found}
     for job in {job.Name: job for job, _ in found}.values():
         own = job.Operations.Group

@@ -14,7 +14,8 @@ translate = FreeCAD.Qt.translate
 #: Deviation, mm, at which a clone does not show its part.
 _CLOSE = 1e-6
 _FROM = (Property("LinkHidden", "OrientedFrom", "Tool Axis", "The operation of Tool Axis that the passes are from",
-                  True),)
+                  True),
+         Property("String", "MadeFor", "Tool Axis", "What the passes are for", True))
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,8 @@ class Passes:
         Frame of the plane, in the document's space.
     rapid : float
         Rate of links that are not rapid, mm/min.
+    label : str
+        What it is called: the operation, or its turned copy on another blade.
     """
 
     operation: object
@@ -40,6 +43,7 @@ class Passes:
     path: object
     matrix: object
     rapid: float
+    label: str
 
 
 def bare_job(document, group, frame):
@@ -68,7 +72,7 @@ def bare_job(document, group, frame):
 
     things = list({thing.Name: thing for one in group for thing in one.inputs.things}.values())
     job = Jobs.Create("Job", [_base(document, thing) for thing in things])
-    job.Label = translate("ToolAxis", "Job {}").format(group[0].operation.Label)
+    job.Label = translate("ToolAxis", "Job {}").format(group[0].label)
     if job.ViewObject is not None:
         _show_job(job)
     for model, thing in zip(job.Model.Group, things, strict=True):
@@ -79,7 +83,7 @@ def bare_job(document, group, frame):
     for one in group:
         if tool_of(one) not in controllers:
             controllers[tool_of(one)] = _controller(job, len(controllers) + 1, one)
-    names = ", ".join(one.operation.Label for one in group)
+    names = ", ".join(one.label for one in group)
     axes = "; ".join(dict.fromkeys("({:.6f}, {:.6f}, {:.6f})".format(*one.matrix[:3, 2]) for one in group))
     job.Description = translate("ToolAxis", "Tool Axis: {}; tool axis {} in the document").format(names, axes)
     return job, controllers
@@ -216,9 +220,9 @@ def add_passes(job, controller, one, stands):
 
     with _answering(controller):
         made = Custom.Create("Passes", parentJob=job)
-    made.Label = translate("ToolAxis", "Finishing {}").format(one.operation.Label)
+    made.Label = translate("ToolAxis", "Finishing {}").format(one.label)
     ensure(made, _FROM)
-    made.OrientedFrom = one.operation
+    made.OrientedFrom, made.MadeFor = one.operation, one.label
     made.ToolController = controller
     made.Source = "Text"
     made.Gcode = blocks(one, plane, height)

@@ -1,9 +1,11 @@
 """Operations of a document out as files: what the commands plan, post and report write, whole or not at all."""
 
+import json
 from dataclasses import dataclass, replace
 
 from .arguments import operation_of, progress_of
 from .machines import PREFIX, in_order, mounting
+from .objects.copies import turned_copies
 from .objects.machine import angles_kept, nearest
 
 #: What operations of one folder have in common, and how it is called in messages.
@@ -112,22 +114,26 @@ def plan_task(operations):
 
     inputs = [_inputs(operation) for operation in operations]
     together = _together(operations, inputs)
-    source = Source.of(together)
-    numbers = _numbers(together, inputs)
-    stands = [Standing.of(operation) if operation.Motions else None for operation in operations]
-    kept = [(operation.AxisMap, operation.Details) for operation in operations]
+    source, rows = Source.of(together), []
+    offsets = _offsets(together)
+    for operation, one in zip(operations, inputs, strict=True):
+        standing = Standing.of(operation) if operation.Motions else None
+        details = json.loads(operation.Details)
+        before = offsets[one.faces[0][0].Name]
+        rows.append((standing, operation.AxisMap, _numbered(details, before), angles_kept(operation)))
+        for link in turned_copies(operation) if standing is not None else ():
+            copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
+            rows.append((copy, operation.AxisMap, _numbered(copy.details, before), ()))
     tool, job = together.assembled(), together.job()
-    angles = [angles_kept(operation) for operation in operations]
 
     def compute(progress):
         from toolaxis.plan.plan import Plan, outcome_of
 
         part, bodies = source.read(progress)
-        made = [_operation(k, part, (standing, number, texts)) for k, (standing, number, texts)
-                in enumerate(zip(stands, numbers, kept, strict=True), 1)]
+        made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
         mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
-            made = _held(made, mounted, angles)
+            made = _held(made, mounted, [row[3] for row in rows])
         return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
 
     return compute
@@ -164,31 +170,33 @@ def _together(operations, inputs):
     return replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
 
 
-def _numbers(together, inputs):
-    """The number of each operation's face, counted through all parts."""
+def _offsets(together):
+    """How many faces come before those of each part, by the parts' names."""
     from toolaxis.cad.freecad import shape_of
 
-    from .reading import numbered
+    found, before = {}, 0
+    for thing in together.things:
+        found[thing.Name] = before
+        before += len(shape_of(thing).Faces)
+    return found
 
-    found = numbered(together, [shape_of(thing) for thing in together.things])
-    of = {(thing.Name, name): number for number, (thing, name, _) in found.items()}
-    return [of[one.faces[0][0].Name, one.faces[0][1]] for one in inputs]
+
+def _numbered(details, before):
+    """What is kept of a sub-surface, its face counted through all parts."""
+    own = str(details["face"])
+    suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
+    number = details["face"] + before
+    return details | {"face": number, "label": f"{number}{suffix}"}
 
 
-def _operation(number, part, stands):
+def _operation(number, part, row):
     """An operation of the library from what stands in the document."""
-    import json
-
     from toolaxis.plan.document import orientation_from
     from toolaxis.plan.operation import Operation
 
     from .standing import Standing
 
-    standing, face, (axis_map, text) = stands
-    details = json.loads(text)
-    own = str(details["face"])
-    suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
-    details = details | {"face": face, "label": f"{face}{suffix}"}
+    standing, axis_map, details = row
     if standing is None:
         lost = Standing(None, None, None, details)
         return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))

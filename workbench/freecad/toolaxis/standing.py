@@ -55,6 +55,25 @@ class Standing:
         found = replace(orientation_from(json.loads(operation.AxisMap)), axis=matrix[:3, 2])
         return cls(path, matrix, found, json.loads(operation.Details))
 
+    def turned(self, placement, face):
+        """The same on another blade.
+
+        Parameters
+        ----------
+        placement : FreeCAD.Placement
+            The turn, in the document's space.
+        face : int
+            Number of the face there.
+        """
+        turn = matrix_of(placement)
+        ways = {name: getattr(self.path, name) @ turn[:3, :3].T for name in ("axis", "normal")}
+        places = {name: getattr(self.path, name) @ turn[:3, :3].T + turn[:3, 3] for name in ("cc", "cl")}
+        matrix, own = turn @ self.matrix, str(self.details["face"])
+        suffix = self.details["label"].removeprefix(own) if self.details["label"].startswith(own) else ""
+        return replace(self, path=replace(self.path, **ways, **places), matrix=matrix,
+                       orientation=replace(self.orientation, axis=matrix[:3, 2]),
+                       details=self.details | {"face": face, "label": f"{face}{suffix}"})
+
     def plan(self, part, bodies, tool, inputs):
         """The plan with this one operation.
 

@@ -19,6 +19,17 @@ _LINK = (
 _EXACT = 1e-6
 
 
+def turned_copies(operation):
+    """The links that show an operation turned to other blades.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    """
+    return [thing for thing in operation.Document.Objects if thing.TypeId == "App::Link"
+            and "Turn" in thing.PropertiesList and thing.LinkedObject == operation]
+
+
 def turn_between(source, copy):
     """The rigid motion that brings the path of one operation onto that of another, (4, 4); None where none does.
 
