@@ -22,11 +22,13 @@ from toolaxis.orient.four_plus_one import (
 )
 from toolaxis.orient.indexed import task
 from toolaxis.orient.moving import prove_moving
+from toolaxis.orient.setting import SKIN, Group
+from toolaxis.orient.verdicts import GOUGE
 from toolaxis.path.clamped import AngleField, Clamp, ClampedChart, ClampedCut
 from toolaxis.path.clamped_links import free_angles, on_the_circle
 from toolaxis.tools.assembly import Tool
 
-from .conftest import floor_and_wall, seeded  # type: ignore[import-not-found]
+from .conftest import flat, floor_and_wall, seeded  # type: ignore[import-not-found]
 
 TOOL = Tool.torus(12, 1, stickout=40, holder=[(14, 0), (14, 30)])
 H = 0.05
@@ -100,15 +102,15 @@ def test_no_other_clamped_angle_is_counted_shorter(searched) -> None:
     finder = Finder(Clamping(job, machine_of(job)))
     clamp, others = best.candidate.clamp, []
     for which, axis in enumerate(MIKRON.rotary):
-        for angle in clamped_range(axis, np.radians(60.0)):
+        for angle in clamped_range(axis, np.radians(75.0)):
             others += [(finder.search.clamp(which, float(angle)), feed) for feed in ("u", "v")]
     others += [(finder.search.clamp(clamp.which, clamp.angle + np.radians(off)), best.candidate.feed)
                for off in (-1.0, -0.5, 0.5)]
     rough = [(one, finder.search.reckoned(*one)) for one in others]
     limit = 1.1 * best.count.length
     near = [finder.choice(*one) for one, about in rough if about is not None and about.length < limit]
-    lengths = [finder.moving(one).count.length for one in near if one is not None]
-    assert len(lengths) >= 2 and best.count.length <= 1.01 * min(lengths)
+    ranked = sorted((one for one in near if one is not None), key=lambda one: one.count.length)
+    assert len(ranked) >= 2 and best.count.length <= 1.01 * min(finder.moving(one).count.length for one in ranked[:2])
 
 
 def test_the_free_angle_goes_on_from_pass_to_pass(found) -> None:
@@ -157,6 +159,18 @@ def test_links_turn_the_free_axis_alone(found) -> None:
     cut = made.kind == Motion.CUT
     assert np.allclose(made.cl[cut], path.cl[path.kind == Motion.CUT], atol=1e-12)
     assert np.abs(np.diff(free_angles(made.axis, clamp)))[~cut[1:]].max() <= np.radians(1.0) + 1e-9
+
+
+def test_a_component_that_is_not_there_is_not_to_blame() -> None:
+    """Turning by 0.1 deg on the skin is too near to it for a proof: that is said of the cutter, not of a holder."""
+    lean = np.radians(0.1)
+    axis = np.array([[0.0, 0.0, 1.0], [np.sin(lean), 0.0, np.cos(lean)]])
+    path = ToolPath(np.zeros((2, 3)), np.zeros((2, 3)), axis, axis, np.full(2, Motion.LINK, dtype=np.int8),
+                    np.array([0, 2]))
+    floor = flat([-20, -20, 0], [40, 0, 0], [0, 40, 0])
+    group = Group(SKIN, (floor,), np.array([-0.002, 0.5, 1.0]))
+    witness = prove_moving(path, Tool.ball(8), (group,)).witness
+    assert witness is not None and witness.reason == GOUGE and np.allclose(witness.point, 0, atol=1.0)
 
 
 def test_a_field_that_does_not_turn_has_the_strips_of_a_fixed_axis() -> None:

@@ -239,7 +239,8 @@ def _worst(tool: Tool, group: Group, moves: Array, required: Array) -> Witness:
     fine = FINE if group.role != OTHER else COARSE
     table = np.tile(np.where(np.isneginf(required), -inf, 0.0), (len(group.faces), 1))
     found = bounded(group.cells, tool, moves, np.maximum(required, 0.0) + 2 * fine, fine, table)
-    amount = np.where(np.isneginf(required), -inf, required - found.lower)
+    known = [name == "cutter" or name in tool.outlines for name in COMPONENTS]
+    amount = np.where(np.isneginf(required) | ~np.array(known), -inf, required - found.lower)
     i, c = np.unravel_index(int(np.argmax(amount)), amount.shape)
     code = GOUGE if group.role == SKIN and c == 0 else CUTTER + int(c)
     k = int(found.face[i, c])
