@@ -167,6 +167,13 @@ def test_one_undo_takes_blades_and_links(bladed):
     assert not left, "what belongs to a plan goes with it"
     document.undo()
     assert sorted(one.Name for one in document.Objects) == names
+    source = links(plan_of(document.getObject(made[0].Name)))[0].LinkedObject
+    document.openTransaction("delete")
+    document.removeObject(source.Name)
+    document.commitTransaction()
+    assert all(one.LinkedObject is not None for one in document.Objects if one.TypeId == "App::Link")
+    document.undo()
+    assert sorted(one.Name for one in document.Objects) == names
 
 
 def test_clean_up_zones_are_hatched(document, whole_parts):

@@ -151,7 +151,9 @@ class Keeper:
     def _take(self, document, operation):
         self.going.add(operation.Name)
         try:
-            going = [*belongings(operation), *loose(operation), *self._emptied(operation)]
+            turned = [thing for thing in operation.InList if thing.TypeId == "App::Link"
+                      and "Turn" in thing.PropertiesList]
+            going = [*turned, *belongings(operation), *loose(operation), *self._emptied(operation)]
             for name in [thing.Name for thing in going]:
                 if document.getObject(name) is not None:
                     document.removeObject(name)
