@@ -3,6 +3,7 @@
 import hashlib
 import re
 import subprocess
+import sys
 import time
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from toolaxis.cad import load, transfer
 from toolaxis.cad.steptext import declared_unit, read_text
-from toolaxis.errors import InvalidInput, ToolAxisError
+from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError
 
 pytest.importorskip("OCP")
 
@@ -199,3 +200,9 @@ def test_the_unit_is_told_by_the_text_too():
                        (context("CONVERSION_BASED_UNIT('INCH',#3)"), "inch"), ("", "not declared"),
                        (context("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.CENTI.,.METRE.)"), "millimetre, centimetre")]:
         assert declared_unit((angle + text).encode()) == unit
+
+
+def test_a_kernel_of_another_release_is_told_and_not_blamed_on_the_file(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "toolaxis.cad.ocp", None)
+    kind, which, said = transfer.convert(str(tmp_path / "part.step"))
+    assert (kind, which) == ("failed", MissingBackend) and "is not one that toolaxis knows" in said

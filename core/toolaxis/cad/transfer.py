@@ -9,7 +9,7 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from toolaxis.errors import InvalidInput, ToolAxisError, UnsupportedGeometry
+from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 
 
 def read_shape(path: str) -> tuple[Any, str]:
@@ -68,13 +68,16 @@ def convert(path: str) -> tuple[Any, ...]:
     ----------
     path : str
     """
-    from toolaxis.cad.ocp import shape_record
-
     try:
+        from toolaxis.cad.ocp import shape_record
+
         shape, unit = read_shape(path)
         record = shape_record(shape)
         record.unit = unit
         return "done", record, distinct_faces(shape) - record.endless
+    except ImportError as reason:
+        return "failed", MissingBackend, (f"the CAD kernel that is installed is not one that toolaxis knows ({reason})"
+                                          ": pip install 'toolaxis[cadquery]' or 'toolaxis[build123d]'")
     except InvalidInput as reason:
         return "failed", InvalidInput, str(reason)
     except UnsupportedGeometry as reason:
