@@ -30,6 +30,7 @@ class MakeJobs:
     def Activated(self):
         """Make the jobs and select them, or say what is missing."""
         from ..cam_jobs import make_jobs
+        from ..macros import list_of, record
         from ..tasks import sentence
 
         document = FreeCAD.ActiveDocument
@@ -44,6 +45,7 @@ class MakeJobs:
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             warn(sentence(reason))
             return
+        record(f"freecad.toolaxis.make_jobs(FreeCAD.ActiveDocument, {list_of(found)})")
         FreeCADGui.Selection.clearSelection(document.Name)
         for job in made:
             FreeCADGui.Selection.addSelection(document.Name, job.Name)

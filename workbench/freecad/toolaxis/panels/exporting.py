@@ -9,6 +9,7 @@ from PySide import QtWidgets
 from .. import RESOURCES
 from ..exporting import Wish, task
 from ..machines import available
+from ..macros import list_of, record
 from ..objects.machine import machine_of
 from ..tasks import Work, sentence
 from .fields import load_form, tell
@@ -102,7 +103,7 @@ class ExportPanel(Panel):
             return
         self.work = Work(compute)
         self.work.progressed.connect(lambda stage, share: self._progressed(stage, share))
-        self.work.done.connect(lambda names: self._done(folder, names))
+        self.work.done.connect(lambda names: self._done(folder, wish, names))
         self.work.failed.connect(lambda text: self._ended(text, True))
         self.work.cancelled.connect(lambda: self._ended(translate("ToolAxis", "Stopped; the folder is as it was."),
                                                         True))
@@ -120,7 +121,9 @@ class ExportPanel(Panel):
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
         tell(self.form.message, f"{stage[:1].upper()}{stage[1:]}")
 
-    def _done(self, folder, names):
+    def _done(self, folder, wish, names):
+        record("from freecad.toolaxis.exporting import Wish, export",
+               f"export({list_of(self.operations)}, {str(folder)!r}, {wish!r})")
         self.form.files.addItems(names)
         self._ended(translate("ToolAxis", "{} files in {}").format(len(names), folder), False)
 

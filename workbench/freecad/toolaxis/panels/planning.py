@@ -10,6 +10,7 @@ from PySide import QtCore, QtWidgets
 from .. import RESOURCES, bridge
 from ..cam import speeds
 from ..machines import offered
+from ..macros import again_lines, plan_line, record
 from ..objects import is_operation
 from ..reading import titles_of
 from ..tasks import Work, sentence
@@ -70,12 +71,14 @@ class PlanPanel(Panel):
             return False
         plan = self.view.plan
         inputs = replace(self.computed, pieces=self._pieces())
+        before = None if self.operation is None else bridge.inputs_of(self.operation)
         try:
             bridge.apply(self.document, inputs, plan, self.operation)
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return False
+        record(*([plan_line(inputs)] if before is None else again_lines(self.operation, before, inputs)))
         self._close()
         return True
 

@@ -8,6 +8,7 @@ import numpy as np
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
+from ..macros import record, thing_of
 from ..tasks import Work, sentence
 from .fields import fine_text, length_text, load_form, tell
 from .figures import fill
@@ -105,6 +106,7 @@ class VerifyPanel(Panel):
                 scallops, *_ = bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts])
                 scallops.Visibility = False
                 self.meshes.append(scallops)
+                record(f"freecad.toolaxis.verify({thing_of(operation)})")
         except Exception as reason:
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             self._tell(translate("ToolAxis", "The verdict could not be kept: {}").format(sentence(reason)), bad=True)

@@ -1,0 +1,82 @@
+"""What panels do, as lines of a macro that do the same again without a panel."""
+
+import FreeCAD
+
+_IMPORT = "import freecad.toolaxis"
+_DOCUMENT = "FreeCAD.ActiveDocument"
+#: Fields of the inputs that an operation planned again may have changed, and the properties that hold them.
+_HELD = {"tool": "Tool", "stickout": "StickOut", "scallop": "Scallop", "allowance": "Allowance", "limits": "Limits",
+         "objective": "Objective", "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method"}
+
+
+def record(*lines):
+    """Add lines to the macro that FreeCAD records, if it does; nothing is run.
+
+    Parameters
+    ----------
+    *lines : str
+    """
+    if FreeCAD.GuiUp:
+        import FreeCADGui
+
+        for line in (_IMPORT, *lines):
+            FreeCADGui.doCommandSkip(line)
+
+
+def plan_line(inputs):
+    """The call that plans what a panel planned.
+
+    Parameters
+    ----------
+    inputs : freecad.toolaxis.inputs.Inputs
+    """
+    from .inputs import Inputs
+
+    usual = Inputs()
+    faces = [f"{thing.Name}.{name}" for thing, name in inputs.faces]
+    given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}
+    given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
+    given |= {name: getattr(inputs, name) for name in ("allowance", "limits", "objective", "direction", "regions",
+                                                       "orientations", "method", "blades", "compare")
+              if getattr(inputs, name) != getattr(usual, name)}
+    if inputs.obstacles:
+        given["obstacles"] = [thing.Name for thing in inputs.obstacles]
+    words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+    return f"freecad.toolaxis.plan({_DOCUMENT}, {faces!r}, {inputs.tool!r}, {words})"
+
+
+def again_lines(operation, before, inputs):
+    """The lines that plan an operation again as a panel did.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+    before, inputs : freecad.toolaxis.inputs.Inputs
+        What it had been planned with, and what it was planned with now.
+    """
+    thing = thing_of(operation)
+    lines = [f"{thing}.{held} = {getattr(inputs, name)!r}" for name, held in _HELD.items()
+             if getattr(inputs, name) != getattr(before, name)]
+    if inputs.feedrate != before.feedrate:
+        lines.append(f"{thing}.FeedRate = {inputs.feedrate / 60!r}")
+    return [*lines, f"freecad.toolaxis.recompute({thing})"]
+
+
+def thing_of(thing):
+    """An object as a macro names it.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
+    return f"{_DOCUMENT}.getObject({thing.Name!r})"
+
+
+def list_of(things):
+    """Objects as a macro names them.
+
+    Parameters
+    ----------
+    things : sequence of App.DocumentObject
+    """
+    return "[" + ", ".join(map(thing_of, things)) + "]"
