@@ -92,6 +92,9 @@ def test_both_solutions_of_the_machine_are_told(which: int) -> None:
     wanted = [[[40, 5, 25], [-140, -25, -5]], [[12, 5, 25], [-12, -175, -155]]][which]
     assert np.allclose(said, wanted, atol=2e-3)
     if which == 0:
+        upright = clamp.axes(turn - np.radians(15))  # past the place where both meet
+        told = _ways(Mounting(MIKRON), 0, replace(path, axis=upright, normal=upright))
+        assert [part.split()[3] for part, _ in told] == ["40.000", "-140.000"]
         steep = clamp.axes(turn + np.radians(30))
         assert len(_ways(Mounting(MIKRON), 0, replace(path, axis=steep, normal=steep))) == 1
 

@@ -350,11 +350,12 @@ def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str
     cut = path.kind[along.arrival] == Motion.CUT
     taken = along.rotary[cut]
     both = rotary_angles(machine, along.axes[cut], along.rotary[0], mounting.table_from_part)
-    rows = [taken]
-    for s in range(both.joints.shape[1]):
-        other = np.unwrap(both.joints[:, s], axis=0)
-        clamped = other[:, which]
-        if both.within[:, s].all() and np.ptp(clamped) < _SAME < abs(clamped[0] - taken[0, which]):
+    rows, away = [taken], np.abs((both.joints - taken[:, None] + np.pi) % (2 * np.pi) - np.pi).max(axis=2)
+    some, at = both.determinant > _SAME, np.arange(len(taken))  # where both meet, neither is another
+    other, inside = (each[at, away.argmax(axis=1)][some] for each in (both.joints, both.within))
+    if len(other) and inside.all():
+        other = np.unwrap(other, axis=0)
+        if np.ptp(other[:, which]) < _SAME < abs(other[0, which] - taken[0, which]):
             rows.append(other)
     name, free = machine.rotary[which].name, machine.rotary[1 - which].name
     return [(f"{name} clamped at {degrees(float(np.median(row[:, which]))):.3f} deg",
