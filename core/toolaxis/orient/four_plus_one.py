@@ -355,6 +355,8 @@ def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str
     other, inside = (each[at, away.argmax(axis=1)][some] for each in (both.joints, both.within))
     if len(other) and inside.all():
         other = np.unwrap(other, axis=0)
+        endless = np.array([not np.isfinite(axis.high) for axis in machine.rotary])
+        other -= endless * 2 * np.pi * np.round(np.median(other, axis=0) / (2 * np.pi))
         if np.ptp(other[:, which]) < _SAME < abs(other[0, which] - taken[0, which]):
             rows.append(other)
     name, free = machine.rotary[which].name, machine.rotary[1 - which].name
