@@ -185,3 +185,53 @@ def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, rem
     desk.computed(form)
     assert words in form.message.text() and not desk.standard_button("Ok").isEnabled()
     assert names(document) == before
+
+
+def test_sub_surfaces_are_merged_by_the_command(desk, roof, form, remembered):
+    document = roof[0].Document
+    form.regions.setCurrentIndex(2)
+    desk.computed(form)
+    put(desk)
+    first, second = operations(document)
+    desk.gui.Selection.clearSelection()
+    desk.gui.Selection.addSelection(document.Name, first.Name)
+    told = desk.dialog_text(lambda: desk.gui.runCommand("ToolAxis_Merge"))
+    assert "two or more sub-surfaces" in told
+    desk.gui.Selection.addSelection(document.Name, second.Name)
+    desk.gui.runCommand("ToolAxis_Merge")
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+    form = desk.form("ToolAxisPlan")
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    assert len(operations(document)) == 2, "nothing in the document before OK"
+    put(desk)
+    only, = operations(document)
+    assert only.DrawnByHand and only.Label.endswith(roof[1])
+    document.undo()
+    desk.pump(0.2)
+    assert len(operations(document)) == 2
+
+
+def test_other_blades_are_shown_as_turned_links(desk, whole_parts):
+    wheel = shown(desk, lambda document: (whole_parts.wheel(document),))[0]
+    form = desk.start(wheel)
+    form.tabs.setCurrentWidget(form.toolTab)
+    desk.type(form.diameter, "6 mm")
+    desk.type(form.stickout, "40 mm")
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.4 mm")
+    form.regions.setCurrentIndex(2)
+    form.regionsNumber.setValue(1)
+    assert form.faces.count() == 6
+    desk.computed(form)
+    assert "axis" in form.message.text() and form.operation.count() == 6
+    assert "turned copy" in form.operation.itemText(5)
+    put(desk)
+    document = wheel.Document
+    links = [thing for thing in document.Objects if thing.TypeId == "App::Link"]
+    assert len(links) == 4 and len(operations(document)) == 2
+    assert [group.Label for group in plan_in(document).Group] == ["Blade 1", "Blade 2", "Blade 3"]
+    desk.gui.getDocument(document.Name).ActiveView.fitAll()
+    desk.shot("67-blades")
+    document.undo()
+    desk.pump(0.2)
+    assert names(document) == [wheel.Name]

@@ -7,7 +7,7 @@ from . import palette
 
 translate = FreeCAD.Qt.translate
 
-_HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 150, 56, 14, 12, 34
+_HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 150, 76, 14, 12, 34
 _REACH = 14.0
 _POINT = 4.5
 
@@ -153,7 +153,8 @@ class OrientationCurve(QtWidgets.QWidget):
         for one in {max(costs), min(costs)}:
             option = next(option for option in self.options if self.cost(option) == one)
             box = QtCore.QRectF(0, self.position_of(option).y() - 7, _LEFT - 12, 14)
-            text = f"{one:.0f} s" if self.timed else FreeCAD.Units.Quantity(float(one), FreeCAD.Units.Length).UserString
+            _, factor, unit = FreeCAD.Units.Quantity(float(one), FreeCAD.Units.Length).getUserPreferred()
+            text = f"{one:.0f} s" if self.timed else f"{one / factor:.4g} {unit}"
             painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
         box = QtCore.QRectF(_LEFT, _HEIGHT - 14, self.width() - _LEFT - _RIGHT, 14)
         painter.drawText(box, QtCore.Qt.AlignCenter, translate("ToolAxis", "different axes"))
