@@ -1,4 +1,4 @@
-"""The page of preferences and the menu of examples."""
+"""Preferences, the menu of examples, and the add-on in German."""
 
 import FreeCAD
 import pytest
@@ -93,3 +93,25 @@ def test_every_example_of_the_menu_is_there_and_opens(desk):
     assert document.Name == "saddle" and document.Objects[0].Label == "Saddle" and document.UndoCount == 0
     assert any(type(face.Surface).__name__ == "BSplineSurface" for face in document.Objects[0].Shape.Faces)
     desk.shot("91-example")
+
+
+@pytest.fixture
+def german(desk):
+    """FreeCAD in German, and in English again afterwards."""
+    desk.gui.setLocale("de")
+    desk.pump(0.3)
+    yield desk
+    desk.tidy()
+    desk.gui.setLocale("en")
+    desk.pump(0.3)
+
+
+def test_the_panel_speaks_german(german, wavy):
+    part, face = wavy
+    form = german.start(part, face)
+    assert form.compute.text() == "Berechnen" and form.scallopLabel.text() == "Rillenhöhe"
+    assert form.message.text().startswith("Berechnen findet die Achsen")
+    menus = [action.text().replace("&", "") for menu in german.window.menuBar().findChildren(german.widgets.QMenu)
+             for action in menu.actions()]
+    assert "CAM-Aufträge anlegen" in menus and "Beispiele" in menus
+    german.shot("95-german")

@@ -1,0 +1,224 @@
+"""What comes of operations, from the menu: CAM jobs, files, macros, and the machine that carries them out."""
+
+import json
+from dataclasses import replace
+
+import FreeCAD
+import pytest
+from FreeCAD import Vector
+
+
+@pytest.fixture
+def jobs(desk, operation):
+    """The jobs that the command makes, and the names of what was there before."""
+    document = operation.Document
+    before = {thing.Name for thing in document.Objects}
+    desk.gui.runCommand("ToolAxis_MakeJobs")
+    desk.pump(0.3)
+    return [thing for thing in document.Objects if hasattr(thing, "PostProcessor")], before
+
+
+def test_a_job_that_freecads_own_panels_open(desk, operation, jobs):
+    (job,), _ = jobs
+    assert desk.gui.Selection.getSelection() == [job]
+    made = job.Operations.Group[0]
+    assert made.OrientedFrom == operation and not made.ViewObject.Visibility
+    desk.gui.ActiveDocument.setEdit(made.Name)
+    desk.wait(lambda: desk.gui.Control.activeDialog(), "the panel of the operation opens")
+    desk.gui.Control.closeDialog()
+    desk.gui.ActiveDocument.resetEdit()
+    desk.pump(0.2)
+    for thing in operation.Document.Objects:
+        if hasattr(thing.ViewObject, "Visibility"):
+            thing.ViewObject.Visibility = thing in (job, made, job.Stock, *job.Model.Group)
+    job.Model.ViewObject.Visibility = True
+    view = desk.gui.ActiveDocument.ActiveView
+    view.viewFront()
+    view.fitAll()
+    desk.gui.Selection.clearSelection()
+    desk.shot("60-job")
+
+
+def test_one_undo_step_takes_it_back(desk, operation, jobs):
+    (job,), before = jobs
+    document = job.Document
+    document.undo()
+    desk.pump(0.2)
+    assert {thing.Name for thing in document.Objects} == before
+    document.redo()
+    desk.pump(0.2)
+    assert len(document.Objects) > len(before)
+
+
+def test_a_stale_operation_is_refused_where_the_user_looks(desk, operation):
+    operation.Scallop = 0.5
+    operation.Document.recompute()
+    before = len(operation.Document.Objects)
+    text = desk.dialog_text(lambda: desk.gui.runCommand("ToolAxis_MakeJobs"))
+    assert "is stale" in text and "recompute it" in text
+    assert len(operation.Document.Objects) == before
+
+
+def test_without_operations_it_says_what_to_do(desk):
+    FreeCAD.newDocument("Empty")
+    assert "Plan Orientations" in desk.dialog_text(lambda: desk.gui.runCommand("ToolAxis_MakeJobs"))
+
+
+def export_panel(desk):
+    desk.gui.runCommand("ToolAxis_Export")
+    desk.wait(lambda: desk.form("ToolAxisExport") is not None, "the panel opens")
+    return desk.form("ToolAxisExport")
+
+
+def written(desk, form):
+    desk.press(form.write)
+    desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is written")
+
+
+def test_plan_and_program_are_written(desk, operation, tmp_path):
+    form = export_panel(desk)
+    assert form.folder.text().endswith("-plan") and not form.machine.isVisible()
+    desk.type(form.folder, str(tmp_path / "plan"))
+    form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
+    form.machine.setCurrentIndex(form.machine.findData("bc-table-table"))
+    form.offsetZ.setValue(60)
+    written(desk, form)
+    names = {path.name for path in (tmp_path / "plan").iterdir()}
+    assert {"plan.json", "program-linuxcnc.ngc", "setup-linuxcnc.md", "part.json"} <= names, form.message.text()
+    assert {form.files.item(k).text() for k in range(form.files.count())} == names
+    assert json.loads((tmp_path / "plan" / "plan.json").read_text())["outcome"] == "complete"
+    desk.shot("80-export")
+
+
+def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
+    form = export_panel(desk)
+    desk.type(form.folder, str(tmp_path / "plan"))
+    form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
+    form.machine.setCurrentIndex(form.machine.findData("bc-table-table"))
+    form.offsetX.setValue(5000)
+    written(desk, form)
+    assert "leave its travel" in form.message.text() and not (tmp_path / "plan").exists()
+    operation.Scallop = 0.7
+    desk.press(form.write)
+    assert "is stale" in form.message.text()
+    operation.Document.removeObject(operation.Name)
+    desk.pump(0.1)
+    assert not form.write.isEnabled()
+
+
+@pytest.fixture
+def leaning(desk, operation, _recalling):
+    """A second operation, on a turned copy of the part, so that the machine has to index."""
+    from freecad.toolaxis import bridge
+
+    document, part = operation.Document, operation.Faces[0][0]
+    other = document.addObject("Part::Feature", "Other")
+    other.Shape = part.Shape.copy()
+    other.Placement = FreeCAD.Placement(Vector(0, 40, 0), FreeCAD.Rotation(Vector(1, 0, 0), 25))
+    document.recompute()
+    inputs = bridge.inputs_of(operation)
+    inputs = replace(inputs, faces=((other, inputs.faces[0][1]),), limits=f"cone:0,{-0.42},{0.9},2")
+    with _recalling():
+        made = bridge.apply(document, inputs, bridge.task(inputs)(_silent()))[0]
+    assert made.Motions, made.Reasons
+    return operation, made
+
+
+def _silent():
+    from toolaxis.progress import NO_PROGRESS
+
+    return NO_PROGRESS
+
+
+def machine_panel(desk, name, offset):
+    desk.gui.Selection.clearSelection()
+    desk.gui.runCommand("ToolAxis_Machine")
+    desk.wait(lambda: desk.form("ToolAxisMachine") is not None, "the panel opens")
+    form = desk.form("ToolAxisMachine")
+    form.machine.setCurrentIndex(form.machine.findData(name))
+    for spin, value in zip((form.offsetX, form.offsetY, form.offsetZ), offset, strict=True):
+        spin.setValue(value)
+    desk.wait(lambda: form.angles.isEnabled() and "Looking" not in form.message.text(), "all operations are looked at")
+    return form
+
+
+def test_a_machine_is_picked_and_moves(desk, leaning):
+    document = leaning[0].Document
+    form = machine_panel(desk, "bc-table-table", (0, 0, 20))
+    assert "can be held" in form.message.text(), form.message.text()
+    assert form.still.isChecked() and form.angles.rowCount() == 2 and form.angles.columnCount() == 2
+    texts = [[form.angles.item(row, column).text() for column in (0, 1)] for row in (0, 1)]
+    assert all("C" in text and "B" in text for row in texts for text in row) and texts[0] != texts[1]
+    desk.shot("70-machine")
+    form.slide.setValue(400)
+    desk.pump(0.2)
+    assert "Z 500.0" in form.pointer.text(), form.pointer.text()
+    desk.shot("71-index-move")
+    form.slide.setValue(990)
+    desk.press(form.play)
+    desk.wait(lambda: form.slide.value() == form.slide.maximum(), "the index move ends")
+    form.still.setChecked(False)
+    form.slide.setValue(1000)
+    desk.shot("72-second-operation")
+    steps = document.UndoCount
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
+    thing = next(one for one in document.Objects if one.Name.startswith("Machine"))
+    assert thing.Machine == "bc-table-table" and thing.Offset == Vector(0, 0, 20)
+    assert len(leaning[1].RotaryAngles) == 2 and document.UndoCount == steps + 1
+    document.undo()
+    assert not [one for one in document.Objects if one.Name.startswith("Machine")]
+
+
+def test_what_cannot_be_held_is_told(desk, leaning):
+    form = machine_panel(desk, "four-axis-a", (0, 0, 0))
+    assert form.angles.item(0, 0).text() == "no position reaches it"
+    assert "Not held by this machine" in form.message.text() and not form.play.isEnabled()
+    desk.press(desk.standard_button("Cancel"))
+    desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
+
+
+def test_bodies_that_meet_are_red(desk, leaning):
+    """The part stands so deep in the table that the spindle meets it."""
+    form = machine_panel(desk, "bc-table-table", (0, 0, -85))
+    assert "the spindle meets the table by" in form.angles.item(0, 0).text(), form.angles.item(0, 0).text()
+    form.angles.cellClicked.emit(0, 0)
+    desk.pump(0.2)
+    assert "spindle, table meet by" in form.pointer.text(), form.pointer.text()
+    desk.shot("73-collision")
+
+
+@pytest.fixture
+def recorded(monkeypatch, desk):
+    """What goes to FreeCAD's recorder of macros, line by line; FreeCAD still gets it."""
+    lines, keep = [], desk.gui.doCommandSkip
+
+    def kept(line):
+        lines.append(line)
+        keep(line)
+
+    monkeypatch.setattr(desk.gui, "doCommandSkip", kept)
+    return lines
+
+
+def test_a_plan_made_by_the_panel_is_made_again_by_the_macro(desk, wavy, recorded, remembered):
+    part, face = wavy
+
+    form = desk.start(part, face)
+    desk.type(form.scallop, "0.2 mm")
+    desk.computed(form)
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    desk.gui.runCommand("ToolAxis_MakeJobs")
+    lines = list(recorded)
+    assert lines[1].startswith("freecad.toolaxis.plan(") and lines[-1].startswith("freecad.toolaxis.make_jobs(")
+    document, operation = part.Document, desk.operation_in(part.Document)
+    axis, passes, names = operation.Axis, operation.Passes, sorted(one.Name for one in document.Objects)
+    document.undo()
+    document.undo()
+    assert desk.operation_in(document) is None
+    FreeCAD.setActiveDocument(document.Name)
+    exec("import FreeCAD\nimport FreeCADGui as Gui\n" + "\n".join(lines), {})
+    again = desk.operation_in(document)
+    assert again.Passes == passes and again.Axis.isEqual(axis, 1e-9)
+    assert len(document.Objects) == len(names)
