@@ -229,6 +229,9 @@ def test_other_blades_are_shown_as_turned_links(desk, whole_parts):
     document = wheel.Document
     links = [thing for thing in document.Objects if thing.TypeId == "App::Link"]
     assert len(links) == 4 and len(operations(document)) == 2
+    for link in links:
+        seen = [thing.TypeId for thing in link.LinkedObject.Group if link.isElementVisible(thing.Name)]
+        assert sorted(seen) == ["Mesh::Feature", "Path::Feature"], "neither tools nor frames of all blades"
     assert [group.Label for group in plan_in(document).Group] == ["Blade 1", "Blade 2", "Blade 3"]
     desk.gui.getDocument(document.Name).ActiveView.fitAll()
     desk.shot("67-blades")

@@ -8,7 +8,7 @@ import FreeCAD
 from .faces import facts_of
 from .objects import is_plan, operations_in
 from .objects.belongings import GROUP, child, frame_of, loose
-from .objects.copies import Tree
+from .objects.copies import Tree, quiet
 from .objects.frames import add_frame, place_frame
 from .objects.machine import keep_angles
 from .objects.operation import Operation, mark, set_inputs, set_results
@@ -70,6 +70,7 @@ def apply(document, inputs, plan, replaces=None):
         if is_plan(group):
             keep_plan(group, inputs, plan)
         document.recompute([*(thing for one in made for thing in (*one.Group, one)), *tree.things, group])
+        quiet(tree.things)
     return made
 
 

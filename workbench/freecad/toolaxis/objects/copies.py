@@ -4,6 +4,7 @@ import FreeCAD
 
 from ..places import placement_from
 from .properties import Property, assign, ensure
+from .surfaces import is_shown
 from .transaction import remove
 
 translate = FreeCAD.Qt.translate
@@ -51,6 +52,21 @@ def turn_between(source, copy):
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, other - turn @ middle
     return matrix
+
+
+def quiet(things):
+    """Let links show passes and sub-surfaces alone: tools and work coordinate systems of all blades hide the part.
+
+    Parameters
+    ----------
+    things : sequence of App.DocumentObject
+        Links of blades, up to date; others are left as they are.
+    """
+    for link in things:
+        if link.TypeId == "App::Link" and "Turn" in link.PropertiesList and link.LinkedObject is not None:
+            for thing in link.LinkedObject.Group:
+                if not is_shown(thing) and thing.TypeId != "Path::Feature":
+                    link.setElementVisible(thing.Name, False)
 
 
 class Tree:

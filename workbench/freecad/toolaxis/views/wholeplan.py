@@ -1,8 +1,18 @@
 """A whole plan in the tree: its icon tells whether its results still hold."""
 
+import FreeCAD
 import FreeCADGui
+from PySide import QtCore
 
 from . import icon
+
+
+def _quiet(name):
+    from ..objects.copies import quiet
+
+    document = FreeCAD.listDocuments().get(name)
+    if document is not None:
+        quiet(document.Objects)
 
 
 class WholePlanView:
@@ -17,8 +27,10 @@ class WholePlanView:
         view.Proxy = self
 
     def attach(self, view):
-        """Called by FreeCAD when the view is there."""
+        """Called by FreeCAD when the view is there; when a document was opened, links show all again, later."""
         self.thing = view.Object
+        document = self.thing.Document.Name
+        QtCore.QTimer.singleShot(0, lambda: _quiet(document))
 
     def getIcon(self):
         """Another icon while the results are stale."""
