@@ -167,7 +167,7 @@ def test_a_locked_axis_is_kept_when_the_plan_is_computed_again(desk, roof, form,
 
 
 @pytest.mark.parametrize(("field", "value", "words"), [
-    ("regions", 16, "cannot be divided"), ("orientations", 1, "")])
+    pytest.param("regions", 16, "cannot be divided", marks=pytest.mark.long), ("orientations", 1, "")])
 def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, remembered, field, value, words):
     document = roof[0].Document
     before = names(document)
@@ -187,6 +187,7 @@ def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, rem
     assert names(document) == before
 
 
+@pytest.mark.long
 def test_sub_surfaces_are_merged_by_the_command(desk, roof, form, remembered):
     document = roof[0].Document
     form.regions.setCurrentIndex(2)
