@@ -23,7 +23,7 @@ from toolaxis.machine.setup import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.post.gcode import Options
+from toolaxis.post.setting import Options
 from toolaxis.report.tables import plan_table
 from toolaxis.shape.cells import forest
 from toolaxis.shape.part import Part

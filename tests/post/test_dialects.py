@@ -17,7 +17,8 @@ from toolaxis.machine.configurations import Machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.dialects.known import DIALECTS
-from toolaxis.post.gcode import Dialect, Options, program_of, program_text
+from toolaxis.post.gcode import Dialect, program_of, program_text
+from toolaxis.post.setting import Options
 
 MACHINES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",
             "three-axes-fixture")

@@ -16,7 +16,7 @@ from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text
 from toolaxis.post.dialects.known import APT
-from toolaxis.post.gcode import Options
+from toolaxis.post.setting import Options
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:

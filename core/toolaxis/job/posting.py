@@ -15,8 +15,9 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import apt_text
 from toolaxis.post.dialects.known import APT, dialect_named
 from toolaxis.post.dialects.tip_control import tip_control_of
-from toolaxis.post.gcode import Options, bare_program, program_of, program_text
+from toolaxis.post.gcode import bare_program, program_of, program_text
 from toolaxis.post.moving import moves, moving_text
+from toolaxis.post.setting import Options
 from toolaxis.post.sheet import moving_sheet_text, sheet_text
 
 

@@ -8,9 +8,10 @@ from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Inputs
 from toolaxis.post.dialects.known import dialect_named
 from toolaxis.post.dialects.tip_control import tip_control_of
-from toolaxis.post.gcode import Options, setting_of
+from toolaxis.post.gcode import setting_of
 from toolaxis.post.locations import CutterLocations
 from toolaxis.post.moving import course_of, courses_text
+from toolaxis.post.setting import Options
 from toolaxis.post.sheet import course_sheet_text
 
 #: Scallop height that stands where none was asked for, mm; nothing that is written depends on it.

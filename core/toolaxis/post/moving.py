@@ -19,7 +19,8 @@ from toolaxis.feed.turning import Following, following
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.post.gcode import Dialect, Lines, Options, Setting, number, setting_of
+from toolaxis.post.gcode import Dialect, Lines, number, setting_of
+from toolaxis.post.setting import Options, Setting
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from toolaxis.machine.kinematics import linear_coordinates, placement
 from toolaxis.plan.plan import Plan
-from toolaxis.post.gcode import Dialect, Program, Setting, number
+from toolaxis.post.gcode import Dialect, number
 from toolaxis.post.moving import Course, TipControl, courses
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 Array = NDArray[np.float64]

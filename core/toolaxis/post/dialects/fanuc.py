@@ -7,7 +7,8 @@ cancelled after G69 and G28, is common practice and not from a manual that was a
 
 from typing import ClassVar
 
-from toolaxis.post.gcode import Dialect, Lines, Program, Setting
+from toolaxis.post.gcode import Dialect, Lines
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 

@@ -8,7 +8,8 @@ the work coordinate system) is not verified: `notes` says so on every setup shee
 """
 
 from toolaxis.post.dialects.fanuc import Fanuc
-from toolaxis.post.gcode import Lines, Program, Setting
+from toolaxis.post.gcode import Lines
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 

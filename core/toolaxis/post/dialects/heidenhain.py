@@ -9,7 +9,8 @@ retracts along the tool axis, is common practice and not from a manual that was 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.post.gcode import Dialect, Lines, Program, Setting, number
+from toolaxis.post.gcode import Dialect, Lines, number
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 

@@ -9,7 +9,8 @@ from typing import ClassVar
 
 from toolaxis.errors import InvalidInput
 from toolaxis.post.dialects.fanuc import Iso
-from toolaxis.post.gcode import Dialect, Lines, Program, Setting
+from toolaxis.post.gcode import Dialect, Lines
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 

@@ -12,7 +12,8 @@ from math import degrees
 
 import numpy as np
 
-from toolaxis.post.gcode import Dialect, Lines, Program, Setting, number
+from toolaxis.post.gcode import Dialect, Lines, number
+from toolaxis.post.setting import Program, Setting
 from toolaxis.post.stations import Station
 
 

@@ -12,8 +12,9 @@ from toolaxis.errors import InvalidInput
 from toolaxis.post.dialects.fanuc import Fanuc
 from toolaxis.post.dialects.heidenhain import Heidenhain, signed
 from toolaxis.post.dialects.siemens import Siemens
-from toolaxis.post.gcode import Dialect, Lines, Setting, number
+from toolaxis.post.gcode import Dialect, Lines, number
 from toolaxis.post.moving import Course, TipControl, rotary_words
+from toolaxis.post.setting import Setting
 
 _NOTE = ("The first motion of each operation leads straight from the retracted place to its first point, with the axis "
          "turned before. Whether that is free of fixtures is not checked.")
