@@ -12,13 +12,11 @@
 import build123d as bd
 
 from toolaxis.cad.outgoing import compound_of
-from toolaxis.cad.pieces import Piece, pieces, rest_of
+from toolaxis.cad.pieces import AXIS, LINES, PART, Piece, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.plan.plan import Plan
 
 __all__ = ["compound", "locations", "passes", "planes", "sub_surfaces"]
-
-_PART, _LINES, _AXIS = (0.86, 0.86, 0.86), (0.0, 0.28, 0.55), (0.1, 0.1, 0.1)
 
 
 def planes(plan: Plan) -> dict[str, bd.Plane]:
@@ -56,8 +54,8 @@ def passes(plan: Plan, links: bool = False) -> dict[str, bd.Compound]:
         Entries, exits and links too, at the tool's tip.
     """
     kinds = tuple(Motion) if links else (Motion.CUT,)
-    return {piece.name: bd.Compound(compound_of([edge for kind in kinds for edge in piece.edges(kind)]),
-                                    label=piece.name, color=bd.Color(*_LINES))
+    return {piece.name: bd.Compound(piece.passes(*kinds),
+                                    label=piece.name, color=bd.Color(*LINES))
             for piece in pieces(plan) if piece.done}
 
 
@@ -87,15 +85,15 @@ def compound(plan: Plan, part: "bd.Shape | None" = None) -> bd.Compound:
         What is drawn as the part; its faces that are not machined unless given.
     """
     shown = rest_of(plan) if part is None else compound_of([part.wrapped])  # a shape can have one parent only
-    body = bd.Compound(shown, label="part", color=bd.Color(*_PART))
+    body = bd.Compound(shown, label="part", color=bd.Color(*PART))
     operations = [_operation(piece) for piece in pieces(plan) if piece.done]
     return bd.Compound(label="plan", children=[body, *sub_surfaces(plan).values(), *operations])
 
 
 def _operation(piece: Piece) -> bd.Compound:
     """Passes and axis of an operation, placed at its work coordinate system."""
-    lines = bd.Compound(piece.passes(local=True), label="passes", color=bd.Color(*_LINES))
-    axis = bd.Edge(piece.axis(), label="axis", color=bd.Color(*_AXIS))
+    lines = bd.Compound(piece.passes(local=True), label="passes", color=bd.Color(*LINES))
+    axis = bd.Edge(piece.axis(), label="axis", color=bd.Color(*AXIS))
     made = bd.Compound(label=piece.name, children=[lines, axis])
     made.location = bd.Location(piece.location)
     return made

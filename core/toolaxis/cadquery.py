@@ -15,16 +15,13 @@ from typing import Any
 
 import cadquery as cq
 
-from toolaxis.cad.outgoing import compound_of
-from toolaxis.cad.pieces import Piece, piece_of, pieces, rest_of
+from toolaxis.cad.pieces import AXIS, LINES, PART, Piece, piece_of, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.run import plan as planned
 from toolaxis.plan.plan import Plan
 from toolaxis.tools.assembly import Tool
 
 __all__ = ["assembly", "locations", "passes", "planes", "sub_surfaces"]
-
-_PART, _LINES, _AXIS = (0.86, 0.86, 0.86), (0.0, 0.28, 0.55), (0.1, 0.1, 0.1)
 
 
 def planes(plan: Plan) -> dict[str, cq.Plane]:
@@ -62,7 +59,7 @@ def passes(plan: Plan, links: bool = False) -> dict[str, cq.Compound]:
         Entries, exits and links too, at the tool's tip.
     """
     kinds = tuple(Motion) if links else (Motion.CUT,)
-    return {piece.name: cq.Compound(compound_of([edge for kind in kinds for edge in piece.edges(kind)]))
+    return {piece.name: cq.Compound(piece.passes(*kinds))
             for piece in pieces(plan) if piece.done}
 
 
@@ -90,7 +87,7 @@ def assembly(plan: Plan, part: "cq.Workplane | cq.Shape | None" = None) -> cq.As
     from toolaxis.report.colouring import colours_of
 
     made = cq.Assembly(name="plan")
-    made.add(cq.Compound(rest_of(plan)) if part is None else part, name="part", color=cq.Color(*_PART))
+    made.add(cq.Compound(rest_of(plan)) if part is None else part, name="part", color=cq.Color(*PART))
     colours = colours_of(plan)
     for piece in pieces(plan):
         made.add(cq.Face(piece.face), name=piece.surface_name, color=cq.Color(*colours[piece.operation.number]))
@@ -102,8 +99,8 @@ def assembly(plan: Plan, part: "cq.Workplane | cq.Shape | None" = None) -> cq.As
 def _operation(piece: Piece) -> cq.Assembly:
     """Passes and axis of an operation in its work coordinates."""
     made = cq.Assembly(name=piece.name)
-    made.add(cq.Compound(piece.passes(local=True)), name="passes", color=cq.Color(*_LINES))
-    made.add(cq.Edge(piece.axis()), name="axis", color=cq.Color(*_AXIS))
+    made.add(cq.Compound(piece.passes(local=True)), name="passes", color=cq.Color(*LINES))
+    made.add(cq.Edge(piece.axis()), name="axis", color=cq.Color(*AXIS))
     return made
 
 

@@ -13,7 +13,9 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 
 #: Length of a drawn tool axis as a share of the diagonal of its sub-surface.
-_AXIS = 0.4
+_REACH = 0.4
+#: Colours, red, green and blue from 0 to 1, of what is not machined, of passes and of tool axes.
+PART, LINES, AXIS = (0.86, 0.86, 0.86), (0.0, 0.28, 0.55), (0.1, 0.1, 0.1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,16 +75,16 @@ class Piece:
         path, frame = self.operation.path, self.operation.frame
         return [] if path is None else path_edges(path, *kinds, frame=frame if local else None)
 
-    def passes(self, local: bool = False) -> Any:
-        """Its passes as one shape, TopoDS_Compound; see `edges`."""
-        return compound_of(self.edges(local=local))
+    def passes(self, *kinds: Motion, local: bool = False) -> Any:
+        """Its passes, or motions of other kinds, kind after kind, as one shape, TopoDS_Compound; see `edges`."""
+        return compound_of([edge for kind in kinds or (Motion.CUT,) for edge in self.edges(kind, local=local)])
 
     def axis(self) -> Any:
         """A line along the tool axis over the sub-surface, in work coordinates, TopoDS_Edge."""
         frame = self.operation.frame
         assert frame is not None
-        foot = frame.from_part(frame.shown_at)[0]
-        return polyline_edge(foot + np.array([[0.0], [_AXIS * self.operation.face.diagonal]]) * np.array([0.0, 0.0, 1]))
+        foot, reach = frame.from_part(frame.shown_at)[0], _REACH * self.operation.face.diagonal
+        return polyline_edge(foot + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, reach]]))
 
 
 def pieces(plan: Plan) -> tuple[Piece, ...]:

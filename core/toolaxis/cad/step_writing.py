@@ -20,14 +20,12 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from toolaxis import __version__
-from toolaxis.cad.pieces import pieces, rest_of
+from toolaxis.cad.pieces import LINES, PART, pieces, rest_of
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.plan import Plan
 
 Colour = tuple[float, float, float]
 
-_PART: Colour = (0.86, 0.86, 0.86)
-_LINES: Colour = (0.0, 0.28, 0.55)
 _TIME = "2000-01-01T00:00:00"
 
 
@@ -61,7 +59,7 @@ def write_step(plan: Plan, path: Path, colours: Mapping[int, Colour], name: str 
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     colouring = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
     whole = _Assembly(shapes, colouring, name)
-    whole.put(rest_of(plan) if part is None else part, "part", _PART)
+    whole.put(rest_of(plan) if part is None else part, "part", PART)
     for piece in pieces(plan):
         colour = colours[piece.operation.number]
         if not piece.done:
@@ -69,7 +67,7 @@ def write_step(plan: Plan, path: Path, colours: Mapping[int, Colour], name: str 
             continue
         own = _Assembly(shapes, colouring, piece.name)
         own.put(piece.local_face, piece.surface_name, colour)
-        own.put(piece.passes(local=True), f"{piece.name}-passes", _LINES)
+        own.put(piece.passes(local=True), f"{piece.name}-passes", LINES)
         whole.take(own, piece.location)
     shapes.UpdateAssemblies()
     _write(document, path)
