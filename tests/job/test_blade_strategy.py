@@ -1,5 +1,7 @@
 """Strategies around blades from end to end: plan, clean-up, judge, pictures, and what they refuse."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from benchmarks._blades import loft
@@ -7,7 +9,9 @@ from benchmarks._blades import loft
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.pictures import draw_plan
-from toolaxis.job.spec import check_five_axes
+from toolaxis.job.spec import check_five_axes, with_rings
+from toolaxis.orient.blade_layers import closed_parameter
+from toolaxis.shape.rings import ring_around
 
 TOOL = ta.Tool.ball(8, stickout=90, holder=[(12.5, 0), (12.5, 60)])
 
@@ -68,3 +72,19 @@ def test_what_it_cannot_take_is_named(given, words):
         assert words in str(reason)
     else:
         assert made.outcome == "incomplete" and words in made.operations[0].orientation.reasons[0]
+
+
+def test_one_face_of_a_blade_brings_those_around_it():
+    part = ta.load(Path(__file__).parents[2] / "examples" / "blisk.step")
+    assert [set(ring_around(part, number)) for number in (1, 163, 3, 161)] == [{1, 3, 161, 163}] * 4
+    assert ring_around(part, 2) == ()
+    joined, numbers = with_rings(part, [3, 2, 1])
+    assert numbers == [3, 2] and closed_parameter(joined.face(3)) in "uv" and not joined.face(2).members
+    assert {member.face.number for member in joined.face(3).members} == {1, 3, 161, 163}
+    again, numbers = with_rings(joined, [3])
+    assert again is joined and numbers == [3]
+
+
+def test_a_face_that_closes_by_itself_is_in_no_ring():
+    part = ta.load(loft("turbine", 5.0, place=along_x))
+    assert with_rings(part, None) == (part, [1])

@@ -17,7 +17,7 @@ from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
 from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import Job
-from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined
+from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined, with_rings
 from toolaxis.job.targets import check_division, not_divided, read_division
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
@@ -161,6 +161,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
             raise InvalidInput("strategy 'multiscale' has the rotary axes of a machine turn least: name a machine")
     sections = strategy.startswith("blade")  # plane sections, to which iso-parametric lines do not matter
     loaded, numbers = with_joined(load(part), faces, pi if sections else GREATEST_CORNER)
+    if sections:
+        loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
     bodies = tuple(load(body) for body in _listed(obstacles))
     targets = [piece for face in chosen_faces(loaded, numbers) for piece in split_at_kinks(face)]

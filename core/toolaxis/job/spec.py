@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import isfinite, pi
 from numbers import Integral
 from typing import Any
 
@@ -16,6 +16,7 @@ from toolaxis.plan.plan import STRATEGIES, Inputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.joined import GREATEST_CORNER
 from toolaxis.shape.part import Part
+from toolaxis.shape.rings import ring_around
 from toolaxis.shape.skins import join, skins
 from toolaxis.tools.assembly import Tool
 
@@ -296,3 +297,30 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
             row = members[0]
         rows.append(row)
     return part, rows
+
+
+def with_rings(part: Part, faces: Any) -> tuple[Part, Any]:
+    """The part with the rings joined in which chosen faces lie, and the list of faces that is left for `chosen_faces`.
+
+    Parameters
+    ----------
+    part : Part
+    faces : as `with_joined` leaves them
+        Faces that close by themselves, are joined already, or lie in no ring stay as they are.
+
+    Raises
+    ------
+    InvalidInput, UnsupportedGeometry
+        When a face is not there, or those of a ring cannot be joined.
+    """
+    left: dict[int, None] = {}
+    within: set[int] = set()
+    for face in chosen_faces(part, faces):
+        if face.number in within:
+            continue
+        ring = () if face.members else ring_around(part, face.number)
+        if ring:
+            part = join(part, ring, corner=pi)
+            within.update(ring)
+        left[face.number] = None
+    return part, list(left)

@@ -230,8 +230,9 @@ def closed_parameter(face: Face) -> str:
         one, other = (face.evaluate(uv).point for uv in ends)
         if np.linalg.norm(one - other, axis=1).max() <= _CLOSED * face.diagonal:
             return name
-    raise InvalidInput(f"face {face.label} does not close around a blade, so its sections are open: join the faces "
-                       "that go all around, such as 1+3+4+7")
+    raise InvalidInput(f"face {face.label} does not close around a blade, so its sections are open, and its "
+                       "neighbours do not continue it smoothly all around: join the faces that go around, such as "
+                       "1+3+4+7")
 
 
 def along_blade(face: Face, feed: str) -> Array:
