@@ -5,7 +5,7 @@
 
     part = cq.importers.importStep("freeform.step")
     plan = part.faces("not %PLANE").toolAxes("torus:12x1", scallop=0.05)
-    show_object(txq.assembly(plan, part))
+    show_object(txq.assembly(plan))
 
 `part.faces(...).toolAxes(tool, scallop, ...)` plans the selected faces as `toolaxis.plan` does, `part.passEdges(plan)`
 puts the passes on the stack, and `part.workCoordinates(plan, "op01-face1")` is a workplane at those coordinates.
