@@ -4,16 +4,20 @@ from math import isfinite
 
 import FreeCAD
 
+from .strategies import INDEXED
+
 _UNITS = FreeCAD.Units
 _FACES = "give an object, (object, \"Face7\"), \"Block.Face7\", or a list of these"
 _OPERATION = "give one of the operations that plan returns"
+_ROUGHNESS = (_UNITS.Length, 1000.0, "a finite roughness in micrometres, such as 1.6")
 _LENGTH = (_UNITS.Length, 1.0, "a finite length in mm, such as 0.02 or FreeCAD.Units.Quantity(\"0.02 mm\")")
 #: For each number its unit, what FreeCAD's own value of it is multiplied with, and how to give it.
 _NUMBERS = {"scallop": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
+            "roughness": _ROUGHNESS,
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
 _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",
-          "method": "\"sphere\""}
+          "method": "\"sphere\"", "strategy": "\"four-plus-one\""}
 _COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
@@ -218,6 +222,10 @@ def fields_of(document, given):
             found[name] = bool(value)
         else:
             found[name] = _things(document, name, value)
+    if "roughness" in found:
+        from toolaxis.job.spec import roughness_for
+
+        roughness_for(found.get("strategy", INDEXED), found["roughness"] / 1000)
     return found
 
 

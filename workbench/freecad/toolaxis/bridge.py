@@ -11,6 +11,7 @@ from .machines import limits_from
 from .objects import is_plan, plan_of
 from .results import apply as apply
 from .results import keep_verdict as keep_verdict
+from .strategies import asked_of, refuse_in_vain
 
 
 def task(inputs):
@@ -33,8 +34,8 @@ def task(inputs):
     from .reading import Source
 
     tool = inputs.assembled()
-    inputs.job().check_tool(tool)
     inputs.check_counts()
+    inputs.job().check_tool(tool)
     source = Source.of(inputs)
     division = source.division(inputs)
 
@@ -43,12 +44,14 @@ def task(inputs):
 
         part, bodies = source.read(progress)
         faces = None if inputs.blades and source.complete(part) else source.numbers
-        return ta.plan(part, tool, inputs.scallop, machine=limits_from(inputs.limits, tool), faces=faces,
+        made = ta.plan(part, tool, inputs.scallop, machine=limits_from(inputs.limits, tool), faces=faces,
                        regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
                        compare=inputs.compare, division=division, objective=inputs.objective,
                        allowance=inputs.allowance, direction=inputs.direction,
                        obstacles=list(bodies) or None, feedrate=inputs.feedrate, spindle=inputs.spindle,
-                       datum=source.datum, progress=progress)
+                       datum=source.datum, progress=progress, **asked_of(inputs))
+        refuse_in_vain(made)
+        return made
 
     return compute
 
@@ -104,8 +107,8 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
         mm
     progress : toolaxis.progress.Progress, optional
     **given
-        Further fields of `Inputs`, `regions`, `orientations` and `method` among them; what is not given comes from the
-        part.
+        Further fields of `Inputs`, `regions`, `orientations`, `method` and `strategy` among them; what is not given
+        comes from the part.
 
     Returns
     -------

@@ -86,6 +86,9 @@ def _ready(operation):
     reasons = why_stale(operation)
     if reasons:
         raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
+    if operation.AxisMoves:
+        raise InvalidInput(f"the axis of '{operation.Label}' moves while it cuts, and jobs have fixed planes: export a "
+                           "program instead, or choose fixed axes")
     inputs, standing = inputs_of(operation), Standing.of(operation)
     stands = [(standing, operation.Label), *((standing.turned(link.Placement, 0), link.Label)
                                              for link in turned_copies(operation))]

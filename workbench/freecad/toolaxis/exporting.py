@@ -11,7 +11,8 @@ from .objects.machine import angles_kept, nearest
 #: What operations of one folder have in common, and how it is called in messages.
 _SHARED = {"tool": "tools", "stickout": "stick-outs", "shank": "shanks", "holder": "holders",
            "scallop": "scallop heights", "allowance": "allowances", "limits": "limits of the axis",
-           "objective": "objectives", "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
+           "strategy": "strategies", "roughness": "roughness limits", "objective": "objectives",
+           "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}
 
 
@@ -207,7 +208,7 @@ def _operation(number, part, row):
 def _held(made, mounted, angles):
     """Operations with the rotary angles at which the machine that they were planned for holds them: those that the
     document tells, else the nearest ones."""
-    done = [(op, kept) for op, kept in zip(made, angles, strict=True) if op.done]
+    done = [(op, kept) for op, kept in zip(made, angles, strict=True) if op.done and op.orientation.lead is None]
     rows = in_order(mounted, [(op.orientation.axis, op.path.cl) for op, _ in done])
     found = {}
     for (op, kept), (ways, taken) in zip(done, rows, strict=True):

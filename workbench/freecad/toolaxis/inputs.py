@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from .machines import PREFIX
 from .places import matrix_of
+from .strategies import INDEXED, ROUGH, ROUGHNESS, check_strategy
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,10 @@ class Inputs:
         Whether other methods plan the same faces too.
     pieces : tuple of Piece
         Sub-surfaces that are kept as they are.
+    strategy : str
+        One of `freecad.toolaxis.strategies.STRATEGIES`: fixed axes, or how the axis moves.
+    roughness : float
+        Greatest Ra across the feed, micrometres; that of the strategy "multiscale", which alone looks at it.
     """
 
     faces: tuple = ()
@@ -92,6 +97,8 @@ class Inputs:
     blades: bool = True
     compare: bool = False
     pieces: tuple = ()
+    strategy: str = INDEXED
+    roughness: float = ROUGHNESS
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
@@ -99,6 +106,8 @@ class Inputs:
             object.__setattr__(self, name, rows)
         for name in ("faces", "obstacles", "pieces"):
             object.__setattr__(self, name, tuple(getattr(self, name) or ()))
+        if self.strategy != ROUGH:
+            object.__setattr__(self, "roughness", ROUGHNESS)
 
     @property
     def things(self):
@@ -109,6 +118,11 @@ class Inputs:
     def divides(self):
         """Whether faces are divided, or axes found otherwise than face by face."""
         return bool(self.regions or self.orientations or self.pieces or self.method != "sphere")
+
+    @property
+    def moves(self):
+        """Whether the axis moves while it cuts."""
+        return self.strategy != INDEXED
 
     def assembled(self):
         """The whole tool.
@@ -133,23 +147,25 @@ class Inputs:
         """
         from toolaxis.plan.plan import Inputs as JobInputs
 
-        return JobInputs(self.scallop, self.allowance, method=self.method, objective=self.objective,
-                         direction=self.direction, limits="" if self.limits.startswith(PREFIX) else self.limits,
-                         feedrate=self.feedrate, spindle=self.spindle)
+        return JobInputs(self.scallop, self.allowance, method=self.strategy if self.moves else self.method,
+                         objective=self.objective, direction=self.direction,
+                         limits="" if self.limits.startswith(PREFIX) else self.limits, feedrate=self.feedrate,
+                         spindle=self.spindle, roughness=self.roughness / 1000 if self.strategy == ROUGH else 0.0)
 
     def check_counts(self):
-        """Check the numbers of sub-surfaces and axes.
+        """Check the numbers of sub-surfaces and axes, and the strategy.
 
         Raises
         ------
         InvalidInput
-            When one is out of range, or does not go with the method.
+            When one is out of range, or does not go with method, tool or machine.
         """
         from toolaxis.errors import InvalidInput
         from toolaxis.partition.regions import checked_count
 
         checked_count(self.regions)
         checked_count(self.orientations, "orientations")
+        check_strategy(self)
         if self.orientations is not None and self.method != "sphere":
             raise InvalidInput(f"method {self.method!r} names its own axes, which are not shared: choose the best axis "
                                "of the hemisphere, or an axis for each sub-surface")
@@ -177,7 +193,8 @@ def inputs_of(thing):
                   thing.Scallop.Value, thing.Allowance.Value, thing.Limits, tuple(thing.Obstacles),
                   thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
                   thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
-                  thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None))
+                  thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
+                  thing.Strategy, thing.Roughness or ROUGHNESS)
 
 
 def count_from(text):

@@ -251,3 +251,30 @@ def texts_of(machine, ways, taken):
     """
     order = sorted(range(len(ways)), key=lambda k: k != taken)
     return [ways[k].text(machine) + (f" ({ways[k].reason})" if ways[k].reason else "") for k in order]
+
+
+def ranges_along(mounted, path):
+    """How far the rotary axes turn along a path whose axis moves, as the property of an operation holds it.
+
+    Parameters
+    ----------
+    mounted : toolaxis.machine.mounting.Mounting
+    path : toolaxis.cldata.toolpath.ToolPath
+
+    Returns
+    -------
+    list of str
+        "B: -12.5\u00b0 \u2026 30\u00b0" for each axis; the reason alone where the machine cannot follow.
+    """
+    import numpy as np
+
+    from toolaxis.errors import InvalidInput
+    from toolaxis.feed.turning import following
+
+    try:
+        found = following(mounted.machine, path, mounted.table_from_part, float(mounted.tool_length or 0.0))
+    except InvalidInput as reason:
+        return [str(reason)]
+    ends = np.round(np.degrees([found.rotary.min(axis=0), found.rotary.max(axis=0)]), 3) + 0.0
+    return [f"{axis.name}: {low:g}\u00b0 \u2026 {high:g}\u00b0" for axis, low, high in zip(
+        mounted.machine.rotary, *ends, strict=True)]

@@ -6,7 +6,8 @@ _IMPORT = "import freecad.toolaxis"
 _DOCUMENT = "FreeCAD.ActiveDocument"
 #: Fields of the inputs that an operation planned again may have changed, and the properties that hold them.
 _HELD = {"tool": "Tool", "stickout": "StickOut", "scallop": "Scallop", "allowance": "Allowance", "limits": "Limits",
-         "objective": "Objective", "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method"}
+         "objective": "Objective", "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method",
+         "strategy": "Strategy", "roughness": "Roughness"}
 
 
 def record(*lines):
@@ -37,7 +38,8 @@ def plan_line(inputs):
     given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}
     given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
     given |= {name: getattr(inputs, name) for name in ("allowance", "limits", "objective", "direction", "regions",
-                                                       "orientations", "method", "blades", "compare")
+                                                       "orientations", "method", "blades", "compare", "strategy",
+                                                       "roughness")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]

@@ -2,6 +2,8 @@
 
 import json
 
+from .strategies import INDEXED, ROUGHNESS
+
 #: Deviation at which a shape counts as changed, mm; reading a document back rounds to fifteen digits.
 _SAME = 1e-6
 _SUMS = 8
@@ -9,7 +11,7 @@ _GRID = 4
 #: Shapes that were looked at last, with their points, and how many.
 _SEEN, _KEPT = [], 6
 #: Inputs that older documents do not have, with what stood for them.
-_USUAL = {"regions": None, "orientations": None, "method": "sphere"}
+_USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS}
 
 
 def signature(things, obstacles=(), turned=False):
@@ -177,11 +179,18 @@ def changed_inputs(planned, inputs):
     planned : dict
         Read from `digest` at the time of planning.
     inputs : freecad.toolaxis.inputs.Inputs
-        As they are now.
+        As they are now, with a face at least.
     """
     now = json.loads(digest(inputs))
-    other = ["the faces were changed"] if sorted(planned["faces"]) != sorted(now["faces"]) else []
-    return other + _changed(planned, now)
+    document = inputs.faces[0][0].Document
+    names = dict.fromkeys([part for part, _ in planned["faces"]] + planned["obstacles"])
+    gone = [name for name in names if document.getObject(name) is None]
+    reasons = [f"{', '.join(gone)}: deleted"] if gone else []
+    if sorted(face for face in planned["faces"] if face[0] not in gone) != sorted(now["faces"]):
+        reasons.append("the faces were changed")
+    if sorted(name for name in planned["obstacles"] if name not in gone) != sorted(now["obstacles"]):
+        reasons.append("the bodies to avoid were changed")
+    return reasons + _changed(planned, now)
 
 
 def _changed(planned, now):

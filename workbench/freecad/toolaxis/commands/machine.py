@@ -27,7 +27,12 @@ class ChooseMachine:
 
     def Activated(self):
         """Open the panel, or say what is missing."""
-        found = [one for one in operations(FreeCAD.ActiveDocument) if one.Motions]
+        planned = [one for one in operations(FreeCAD.ActiveDocument) if one.Motions]
+        found = [one for one in planned if not one.AxisMoves]
+        if planned and not found:
+            warn(FreeCAD.Qt.translate("ToolAxis", "The axes of all operations move while they cut: choose their "
+                                                  "machine on the tab Limits of the planning panel."))
+            return
         if not found:
             warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation for a machine: "
                                                   "select faces and run Plan Orientations first."))

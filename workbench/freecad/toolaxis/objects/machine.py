@@ -97,11 +97,14 @@ def keep_angles(operation, plan, op):
         return
     from dataclasses import replace
 
-    from ..machines import texts_of, ways_to_hold
+    from ..machines import ranges_along, texts_of, ways_to_hold
 
     mounted = replace(plan.machine, tool_length=plan.tool.gauge_length)
-    ways = ways_to_hold(mounted, op.orientation.axis, op.path.cl)
     ensure(operation, _ANGLES)
+    if op.orientation.lead is not None:
+        assign(operation, RotaryAngles=ranges_along(mounted, op.path))
+        return
+    ways = ways_to_hold(mounted, op.orientation.axis, op.path.cl)
     assign(operation, RotaryAngles=texts_of(mounted.machine, ways, nearest(ways, op.rotary)))
 
 

@@ -2,6 +2,11 @@
 
 import FreeCAD
 
+from .properties import Property, assign, ensure
+
+#: What passes whose axis moves keep at each of their points, in the frame of the plane.
+_MOVING = (Property("VectorList", "ToolAxes", "Tool Axis", "Tool axis at each point", True, True),
+           Property("VectorList", "Contacts", "Tool Axis", "Contact with the face at each point", True, True))
 _RAPID, _FEED = "G0", "G1"
 _MOVES = {"G0": 0, "G00": 0, "G1": 1, "G01": 1}
 
@@ -73,6 +78,40 @@ def fill_passes(thing, made):
     thing.Path = Path.Path(made)
 
 
+def keep_axes(thing, path, frame):
+    """Keep the axis and the contact of each point in a Path object, whose commands have the tips only.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    path : toolaxis.cldata.toolpath.ToolPath or None
+        None for an axis that stands still: nothing is kept.
+    frame : toolaxis.machine.setup.WorkCoordinates
+    """
+    if path is None and "ToolAxes" not in thing.PropertiesList:
+        return
+    ensure(thing, _MOVING)
+    if path is None:
+        assign(thing, ToolAxes=[], Contacts=[])
+        return
+    turned = frame.from_part(frame.origin + path.axis)
+    for name, rows in (("ToolAxes", turned), ("Contacts", frame.from_part(path.cc))):
+        setattr(thing, name, [FreeCAD.Vector(*row) for row in rows.tolist()])
+
+
+def axes_of(passes):
+    """The axis at each point of passes, (n, 3), in the frame of the plane; None where it stands still.
+
+    Parameters
+    ----------
+    passes : App.DocumentObject
+    """
+    import numpy as np
+
+    kept = getattr(passes, "ToolAxes", None)
+    return np.array([tuple(row) for row in kept]) if kept else None
+
+
 def read_back(passes, motions, breaks):
     """The tool path that stands in the document, in the document's space.
 
@@ -85,11 +124,17 @@ def read_back(passes, motions, breaks):
     Returns
     -------
     toolaxis.cldata.toolpath.ToolPath
-        Without contact points: they repeat the tool's tip.
+        Without contact points where the axis stands still: they repeat the tool's tip.
+
+    Raises
+    ------
+    InvalidInput
+        When the axis moves and the commands are not those any more for which it was planned.
     """
     import numpy as np
 
     from toolaxis.cldata.toolpath import Motion, ToolPath
+    from toolaxis.errors import InvalidInput
 
     from ..places import matrix_of
 
@@ -100,6 +145,14 @@ def read_back(passes, motions, breaks):
     if len(kind) != len(tips):
         kind = np.where(rapid, Motion.LINK, Motion.CUT).astype(np.int8)
         starts = np.array([0, len(tips)])
+    kept = axes_of(passes)
+    if kept is not None:
+        if len(kept) != len(tips):
+            raise InvalidInput(f"'{passes.Label}' has {len(tips)} moves and {len(kept)} tool axes: its commands were "
+                               "changed since; recompute the operation")
+        axis = kept @ matrix[:3, :3].T
+        contacts = np.array([tuple(row) for row in passes.Contacts]) @ matrix[:3, :3].T + matrix[:3, 3]
+        return ToolPath(contacts, tips, axis, axis, kind, starts)
     axis = np.tile(matrix[:3, 2], (len(tips), 1))
     return ToolPath(tips, tips, axis, axis, kind, starts)
 
@@ -117,12 +170,13 @@ class Stations:
         import numpy as np
 
         self.points, rapid = moves(passes)
+        self.axes = axes_of(passes)
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         steps[rapid[1:]] = 0.0
         self.along = np.concatenate([[0.0], np.cumsum(steps)])
 
     def at(self, share):
-        """The tool's tip in the plane's frame, a FreeCAD.Vector.
+        """Where the tool stands in the plane's frame, a FreeCAD.Placement.
 
         Parameters
         ----------
@@ -132,12 +186,16 @@ class Stations:
         import numpy as np
 
         if not len(self.points):
-            return FreeCAD.Vector()
+            return FreeCAD.Placement()
         length = min(max(share, 0.0), 1.0) * self.along[-1]
         if length >= self.along[-1]:
-            tip = self.points[np.searchsorted(self.along, self.along[-1], side="left")]
+            k = int(np.searchsorted(self.along, self.along[-1], side="left"))
+            tip = self.points[k]
         else:
             k = int(np.searchsorted(self.along, length, side="right"))
             part = (length - self.along[k - 1]) / (self.along[k] - self.along[k - 1])
             tip = self.points[k - 1] + part * (self.points[k] - self.points[k - 1])
-        return FreeCAD.Vector(*tip.tolist())
+        turn = FreeCAD.Rotation()
+        if self.axes is not None and len(self.axes) == len(self.points):
+            turn = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), FreeCAD.Vector(*self.axes[k].tolist()))
+        return FreeCAD.Placement(FreeCAD.Vector(*tip.tolist()), turn)

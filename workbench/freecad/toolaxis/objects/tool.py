@@ -99,7 +99,7 @@ class ToolOnPasses(Proxy):
             return
         if self._stations is None:
             self._stations = Stations(thing.Passes)
-        station = FreeCAD.Placement(self._stations.at(thing.Position), FreeCAD.Rotation())
+        station = self._stations.at(thing.Position)
         if not thing.Station.isSame(station, 0.0):
             thing.Station = station
         place = thing.Passes.Placement.multiply(station)

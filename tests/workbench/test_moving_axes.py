@@ -1,0 +1,141 @@
+"""Axes that move while they cut: the command's plan through the document, what stands in the tree, what is refused."""
+
+import json
+from types import SimpleNamespace
+
+import FreeCAD
+import numpy as np
+import Part
+import pytest
+from FreeCAD import Placement, Rotation, Vector
+from freecad.toolaxis import bridge
+from freecad.toolaxis.cam_jobs import make_jobs
+from freecad.toolaxis.exporting import plan_task
+from freecad.toolaxis.objects.axislines import MOST, is_lines
+from freecad.toolaxis.objects.belongings import child
+from freecad.toolaxis.standing import Standing
+
+from toolaxis.errors import InvalidInput, ToolAxisError
+from toolaxis.post.apt_reading import read_apt
+from toolaxis.progress import NO_PROGRESS
+
+TURNED = Placement(Vector(30, -10, 5), Rotation(Vector(1, 2, 3), 40))
+
+
+@pytest.fixture(scope="module")
+def theirs(prepared):
+    """The command's plan of one operation, and the path that it wrote."""
+    document = json.loads((prepared / "out" / "plan.json").read_text())
+    op, = document["operations"]
+    path = read_apt((prepared / "out" / op["cl_file"]).read_text()).path
+    return SimpleNamespace(inputs=document["inputs"], tool=document["tool"]["name"], face=op["face"],
+                           found=op["orientation"], path=path)
+
+
+@pytest.fixture(scope="module")
+def planned(prepared, theirs):
+    """The same through a document, with the part as an object of it."""
+    document = FreeCAD.newDocument("Moving")
+    thing = document.addObject("Part::Feature", "Imported")
+    thing.Shape = Part.read(str(prepared / "part.step"))
+    document.recompute()
+    made, = bridge.plan(document, (thing, theirs.face), theirs.tool, theirs.inputs["scallop"],
+                        strategy=theirs.inputs["method"], shank=None, holder=None, limits="machine:bc-table-table",
+                        feedrate=theirs.inputs["feedrate"])
+    yield made
+    FreeCAD.closeDocument(document.Name)
+
+
+def lines_of(operation):
+    return next(filter(is_lines, operation.Group))
+
+
+def test_the_command_comes_to_the_same(theirs, planned):
+    """Passes, lengths, and tip and axis of every point, read back from the tree as they are exported."""
+    plan = plan_task([planned])(NO_PROGRESS)
+    path = plan.operations[0].path
+    assert planned.Strategy == plan.inputs.method == "sturz" and planned.AxisMoves
+    assert planned.Passes == theirs.found["passes"] and list(planned.Reasons) == theirs.found["reasons"]
+    assert planned.CuttingLength.Value == pytest.approx(theirs.found["length"], rel=1e-6)
+    assert np.radians(planned.MeanLean.Value) == pytest.approx(theirs.found["lead"], abs=1e-9)
+    assert (path.kind == theirs.path.kind).all() and (path.breaks == theirs.path.breaks).all()
+    on = path.kind != 3  # the height of links hangs on the box around the part, which each kernel gives loosely
+    assert np.abs(path.cl - theirs.path.cl)[on].max() < 1e-5 and np.abs(path.axis - theirs.path.axis).max() < 1e-6
+    assert np.ptp(path.axis, axis=0).max() > 0.01
+    assert [text[:2] for text in planned.RotaryAngles] == ["C:", "B:"]
+
+
+def test_lines_and_tool_stand_along_the_axis_of_each_point(planned):
+    path, lines = Standing.of(planned).path, lines_of(planned)
+    cut, edges = path.kind == 0, lines.Shape.Edges
+    assert 0 < len(edges) <= MOST and len(edges) == len(path.cl[cut][::lines.Every])
+    ends = np.array([[vertex.Point for vertex in edge.Vertexes] for edge in edges])
+    assert np.abs(ends[:, 0] - path.cl[cut][::lines.Every]).max() < 1e-6
+    assert np.abs((ends[:, 1] - ends[:, 0]) / lines.LineLength.Value - path.axis[cut][::lines.Every]).max() < 1e-6
+    tool = child(planned, "Part::FeaturePython")
+    tool.Position = 1.0
+    spindle = tool.Placement.Rotation.multVec(Vector(0, 0, 1))
+    assert np.abs(np.array(spindle) - path.axis[np.flatnonzero(path.kind != 3)[-1]]).max() < 1e-6
+    tool.Position = 0.0
+
+
+def test_the_axes_are_saved_and_turn_with_the_part(planned, tmp_path):
+    before = Standing.of(planned).path
+    planned.Document.saveCopy(str(tmp_path / "Moving.FCStd"))
+    document = FreeCAD.openDocument(str(tmp_path / "Moving.FCStd"))
+    again = document.getObject(planned.Name)
+    document.recompute()
+    path = Standing.of(again).path
+    assert not again.Stale and again.Strategy == "sturz"
+    assert np.abs(path.axis - before.axis).max() < 1e-12 and np.abs(path.cc - before.cc).max() < 1e-12
+    first = Vector(*lines_of(again).Shape.Edges[0].Vertexes[0].Point)
+    again.Faces[0][0].Placement = TURNED
+    document.recompute()
+    turned = np.array([TURNED.Rotation.multVec(Vector(*axis)) for axis in path.axis.tolist()])
+    assert np.abs(Standing.of(again).path.axis - turned).max() < 1e-9
+    assert lines_of(again).Shape.Edges[0].Vertexes[0].Point.distanceToPoint(TURNED.multVec(first)) < 1e-6
+    passes = child(again, "Path::Feature")
+    passes.Path = type(passes.Path)(passes.Path.Commands[:-1])
+    with pytest.raises(InvalidInput, match="its commands were changed since"):
+        Standing.of(again)
+    names = {one.Name for one in again.Group}
+    document.removeObject(again.Name)
+    assert not any(document.getObject(name) for name in names), "the lines go with their operation"
+    FreeCAD.closeDocument(document.Name)
+
+
+def test_jobs_with_fixed_planes_are_refused(planned):
+    names = {one.Name for one in planned.Document.Objects}
+    with pytest.raises(InvalidInput, match="moves while it cuts"):
+        make_jobs(planned.Document, [planned])
+    assert {one.Name for one in planned.Document.Objects} == names
+
+
+@pytest.mark.parametrize(("given", "words"), [
+    ({"strategy": "four-plus-one"}, "choose a machine among the limits"),
+    ({"strategy": "four-plus-one", "limits": "machine:four-axis-a"}, "moves two rotary axes"),
+    ({"strategy": "two-point", "tool": "ball:6"}, "no flat bottom"),
+    ({"strategy": "blade"}, "no ball end"),
+    ({"strategy": "multiscale", "tool": "ball:6"}, "smaller corner radius"),
+    ({"strategy": "multiscale", "roughness": 0.0}, "above zero"),
+    ({"strategy": "sturz", "roughness": 1.0}, "does not look at it"),
+    ({"strategy": "sturz", "orientations": 2}, "leave out the number of axes"),
+    ({"strategy": "sturz", "method": "roman"}, "leave out one of both"),
+    ({"strategy": "best"}, "use indexed, sturz")])
+def test_what_does_not_go_with_a_strategy_is_told_and_nothing_is_made(document, parts, given, words):
+    block = parts.block(document)
+    given = {"tool": parts.TOOL, **given}
+    names = [one.Name for one in document.Objects]
+    with pytest.raises(ToolAxisError, match=words):
+        bridge.plan(document, (block, parts.sculptured_name(block)), scallop=parts.SCALLOP, shank=None, holder=None,
+                    **given)
+    assert [one.Name for one in document.Objects] == names
+
+
+def test_a_strategy_that_comes_to_nothing_leaves_the_tree_as_it_is(document, parts):
+    block = parts.block(document)
+    names = [one.Name for one in document.Objects]
+    with pytest.raises(ToolAxisError, match=r"'multiscale' does not serve face .: refused feed"):
+        bridge.plan(document, (block, parts.sculptured_name(block)), parts.TOOL, parts.SCALLOP, shank=None,
+                    holder=parts.HOLDER, stickout=25.0, strategy="multiscale", limits="machine:bc-table-table")
+    assert [one.Name for one in document.Objects] == names
