@@ -527,6 +527,14 @@
    <translation>{} treffen sich um {} mm</translation>
   </message>
   <message>
+   <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben einem Nacharbeitswerkzeug, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
+  </message>
+  <message>
+   <source>{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into the document.</source>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben einem Nacharbeitswerkzeug. OK stellt sie ins Dokument.</translation>
+  </message>
+  <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
@@ -541,6 +549,10 @@
   <message>
    <source>{} row {}: {} '{}' is not a length</source>
    <translation>{} Zeile {}: {} '{}' ist keine Länge</translation>
+  </message>
+  <message>
+   <source>{}: left to clean-up</source>
+   <translation>{}: für die Nacharbeit</translation>
   </message>
   <message>
    <source>{}: no axis</source>

@@ -17,6 +17,7 @@ import toolaxis as ta
 from toolaxis.progress import NO_PROGRESS
 
 TOOL = "ball:6"
+LENGTHS = "CuttingLength", "Travel", "MachiningTime"
 
 
 @pytest.fixture(scope="module")
@@ -84,10 +85,13 @@ def test_the_judge_takes_a_sub_surface_from_the_document(divided):
 def test_one_sub_surface_is_planned_again_with_its_own_border(divided):
     made, _ = divided
     first, region = made[0], json.loads(made[0].Details)["region"]
-    others = [one.Name for one in made]
+    others, plan = [one.Name for one in made], plan_of(made[0])
+    asked, figures = inputs_of(plan), [getattr(plan, name).Value for name in LENGTHS]
     again = bridge.recompute(first)
     assert again == [first] and json.loads(first.Details)["region"] == region
-    assert [one.Name for one in operations_in(plan_of(first))] == others
+    assert [one.Name for one in operations_in(plan)] == others
+    assert inputs_of(plan) == asked and plan.SubSurfaces == 2 and plan.Outcome == "complete"
+    assert [getattr(plan, name).Value for name in LENGTHS] == pytest.approx(figures, rel=1e-9), "those of both"
 
 
 def test_locks_are_kept_and_the_plan_is_planned_again_in_the_same_objects(divided):
@@ -112,6 +116,61 @@ def test_an_input_of_the_plan_that_is_changed_marks_it(divided):
     plan.Scallop = 0.4
     plan.Document.recompute()
     assert not plan.Stale
+
+
+def taller(part):
+    shape = part.Shape.copy()
+    part.Shape = shape.transformGeometry(FreeCAD.Matrix(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.1, 0))
+
+
+@pytest.mark.parametrize(("change", "reason"), [
+    (lambda part, made: part.Document.removeObject(part.Name), "the part was deleted"),
+    (lambda part, made: taller(part), "{0}, {1}: the part has changed"),
+    (lambda part, made: part.Document.removeObject(made[1].Name), "{1}: deleted"),
+    (lambda part, made: plan_of(made[0]).removeObject(made[1]), "{1}: taken out of the plan"),
+    (lambda part, made: setattr(made[0], "Scallop", 0.3), "{0}: scallop was changed")])
+def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change, reason):
+    made, _ = divided
+    part, plan, document = made[0].Faces[0][0], plan_of(made[0]), made[0].Document
+    names, words = [one.Name for one in made], reason.format(*(one.Label for one in made))
+    document.openTransaction("change")
+    change(part, made)
+    if "deleted" in reason and part.Name in [one.Name for one in document.Objects]:
+        assert plan.Stale and list(plan.StaleReasons) == [words], "told at once"
+    document.recompute()
+    document.commitTransaction()
+    assert plan.Stale and list(plan.StaleReasons) == [words]
+    if reason == "the part was deleted":
+        for act in (lambda: bridge.recompute(plan), lambda: bridge.split(made[0]), lambda: bridge.merge(made)):
+            with pytest.raises(ta.InvalidInput, match="deleted"):
+                act()
+    document.undo()
+    document.recompute()
+    assert not plan.Stale and [one.Name for one in operations_in(plan)] == names
+    divided[0][:] = operations_in(plan)
+
+
+def test_faces_left_to_clean_up_are_told_apart_from_those_without_an_axis(divided):
+    from dataclasses import replace
+
+    from freecad.toolaxis.panels.outcome import left_to_clean_up, outcome_sentence
+
+    from toolaxis.plan.zone import Zone
+
+    _, plan = divided
+    first, second = plan.operations
+    without = replace(second, path=None)
+    left = replace(without, zones=(Zone(second.face.outline, second.face.area),))
+    third = replace(without, number=3)
+    for operations, words, bad in (
+            ((first, second), "Every face has an axis.", False),
+            ((first, left), "1 of 2 faces have an axis, 1 are left to a clean-up tool. OK", False),
+            ((first, without), "1 of 2 faces have an axis; the reasons", True),
+            ((first, left, third), "1 of 3 faces have an axis, 1 are left to a clean-up tool, 1 have none;", True)):
+        found = replace(plan, operations=operations)
+        text, warns = outcome_sentence(found)
+        assert text.startswith(words) and warns == bad
+        assert left_to_clean_up(found) == {op.number for op in operations if op is left}
 
 
 def test_other_blades_are_links_that_follow(bladed, tmp_path):
@@ -168,12 +227,24 @@ def test_one_undo_takes_blades_and_links(bladed):
     document.undo()
     assert sorted(one.Name for one in document.Objects) == names
     source = links(plan_of(document.getObject(made[0].Name)))[0].LinkedObject
+    plan = plan_of(source)
+    for gone in (source, links(plan)[0]):
+        words = f"{gone.Label}: deleted"
+        document.openTransaction("delete")
+        document.removeObject(gone.Name)
+        document.commitTransaction()
+        assert all(one.LinkedObject is not None for one in document.Objects if one.TypeId == "App::Link")
+        assert plan.Stale and list(plan.StaleReasons) == [words]
+        document.undo()
+        assert sorted(one.Name for one in document.Objects) == names and not plan.Stale
     document.openTransaction("delete")
-    document.removeObject(source.Name)
+    document.removeObject(thing.Name)
+    document.recompute()
     document.commitTransaction()
-    assert all(one.LinkedObject is not None for one in document.Objects if one.TypeId == "App::Link")
+    assert plan.Stale and list(plan.StaleReasons) == ["the part was deleted"]
     document.undo()
-    assert sorted(one.Name for one in document.Objects) == names
+    document.recompute()
+    assert not plan.Stale and not [one for one in document.Objects if "Invalid" in one.State]
 
 
 def test_clean_up_zones_are_hatched(document, whole_parts):

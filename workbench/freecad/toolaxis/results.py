@@ -7,18 +7,17 @@ import FreeCAD
 
 from .faces import facts_of
 from .objects import is_plan, operations_in
-from .objects.axislines import show_axes
 from .objects.belongings import GROUP, child, frame_of, loose
 from .objects.copies import Tree, quiet
 from .objects.frames import add_frame, place_frame
 from .objects.machine import keep_angles
 from .objects.operation import Operation, mark, set_inputs, set_results
-from .objects.passes import commands, fill_passes, keep_axes
+from .objects.passes import commands, fill_passes
 from .objects.properties import assign
 from .objects.surfaces import is_shown, show_surface, surface_colour
 from .objects.tool import ToolOnPasses, tool_shape
 from .objects.transaction import one_step, remove
-from .objects.wholeplan import WholePlan, keep_plan
+from .objects.wholeplan import WholePlan, keep_figures, keep_plan
 from .places import chain_of, placement_from
 from .staleness import digest, signature
 
@@ -68,7 +67,9 @@ def apply(document, inputs, plan, replaces=None):
             _lock(operation, inputs, _key(op, owner))
             keep_angles(operation, plan, op)
         tree.finish(made, chain_of(owners[0][0]), list(standing.values()))
-        if is_plan(group):
+        if is_plan(group) and replaces is not None and not is_plan(replaces):
+            keep_figures(group, plan)
+        elif is_plan(group):
             keep_plan(group, inputs, plan)
         document.recompute([*(thing for one in made for thing in (*one.Group, one)), *tree.things, group])
         quiet(tree.things)
@@ -188,8 +189,7 @@ def _fill(operation, inputs, plan, which):
     remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
     if op.done:
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
-        passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
-        show_axes(operation, passes, op.face.diagonal, title)
+        _standing_passes(operation, op, (frame, inputs.feedrate), title)
         _standing_tool(operation, plan, title)
     else:
         remove([one for one in operation.Group if not is_shown(one)])
@@ -255,14 +255,12 @@ def _standing_passes(operation, op, frame, title):
     fill_passes(passes, commands(op.path, op.frame, frame[1]))
     passes.Placement = frame[0].Placement
     passes.setExpression("Placement", None)  # the same words may mean a frame that was deleted
-    keep_axes(passes, op.path if op.orientation.lead is not None else None, op.frame)
     passes.setExpression("Placement", f"{frame[0].Name}.Placement")
     if FreeCAD.GuiUp:  # else FreeCAD draws a line to the first point from the origin, maybe through the part
         first = passes.Path.Commands[0].Placement.Base
         passes.ViewObject.StartPosition = first
 
 
-    return passes
 def _standing_tool(operation, plan, title):
     document = operation.Document
     standing = child(operation, "Part::FeaturePython")

@@ -3,7 +3,6 @@
 import FreeCAD
 
 from . import is_operation, is_plan, operations_in, plan_of
-from .axislines import is_lines
 from .maps import colour
 from .properties import assign
 from .surfaces import colour_view, is_shown
@@ -48,10 +47,6 @@ def _is_map(thing):
     return thing.TypeId == "Mesh::Feature" and "Deviation" in thing.PropertiesList
 
 
-def _is_tool(thing):
-    return getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"
-
-
 def belongings(operation):
     """The objects in an operation that it was given here; what a user has put there is not among them.
 
@@ -59,8 +54,8 @@ def belongings(operation):
     ----------
     operation : App.DocumentObject
     """
-    kinds = (_is_frame, _is_passes, _is_map, is_shown, is_lines, _is_tool)
-    return [thing for thing in operation.Group if any(kind(thing) for kind in kinds)]
+    return [thing for thing in operation.Group if _is_frame(thing) or _is_passes(thing) or _is_map(thing)
+            or is_shown(thing) or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
 
 
 def loose(operation):
@@ -134,6 +129,8 @@ class Keeper:
         document = thing.Document
         if document is None or document.Transacting or document.Restoring:
             return
+        if is_operation(thing) or "Turn" in thing.PropertiesList:
+            self._tell_plan(thing)
         if is_operation(thing):
             self._take(document, thing)
             return
@@ -152,6 +149,13 @@ class Keeper:
             colour_view(thing)
 
     slotRedoDocument = slotUndoDocument
+
+    def _tell_plan(self, thing):
+        from .wholeplan import note_deleted
+
+        plan, source = plan_of(thing), getattr(thing, "LinkedObject", None)
+        if plan is not None and plan.Name not in self.going and (source is None or source.Name not in self.going):
+            note_deleted(plan, thing)
 
     def _take(self, document, operation):
         self.going.add(operation.Name)

@@ -10,6 +10,7 @@ from .figures import fill, fill_baselines, measures, sentences
 from .hemisphere import HemisphereMap
 from .legend import Legend
 from .locks import Locks
+from .outcome import left_to_clean_up
 
 translate = FreeCAD.Qt.translate
 
@@ -43,7 +44,7 @@ class AxisView(QtCore.QObject):
         self.curve.hovered.connect(form.pointer.setText)
         self.locks = Locks()
         self.plan = self.found = None
-        self.pictures, self.titles = {}, {}
+        self.pictures, self.titles, self.left = {}, {}, set()
         self.growing, self.computed = {}, None
         self.tried = self._asked = None
         self.work = None
@@ -90,7 +91,8 @@ class AxisView(QtCore.QObject):
         self.curve.show_options(plan.options)
         fill_baselines(self.form.baselines, plan.baselines)
         self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
-        undone = [k for k, op in enumerate(plan.operations) if not op.done]
+        self.left = left_to_clean_up(plan)
+        undone = [k for k, op in enumerate(plan.operations) if not op.done and op.number not in self.left]
         self._offer(self._titles(), undone[0] if undone else 0)
         self._show_operation()
 
@@ -154,6 +156,8 @@ class AxisView(QtCore.QObject):
             title = translate("ToolAxis", "{} (locked)").format(title)
         if self.plan.blades is not None and op.number in self.plan.blades.copies:
             title = translate("ToolAxis", "{} (turned copy)").format(title)
+        if op.number in self.left:
+            return translate("ToolAxis", "{}: left to clean-up").format(title)
         return title if op.done else translate("ToolAxis", "{}: no axis").format(title)
 
     def leave(self):
@@ -307,6 +311,7 @@ class AxisView(QtCore.QObject):
         from toolaxis.job.axes import with_operations
 
         self.plan = with_operations(self.plan, {operation.number: operation})
+        self.left = left_to_clean_up(self.plan)
         picture = self.pictures.get(operation.number)
         if picture is not None:
             picture.marks.pop("chosen", None)

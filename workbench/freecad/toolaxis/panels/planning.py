@@ -17,6 +17,7 @@ from ..tasks import Work, sentence
 from .axisview import AxisView
 from .fields import load_form, tell
 from .locks import Locks
+from .outcome import outcome_sentence
 from .panel import Panel
 from .planform import PlanForm
 from .preview import Preview
@@ -177,14 +178,7 @@ class PlanPanel(Panel):
             return translate("ToolAxis", "Press Compute to find the axes."), False
         if self.computed is None:
             return translate("ToolAxis", "Something has changed: compute again."), True
-        done = sum(op.done for op in plan.operations)
-        if plan.outcome == "cancelled":
-            return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
-                len(plan.operations)), True
-        if done < len(plan.operations):
-            return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(
-                done, len(plan.operations)), True
-        return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
+        return outcome_sentence(plan)
 
     def _tell(self, text, bad=False):
         tell(self.form.message, text, bad)
