@@ -7,12 +7,13 @@ import FreeCAD
 
 from .faces import facts_of
 from .objects import is_plan, operations_in
+from .objects.axislines import show_axes
 from .objects.belongings import GROUP, child, frame_of, loose
 from .objects.copies import Tree, quiet
 from .objects.frames import add_frame, place_frame
 from .objects.machine import keep_angles
 from .objects.operation import Operation, mark, set_inputs, set_results
-from .objects.passes import commands, fill_passes
+from .objects.passes import commands, fill_passes, keep_axes
 from .objects.properties import assign
 from .objects.surfaces import is_shown, show_surface, surface_colour
 from .objects.tool import ToolOnPasses, tool_shape
@@ -189,7 +190,8 @@ def _fill(operation, inputs, plan, which):
     remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
     if op.done:
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
-        _standing_passes(operation, op, (frame, inputs.feedrate), title)
+        passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
+        show_axes(operation, passes, op.face.diagonal, title)
         _standing_tool(operation, plan, title)
     else:
         remove([one for one in operation.Group if not is_shown(one)])
@@ -253,12 +255,14 @@ def _standing_passes(operation, op, frame, title):
         operation.addObject(passes)
     passes.Label = translate("ToolAxis", "Passes {}").format(title)
     fill_passes(passes, commands(op.path, op.frame, frame[1]))
+    keep_axes(passes, op.path if op.orientation.lead is not None else None, op.frame)
     passes.Placement = frame[0].Placement
     passes.setExpression("Placement", None)  # the same words may mean a frame that was deleted
     passes.setExpression("Placement", f"{frame[0].Name}.Placement")
     if FreeCAD.GuiUp:  # else FreeCAD draws a line to the first point from the origin, maybe through the part
         first = passes.Path.Commands[0].Placement.Base
         passes.ViewObject.StartPosition = first
+    return passes
 
 
 def _standing_tool(operation, plan, title):

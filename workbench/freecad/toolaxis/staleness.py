@@ -2,6 +2,8 @@
 
 import json
 
+from .strategies import INDEXED, ROUGHNESS
+
 #: Deviation at which a shape counts as changed, mm; reading a document back rounds to fifteen digits.
 _SAME = 1e-6
 _SUMS = 8
@@ -9,7 +11,7 @@ _GRID = 4
 #: Shapes that were looked at last, with their points, and how many.
 _SEEN, _KEPT = [], 6
 #: Inputs that older documents do not have, with what stood for them.
-_USUAL = {"regions": None, "orientations": None, "method": "sphere"}
+_USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS}
 
 
 def signature(things, obstacles=(), turned=False):

@@ -3,6 +3,7 @@
 import FreeCAD
 
 from . import is_operation, is_plan, operations_in, plan_of
+from .axislines import is_lines
 from .maps import colour
 from .properties import assign
 from .surfaces import colour_view, is_shown
@@ -47,6 +48,10 @@ def _is_map(thing):
     return thing.TypeId == "Mesh::Feature" and "Deviation" in thing.PropertiesList
 
 
+def _is_tool(thing):
+    return getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"
+
+
 def belongings(operation):
     """The objects in an operation that it was given here; what a user has put there is not among them.
 
@@ -54,8 +59,8 @@ def belongings(operation):
     ----------
     operation : App.DocumentObject
     """
-    return [thing for thing in operation.Group if _is_frame(thing) or _is_passes(thing) or _is_map(thing)
-            or is_shown(thing) or getattr(getattr(thing, "Proxy", None), "Type", "") == "ToolAxisTool"]
+    kinds = (_is_frame, _is_passes, _is_map, is_shown, is_lines, _is_tool)
+    return [thing for thing in operation.Group if any(kind(thing) for kind in kinds)]
 
 
 def loose(operation):

@@ -1,7 +1,10 @@
 """An operation: what was asked for one face, and what came of it, as properties of a group with its objects."""
 
+from math import degrees
+
 import FreeCAD
 
+from ..strategies import STRATEGIES
 from . import is_operation, is_plan
 from .belongings import Keeper, note
 from .properties import Property, Proxy, assign
@@ -28,6 +31,9 @@ INPUTS = (
     Property("String", "Orientations", _ASKED, "Different axes at most: a number, auto, or nothing for one each"),
     Property("Enumeration", "Method", _ASKED, "How axes are found", False, False,
              ("sphere", "sectors", "roman", "normal", "one", "ball")),
+    Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while it cuts", False, False,
+             STRATEGIES),
+    Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, which multiscale looks at"),
     Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and turn it to the others"),
     Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"))
 LOCKS = (
@@ -45,6 +51,9 @@ RESULTS = (
     Property("Length", "AverageStripWidth", _FOUND, "Area over cutting length", True),
     Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion", True),
     Property("Length", "Gouge", _FOUND, "Upper bound of the penetration below the machined skin", True),
+    Property("Bool", "AxisMoves", _FOUND, "Whether the axis moves while it cuts; Axis is its mean then", True),
+    Property("Angle", "MeanLean", _FOUND, "Where the axis moves: its mean angle to the normal, or its constant lead",
+             True),
     Property("Float", "LeftToCleanUp", _FOUND, "Share of the area left to a clean-up tool", True),
     Property("StringList", "NotChecked", _FOUND, "What the collision check left out because it was not given", True))
 KEPT = (
@@ -173,7 +182,7 @@ def set_inputs(thing, inputs):
            Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
            FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
            Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,
-           Compare=inputs.compare)
+           Compare=inputs.compare, Strategy=inputs.strategy, Roughness=inputs.roughness)
 
 
 def set_results(thing, found, not_checked):
@@ -190,7 +199,8 @@ def set_results(thing, found, not_checked):
            FeedParameter=found.feed if found.axis is not None else "", Passes=int(found.passes),
            AverageStripWidth=float(found.average_strip_width), CuttingLength=float(found.length),
            Gouge=max(float(found.gouge), 0.0), LeftToCleanUp=float(found.unreached), NotChecked=list(not_checked),
-           Verdict="not verified", VerdictReasons=[])
+           AxisMoves=found.lead is not None, MeanLean=degrees(found.lead or 0.0), Verdict="not verified",
+           VerdictReasons=[])
     for name in CLEARANCES:
         _set_clearance(thing, name, found.clearance.get(name))
 
