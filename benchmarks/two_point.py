@@ -21,7 +21,8 @@ from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.orient.flat_plan import PROBES, TRIED, gouging, linked, told
 from toolaxis.orient.flat_strips import Strip, lay_strips, strip
-from toolaxis.orient.flat_tilt import Work, postures
+from toolaxis.orient.flat_tilt import postures
+from toolaxis.orient.flat_work import Work
 from toolaxis.orient.indexed import Task, task
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

@@ -126,6 +126,32 @@ def test_true_posture_at_the_middle_of_the_sample_surface(biquintic):
     assert penetration(setting.tool, printed.tip, printed.axis, (biquintic,)).max() > 0.015
 
 
+@pytest.mark.parametrize("place, sense", [((0.5, 0.0), 1), ((1.0, 0.25), -1)])
+def test_no_gouge_is_seen_where_heights_beside_the_contact_differ(biquintic, place, sense):
+    """On the border the face bends on one side only: the least height is the contact's all the same."""
+    uv = np.array([place])
+    setting = Setting(biquintic, Tool.flat(60), uv, sense * biquintic.evaluate(uv).su, 0.03)
+    for lean in np.radians([20.0, 25.0, 40.0]):
+        ring = rings(setting, Stand(np.array([lean]), np.zeros(1), np.zeros(1)))
+        assert ring.height.min() >= -1e-9 and ring.least[0] >= -1e-9
+    stand, ring = settle(setting, 0.0)
+    assert np.degrees(stand.lean[0]) < 21.0 and ring.least[0] >= -1e-5
+
+
+def test_the_least_height_between_angles(biquintic):
+    """Against the ring of a cutter turned by parts of the step between angles."""
+    uv = np.array([[0.8, 0.3]])
+    setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
+    ring = rings(setting, Stand(np.radians([17.0]), np.zeros(1), np.zeros(1)))
+    ahead = unit(np.cross(np.cross(ring.axis, setting.frame.feed), ring.axis))
+    angle = np.linspace(-np.pi, np.pi, 2401)[:, None]
+    points = ring.tip + 30.0 * (np.cos(angle) * ahead + np.sin(angle) * np.cross(ring.axis, ahead))
+    found = nearest(biquintic, points)
+    inside = biquintic.contains(found.uv)
+    height = np.einsum("ij,ij->i", points - found.point, biquintic.normal(found.uv))[inside]
+    assert ring.least[0] == pytest.approx(height.min(), abs=2e-5) and height.min() < -1.0
+
+
 def test_heights_of_rings_are_distances(biquintic):
     uv = np.array([[0.4, 0.55]])
     setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)

@@ -8,9 +8,11 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.two_point import circle_strip_width, matched_lead, two_point_lead
 from toolaxis.errors import InvalidInput
+from toolaxis.orient.flat_field import field_of
 from toolaxis.orient.flat_plan import gouging, told, two_point
 from toolaxis.orient.flat_strips import lane, lay_strips, next_strip, places, strip
-from toolaxis.orient.flat_tilt import BEHIND, CONVEX, REASONS, TWO, Work, field_of, postures
+from toolaxis.orient.flat_tilt import BEHIND, CONVEX, REASONS, TWO, postures
+from toolaxis.orient.flat_work import Work
 from toolaxis.orient.indexed import task
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
@@ -24,6 +26,13 @@ TOOL, H, RHO = Tool.flat(20), 0.03, 40.0
 def trough(hollow=True, half=0.45, trims=()):
     """Part of a cylinder along v, 36 mm wide, seen from inside or from outside."""
     return Face(Cylinder(RHO, (-half, half), (0.0, 30.0)).nurbs(), trims, flip=hollow)
+
+
+def basin():
+    """A bent sheet, 40 mm by 36 mm, hollow across u and more and more so along it."""
+    x, y = np.meshgrid(np.linspace(-20.0, 20.0, 4), np.linspace(-18.0, 18.0, 4), indexing="ij")
+    height = np.array([0.0, 0.0, 2.0, 12.0])[:, None] + np.array([4.0, -1.0, -1.0, 4.0])
+    return Face.from_bspline(np.stack([x, y, height], axis=-1), (3, 3))
 
 
 @pytest.mark.parametrize("posture, lean, lift", [("two-point", two_point_lead, H), ("one-point", matched_lead, 0.0)])
@@ -50,6 +59,21 @@ def test_reasons_for_one_contact():
     crosswise = postures(Work(trough(half=0.8), TOOL, H, "u", "one-point"), np.array([0.0]), 15.0, 1)
     assert crosswise.reason[0] == CONVEX and REASONS[CONVEX].endswith("not hollow across the feed")
     assert np.degrees(crosswise.stand.lean[0]) == pytest.approx(np.degrees(np.arcsin(10 / RHO)), abs=0.05)
+
+
+@pytest.mark.parametrize("posture, share", [("matched", 0.5), ("formula", 0.5)])
+def test_leans_are_raised_until_nothing_gouges(posture, share):
+    """Along the feed the basin is as hollow as across it from its middle on, which the paper's leans leave out."""
+    face = basin()
+    along = np.linspace(0.1, 0.9, 9)
+    printed = postures(Work(face, TOOL, H, "u", posture, share=share), along, 0.4, 1)
+    free = postures(Work(face, TOOL, H, "u", f"{posture}-raised", share=share), along, 0.4, 1)
+    assert printed.ring.least.min() < -0.01 and free.ring.least.min() >= -2e-5
+    assert (free.stand.lean >= printed.stand.lean - 1e-12).all()
+    assert (free.stand.lean - printed.stand.lean).max() > 1e-3
+    lift = share * H if posture == "formula" else 0.0
+    np.testing.assert_allclose(printed.stand.lift, lift)
+    assert (free.stand.lift <= lift + 1e-12).all()
 
 
 def test_next_strip_meets_what_is_covered():
@@ -113,6 +137,8 @@ def test_bad_input_is_refused():
         Work(trough(), TOOL, H, "v", "three")
     with pytest.raises(InvalidInput, match="feed is 'w'"):
         Work(trough(), TOOL, H, "w")
+    with pytest.raises(InvalidInput, match=r"share of the tolerance is 1\.5"):
+        Work(trough(), TOOL, H, "v", "formula", share=1.5)
     with pytest.raises(InvalidInput, match="lead is 90"):
         Work(trough(), TOOL, H, "v", "sturz", np.pi / 2)
     with pytest.raises(InvalidInput, match="flat bottom"):

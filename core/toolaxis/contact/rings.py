@@ -198,23 +198,31 @@ class Rings:
     def sides(self) -> Array:
         """Least height of the front half, right and left of the contact, (n, 2) mm."""
         front = self.height[:, FRONT]
-        return np.stack([_least(front[:, :MIDDLE + 1]), _least(front[:, MIDDLE:])], axis=1)
+        return np.stack([_least(front[:, :MIDDLE + 1], MIDDLE), _least(front[:, MIDDLE:], 0)], axis=1)
 
     @property
     def least(self) -> Array:
         """Least height of the whole ring, (n,) mm."""
-        return _least(np.concatenate([self.height, self.height[:, :1]], axis=1))
+        return _least(np.concatenate([self.height, self.height[:, :1]], axis=1), CONTACT)
 
 
-def _least(rows: Array) -> Array:
-    """Least value of functions given at even places, (n,): that of the parabola through the least one."""
+def _least(rows: Array, contact: int) -> Array:
+    """Least value of heights given at even places, (n,): that of the quartic around the least one.
+
+    At the contact a height is at rest, so that nothing lower is beside it, even where the face bends suddenly.
+    """
     k = np.clip(np.argmin(rows, axis=1), 1, rows.shape[1] - 2)
     i = np.arange(len(rows))
     low, middle, high = rows[i, k - 1], rows[i, k], rows[i, k + 1]
     slope, bend = (high - low) / 2, high - 2 * middle + low
-    inside = (bend > 0) & (np.abs(slope) < bend)
-    dip = np.where(inside, slope**2 / (2 * np.where(inside, bend, 1.0)), 0.0)
-    return np.asarray(np.minimum(middle - dip, rows.min(axis=1)))
+    inside = (bend > 0) & (np.abs(slope) < bend) & (k != contact)
+    first = np.clip(k - 2, 0, rows.shape[1] - 5)
+    place = k - first - np.where(inside, slope / np.where(inside, bend, 1.0), 0.0)
+    value = np.zeros(len(rows))
+    for j in range(5):
+        others = [m for m in range(5) if m != j]
+        value += rows[i, first + j] * np.prod([(place - m) / (j - m) for m in others], axis=0)
+    return np.asarray(np.minimum(value, rows.min(axis=1)))
 
 
 def stand_of(setting: Setting, tip: Array, axis: Array) -> Stand:

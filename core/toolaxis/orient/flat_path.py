@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.orient.flat_strips import Lane, Strip, left_out, places
-from toolaxis.orient.flat_tilt import Work, postures
+from toolaxis.orient.flat_tilt import postures
+from toolaxis.orient.flat_work import Work
 from toolaxis.path.swivelling import MovingStroke
 from toolaxis.progress import NO_PROGRESS, Progress
 

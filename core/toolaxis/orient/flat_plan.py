@@ -17,7 +17,8 @@ from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.flat_path import strokes
 from toolaxis.orient.flat_strips import Lane, Strip, lay_strips, left_out, places, strip
-from toolaxis.orient.flat_tilt import REASONS, TIGHT, TWO, Work
+from toolaxis.orient.flat_tilt import REASONS, TIGHT, TWO
+from toolaxis.orient.flat_work import Work
 from toolaxis.orient.indexed import CROSSING, Task
 from toolaxis.orient.moving import MovingCrossing, prove_moving
 from toolaxis.orient.reasons import sentence
@@ -57,7 +58,7 @@ def two_point(job: Task, posture: str = "two-point",
     ----------
     job : Task
     posture : str
-        One of `toolaxis.orient.flat_tilt.POSTURES`.
+        One of `toolaxis.orient.flat_work.POSTURES`.
     lead : float
         Of the posture "sturz", rad.
 

@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.rings import FRONT, MIDDLE, SIDES
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.flat_tilt import Postures, Work, postures, strip_end
+from toolaxis.orient.flat_field import strip_end
+from toolaxis.orient.flat_tilt import Postures, postures
+from toolaxis.orient.flat_work import Work
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
