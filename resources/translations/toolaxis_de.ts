@@ -15,12 +15,20 @@
    <translation>, verfehlt um {}</translation>
   </message>
   <message>
+   <source>A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end and a closed face around the blade.</source>
+   <translation>Ein Kugelfräser läuft in Schichten um eine Schaufel, eine Drehachse schwenkt. Braucht einen Kugelfräser und eine geschlossene Fläche um die Schaufel.</translation>
+  </message>
+  <message>
    <source>Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip width.</source>
    <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
   </message>
   <message>
    <source>Area within it</source>
    <translation>Fläche innerhalb</translation>
+  </message>
+  <message>
+   <source>Axis that turns</source>
+   <translation>Achse, die dreht</translation>
   </message>
   <message>
    <source>Blade {}</source>
@@ -59,6 +67,14 @@
    <translation>Durchmesser</translation>
   </message>
   <message>
+   <source>Drawing</source>
+   <translation>Bilder werden gezeichnet</translation>
+  </message>
+  <message>
+   <source>Estimate and count</source>
+   <translation>Schätzung und Zählung</translation>
+  </message>
+  <message>
    <source>Every axis can be held. OK puts the machine into the document.</source>
    <translation>Jede Achse kann gehalten werden. OK stellt die Maschine ins Dokument.</translation>
   </message>
@@ -85,6 +101,10 @@
   <message>
    <source>Folder</source>
    <translation>Ordner</translation>
+  </message>
+  <message>
+   <source>Folder for the pictures</source>
+   <translation>Ordner für die Bilder</translation>
   </message>
   <message>
    <source>Give a folder.</source>
@@ -119,12 +139,24 @@
    <translation>Auftrag {}</translation>
   </message>
   <message>
+   <source>Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab Limits.</source>
+   <translation>Hält Rauheit und Streifenbreite ein, die Drehachsen drehen am wenigsten. Braucht einen Torusfräser und eine Maschine auf der Karte Grenzen.</translation>
+  </message>
+  <message>
+   <source>Lean from the normal, mean</source>
+   <translation>Neigung zur Normalen, Mittel</translation>
+  </message>
+  <message>
    <source>Left to clean-up</source>
    <translation>Für die Nacharbeit</translation>
   </message>
   <message>
    <source>Length against the number of orientations</source>
    <translation>Länge über der Anzahl der Orientierungen</translation>
+  </message>
+  <message>
+   <source>Length and number of axes</source>
+   <translation>Länge und Zahl der Achsen</translation>
   </message>
   <message>
    <source>Looking at all operations</source>
@@ -151,6 +183,10 @@
    <translation>Karte der Werkzeugachsen</translation>
   </message>
   <message>
+   <source>Motion of the axes</source>
+   <translation>Bewegung der Achsen</translation>
+  </message>
+  <message>
    <source>No axis is free.</source>
    <translation>Keine Achse ist frei.</translation>
   </message>
@@ -171,12 +207,24 @@
    <translation>Nichts ist ausgewählt: bitte zuerst Flächen oder einen Körper in der 3D-Ansicht auswählen</translation>
   </message>
   <message>
+   <source>On the machine</source>
+   <translation>Auf der Maschine</translation>
+  </message>
+  <message>
+   <source>One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits.</source>
+   <translation>Eine Drehachse ist geklemmt, die andere dreht längs der Bahnen. Braucht eine Maschine auf der Karte Grenzen.</translation>
+  </message>
+  <message>
    <source>Orientation {}</source>
    <translation>Orientierung {}</translation>
   </message>
   <message>
    <source>Orientations</source>
    <translation>Orientierungen</translation>
+  </message>
+  <message>
+   <source>Other methods</source>
+   <translation>Andere Verfahren</translation>
   </message>
   <message>
    <source>Outcome</source>
@@ -187,12 +235,20 @@
    <translation>Bahnen</translation>
   </message>
   <message>
+   <source>Passes and tool</source>
+   <translation>Bahnen und Werkzeug</translation>
+  </message>
+  <message>
    <source>Passes {}</source>
    <translation>Bahnen {}</translation>
   </message>
   <message>
    <source>Pause</source>
    <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Pictures of the plan</source>
+   <translation>Bilder des Plans</translation>
   </message>
   <message>
    <source>Plan</source>
@@ -225,6 +281,10 @@
   <message>
    <source>Roman's rule</source>
    <translation>Regel von Roman</translation>
+  </message>
+  <message>
+   <source>Save all...</source>
+   <translation>Alle speichern...</translation>
   </message>
   <message>
    <source>Scallop limit</source>
@@ -283,8 +343,32 @@
    <translation>Streifenbreite</translation>
   </message>
   <message>
+   <source>Strip width and roughness</source>
+   <translation>Streifenbreite und Rauheit</translation>
+  </message>
+  <message>
+   <source>Strip widths</source>
+   <translation>Streifenbreiten</translation>
+  </message>
+  <message>
    <source>Sub-surface {}</source>
    <translation>Teilfläche {}</translation>
+  </message>
+  <message>
+   <source>The axes of all operations move while they cut: choose their machine on the tab Limits of the planning panel.</source>
+   <translation>Die Achsen aller Operationen bewegen sich beim Schneiden: die Maschine auf der Karte Grenzen der Planung wählen.</translation>
+  </message>
+  <message>
+   <source>The axis leans by one angle from the normal, along the feed.</source>
+   <translation>Die Achse neigt sich um einen Winkel von der Normalen in Vorschubrichtung.</translation>
+  </message>
+  <message>
+   <source>The axis moves along the passes: lines in the 3D view show it.</source>
+   <translation>Die Achse bewegt sich längs der Bahnen: Linien in der 3D-Ansicht zeigen sie.</translation>
+  </message>
+  <message>
+   <source>The cutter touches the face at two points. Needs a flat end or bull nose, and a hollow face.</source>
+   <translation>Der Fräser berührt die Fläche an zwei Punkten. Braucht einen Schaft- oder Torusfräser und eine hohle Fläche.</translation>
   </message>
   <message>
    <source>The map could not be drawn.</source>
@@ -305,6 +389,10 @@
   <message>
    <source>The part was deleted: select other faces</source>
    <translation>Das Teil wurde gelöscht: bitte andere Flächen auswählen</translation>
+  </message>
+  <message>
+   <source>The pictures cannot be written: {}</source>
+   <translation>Die Bilder können nicht geschrieben werden: {}</translation>
   </message>
   <message>
    <source>The verdict could not be kept: {}</source>
@@ -351,6 +439,18 @@
    <translation>Tool Axis: {}; Werkzeugachse {} im Dokument</translation>
   </message>
   <message>
+   <source>Tool angles in the S-theta plane</source>
+   <translation>Werkzeugwinkel in der S-Theta-Ebene</translation>
+  </message>
+  <message>
+   <source>Tool axes</source>
+   <translation>Werkzeugachsen</translation>
+  </message>
+  <message>
+   <source>Tool axes {}</source>
+   <translation>Werkzeugachsen {}</translation>
+  </message>
+  <message>
    <source>Tool {}</source>
    <translation>Werkzeug {}</translation>
   </message>
@@ -371,8 +471,20 @@
    <translation>Drehung um Z</translation>
   </message>
   <message>
+   <source>Two contacts</source>
+   <translation>Zwei Berührungen</translation>
+  </message>
+  <message>
    <source>Verify</source>
    <translation>Prüfen</translation>
+  </message>
+  <message>
+   <source>Where it is tightest</source>
+   <translation>Wo es am engsten ist</translation>
+  </message>
+  <message>
+   <source>Whole part</source>
+   <translation>Ganzes Teil</translation>
   </message>
   <message>
    <source>Work coordinates {}</source>
@@ -736,6 +848,10 @@
  <context>
   <name>ToolAxisOperation</name>
   <message>
+   <source>Draws what the command draws of a plan, passes, contacts, angles and motions of the axes among it, and shows it in a window.</source>
+   <translation>Zeichnet, was der Befehl von einem Plan zeichnet, darunter Bahnen, Berührungen, Winkel und Bewegungen der Achsen, und zeigt es in einem Fenster.</translation>
+  </message>
+  <message>
    <source>Moves tool and holder along the passes.</source>
    <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
   </message>
@@ -746,6 +862,10 @@
   <message>
    <source>Operation</source>
    <translation>Operation</translation>
+  </message>
+  <message>
+   <source>Pictures...</source>
+   <translation>Bilder...</translation>
   </message>
   <message>
    <source>Plan again...</source>
@@ -769,6 +889,14 @@
   <message>
    <source> rev/min</source>
    <translation> U/min</translation>
+  </message>
+  <message>
+   <source> µm</source>
+   <translation> µm</translation>
+  </message>
+  <message>
+   <source>4+1 axes</source>
+   <translation>4+1 Achsen</translation>
   </message>
   <message>
    <source>A tool controller or tool bit of the document, or a cutter typed in below.</source>
@@ -859,6 +987,10 @@
    <translation>Aufteilung</translation>
   </message>
   <message>
+   <source>Draws what the command draws of a plan, passes, contacts, angles and motions of the axes among it, and shows it in a window.</source>
+   <translation>Zeichnet, was der Befehl von einem Plan zeichnet, darunter Bahnen, Berührungen, Winkel und Bewegungen der Achsen, und zeigt es in einem Fenster.</translation>
+  </message>
+  <message>
    <source>Faces</source>
    <translation>Flächen</translation>
   </message>
@@ -889,6 +1021,10 @@
   <message>
    <source>Greatest height left between neighbouring passes.</source>
    <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Greatest roughness across the feed.</source>
+   <translation>Größte Rauheit quer zum Vorschub.</translation>
   </message>
   <message>
    <source>Half angle</source>
@@ -959,6 +1095,10 @@
    <translation>Bahnen</translation>
   </message>
   <message>
+   <source>Pictures...</source>
+   <translation>Bilder...</translation>
+  </message>
+  <message>
    <source>Plan one blade, turn it</source>
    <translation>Eine Schaufel planen und drehen</translation>
   </message>
@@ -991,6 +1131,10 @@
    <translation>Regel von Roman</translation>
   </message>
   <message>
+   <source>Roughness Ra</source>
+   <translation>Rauheit Ra</translation>
+  </message>
+  <message>
    <source>Scallop height</source>
    <translation>Rillenhöhe</translation>
   </message>
@@ -1017,6 +1161,10 @@
   <message>
    <source>Stop</source>
    <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Strategy</source>
+   <translation>Strategie</translation>
   </message>
   <message>
    <source>Sub-surfaces</source>
@@ -1075,6 +1223,10 @@
    <translation>Wo der Eckenbogen endet; bei einem kegeligen Fräser an der Spitze.</translation>
   </message>
   <message>
+   <source>Whether the tool axis stands still while it cuts, or how it moves.</source>
+   <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
+  </message>
+  <message>
    <source>any axis</source>
    <translation>jede Achse</translation>
   </message>
@@ -1095,6 +1247,14 @@
    <translation>beste der Halbkugel</translation>
   </message>
   <message>
+   <source>blade, key points</source>
+   <translation>Schaufel, Stützpunkte</translation>
+  </message>
+  <message>
+   <source>blade, least acceleration</source>
+   <translation>Schaufel, kleinste Beschleunigung</translation>
+  </message>
+  <message>
    <source>climb</source>
    <translation>Gleichlauf</translation>
   </message>
@@ -1109,6 +1269,14 @@
   <message>
    <source>cutting length</source>
    <translation>Schnittlänge</translation>
+  </message>
+  <message>
+   <source>five axes, constant lead</source>
+   <translation>fünf Achsen, fester Voreilwinkel</translation>
+  </message>
+  <message>
+   <source>fixed axes (3+2)</source>
+   <translation>feste Achsen (3+2)</translation>
   </message>
   <message>
    <source>mean normals</source>
@@ -1135,8 +1303,16 @@
    <translation>Sektoren</translation>
   </message>
   <message>
+   <source>strip width and roughness</source>
+   <translation>Streifenbreite und Rauheit</translation>
+  </message>
+  <message>
    <source>tilt and turn</source>
    <translation>Neigung und Drehung</translation>
+  </message>
+  <message>
+   <source>two-point contact</source>
+   <translation>Berührung an zwei Punkten</translation>
   </message>
   <message>
    <source>whole faces</source>

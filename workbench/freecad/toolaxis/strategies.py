@@ -1,6 +1,10 @@
 """Strategies that move the axis while it cuts: which there are, and whether one goes with what a job is given."""
 
+import FreeCAD
+
 from .machines import PREFIX, mounting
+
+translate = FreeCAD.Qt.translate
 
 INDEXED, BLADES = "indexed", ("blade", "blade-keys")
 #: As the panel offers them; the first one has fixed axes.
@@ -94,3 +98,24 @@ def refuse_in_vain(plan):
         why = next((why for why in done[0].orientation.reasons if why.startswith("one contact")), "one contact")
         raise UnsupportedGeometry(f"face {done[0].face.label} is touched at two points nowhere ({why}): choose another "
                                   "strategy")
+
+
+def needs(strategy):
+    """What a strategy does and needs, as the panel says it below the choice.
+
+    Parameters
+    ----------
+    strategy : str
+        One of `STRATEGIES`.
+    """
+    blade = translate("ToolAxis", "A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end "
+                                  "and a closed face around the blade.")
+    return {
+        "four-plus-one": translate("ToolAxis", "One rotary axis is clamped, the other turns along the passes. Needs a "
+                                               "machine on the tab Limits."),
+        "two-point": translate("ToolAxis", "The cutter touches the face at two points. Needs a flat end or bull nose, "
+                                           "and a hollow face."),
+        "sturz": translate("ToolAxis", "The axis leans by one angle from the normal, along the feed."),
+        ROUGH: translate("ToolAxis", "Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose "
+                                     "and a machine on the tab Limits."),
+        "blade": blade, "blade-keys": blade}.get(strategy, "")

@@ -11,7 +11,7 @@ _PROPERTIES = (Property("Integer", "Every", "Tool Axis", "One line for so many p
                Property("Length", "LineLength", "Tool Axis", "Length of a line", True))
 #: Lines at most, and their length as a share of the face's size.
 MOST, SHARE = 300, 0.1
-_COLOUR, _WIDTH = (0.90, 0.55, 0.10), 1.5
+COLOUR, _WIDTH = (0.90, 0.55, 0.10), 1.5
 
 
 def is_lines(thing):
@@ -73,7 +73,7 @@ def show_axes(operation, passes, size, title):
         ensure(standing, _PROPERTIES)
         operation.addObject(standing)
         if FreeCAD.GuiUp:
-            assign(standing.ViewObject, LineColor=_COLOUR, LineWidth=_WIDTH, PointSize=1.0)
+            assign(standing.ViewObject, LineColor=COLOUR, LineWidth=_WIDTH, PointSize=1.0)
     points, _ = moves(passes)
     rows, every = ends_of(points, axes, [kind == 0 for kind in operation.Motions], SHARE * size)
     standing.Shape = Part.Compound([Part.makeLine(FreeCAD.Vector(*tip), FreeCAD.Vector(*end))

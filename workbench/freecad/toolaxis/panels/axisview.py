@@ -201,8 +201,13 @@ class AxisView(QtCore.QObject):
         form.reasons.setText("" if op is None else sentences((self.tried or op).orientation))
         form.lock.setEnabled(self.tried is not None and self.tried.done)
         form.best.setEnabled(op is not None and op is not self._best(op))
-        for widget in (form.slide, form.slideLabel, form.lock, form.best, form.lockAxis, form.lockFeed, form.turnFeed):
+        moves = op is not None and op.orientation.lead is not None
+        for widget in (form.slide, form.slideLabel, form.pictures):
             widget.setVisible(op is not None)
+        for widget in (form.lock, form.best, form.lockAxis, form.lockFeed, form.turnFeed):
+            widget.setVisible(op is not None and not moves)
+        for widget in (form.mapPlace, form.legendPlace, form.pointer):
+            widget.setVisible(not moves)
         own = op is not None and op.done and not self._is_copy(op)
         for box, held in ((form.lockAxis, self.locks.axis), (form.lockFeed, self.locks.feed)):
             box.setEnabled(own)
@@ -235,6 +240,8 @@ class AxisView(QtCore.QObject):
         """What the tried axis costs against the best one, a sentence."""
         if self.operation is None:
             return ""
+        if self.operation.orientation.lead is not None:
+            return translate("ToolAxis", "The axis moves along the passes: lines in the 3D view show it.")
         if self.tried is None:
             return translate("ToolAxis", "Click on the map to try an axis.") if self.map.picture is not None else ""
         found, best = self.tried.orientation, self._best(self.operation).orientation

@@ -55,6 +55,8 @@ def measures(found):
              (translate("ToolAxis", "Shank clearance"), lambda: _room(found, "shank")),
              (translate("ToolAxis", "Holder clearance"), lambda: _room(found, "holder")),
              (translate("ToolAxis", "Left to clean-up"), lambda: f"{100 * found.unreached:.1f} %"),
+             *([] if found.lead is None else [(translate("ToolAxis", "Lean from the normal, mean"),
+                                               lambda: f"{np.degrees(found.lead) + 0.0:.2f}°")]),
              (translate("ToolAxis", "Tilt from Z"), lambda: _angle(np.hypot(*found.axis[:2]), found.axis[2])),
              (translate("ToolAxis", "Turn about Z"), lambda: _angle(found.axis[1], found.axis[0]))]
     return rows + [(name, text() if there else "-") for name, text in texts]

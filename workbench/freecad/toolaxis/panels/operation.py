@@ -8,12 +8,14 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..objects.belongings import child
+from ..pictures import drawn
 from ..tasks import Work, sentence
 from .fields import load_form, tell
 from .figures import fill, measures
 from .hemisphere import HemisphereMap
 from .legend import Legend
 from .panel import Panel
+from .pictures import show_pictures
 
 translate = FreeCAD.Qt.translate
 
@@ -31,7 +33,7 @@ class OperationPanel(Panel):
         from toolaxis.plan.document import orientation_from
 
         super().__init__(document, load_form("operation"))
-        self.operation = operation
+        self.operation, self.drawing = operation, None
         self.form.setWindowTitle(operation.Label)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
@@ -41,6 +43,9 @@ class OperationPanel(Panel):
         self.tool = next((one for one in operation.Group
                           if getattr(getattr(one, "Proxy", None), "Type", "") == "ToolAxisTool"), None)
         self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
+        moves = self.found is not None and self.found.lead is not None
+        for widget in (self.form.mapPlace, self.form.legendPlace, self.form.pointer):
+            widget.setVisible(not moves)
         self._fill()
         self._connect()
         self._draw_map()
@@ -63,12 +68,14 @@ class OperationPanel(Panel):
         if self.tool is not None:
             form.slide.setValue(round(self.tool.Position * form.slide.maximum()))
         form.verify.setEnabled(passes)
+        form.pictures.setEnabled(passes and self.drawing is None)
 
     def _connect(self):
         form = self.form
         form.slide.valueChanged.connect(self._move)
         form.again.clicked.connect(self._plan_again)
         form.verify.clicked.connect(self._verify)
+        form.pictures.clicked.connect(self.draw)
         self.map.hovered.connect(form.pointer.setText)
         self._follow()
 
@@ -107,6 +114,37 @@ class OperationPanel(Panel):
         self.map.empty = translate("ToolAxis", "The map could not be drawn.")
         self.map.update()
         tell(self.form.message, message, bad=True)
+
+    def draw(self):
+        """Draw the operation as it stands, off the GUI thread, and open the window with its pictures."""
+        from ..exporting import plan_task
+
+        try:
+            plan = plan_task([self.operation])
+        except Exception as reason:
+            tell(self.form.message, sentence(reason), bad=True)
+            return
+        self.drawing = Work(lambda progress: drawn(plan(progress), progress))
+        self.drawing.done.connect(self._show_pictures)
+        self.drawing.failed.connect(self._no_pictures)
+        tell(self.form.message, translate("ToolAxis", "Drawing"))
+        self.form.pictures.setEnabled(False)
+        self.drawing.start()
+
+    def _show_pictures(self, pictures):
+        self.drawing = None
+        self._fill()
+        show_pictures(pictures)
+
+    def _no_pictures(self, message):
+        self.drawing = None
+        self._fill()
+        tell(self.form.message, message, bad=True)
+
+    def _let_go(self):
+        if self.drawing is not None:
+            self.drawing.leave()
+            self.drawing = None
 
     def _plan_again(self):
         from .planning import PlanPanel

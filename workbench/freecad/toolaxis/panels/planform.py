@@ -6,6 +6,7 @@ import FreeCAD
 from PySide import QtWidgets
 
 from ..machines import PREFIX, mounting
+from ..strategies import INDEXED, ROUGH, STRATEGIES, needs
 from .fields import BodyList, FaceList, OutlineTable, QuantityField
 
 translate = FreeCAD.Qt.translate
@@ -43,11 +44,14 @@ class PlanForm:
         self.middle = [self._find(name, QtWidgets.QDoubleSpinBox) for name in ("limitX", "limitY", "limitZ")]
         self.counts = {name: (self._find(name, QtWidgets.QComboBox), self._find(f"{name}Number", QtWidgets.QSpinBox))
                        for name in ("regions", "orientations")}
+        self.strategy = self._find("strategy", QtWidgets.QComboBox)
+        self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
         for combo, _ in self.counts.values():
             combo.currentIndexChanged.connect(self._show_what_counts)
         self.kind.currentIndexChanged.connect(self._show_what_counts)
         self.limits.currentIndexChanged.connect(self._show_what_counts)
+        self.strategy.currentIndexChanged.connect(self._show_what_counts)
         self._show_what_counts()
 
     def _find(self, name, kind=QtWidgets.QWidget):
@@ -66,11 +70,11 @@ class PlanForm:
             field.on_change(slot)
         for table in (self.shank, self.holder):
             table.on_change(slot)
-        for name in ("kind", "limits", "objective", "direction", "method", *self.counts):
+        for name in ("kind", "limits", "objective", "direction", "method", "strategy", *self.counts):
             self._find(name, QtWidgets.QComboBox).currentIndexChanged.connect(lambda _: slot())
         for box in self.switches.values():
             box.toggled.connect(lambda _: slot())
-        for spin in (*self.middle, self.spindle, *(spin for _, spin in self.counts.values())):
+        for spin in (*self.middle, self.spindle, self.roughness, *(spin for _, spin in self.counts.values())):
             spin.valueChanged.connect(lambda _: slot())
         self.avoid.widget.itemChanged.connect(lambda _: slot())
         self.faces.on_change(slot)
@@ -79,14 +83,22 @@ class PlanForm:
         kind, limits = KINDS[self.kind.currentIndex()], self.limits.currentIndex()
         shown = {"corner": kind in ("torus", "tapered"), "taper": kind == "tapered", "cone": limits == _CONE,
                  "limitX": limits != _NO_LIMITS and limits < 3, "tiltLow": limits == _ROTARY,
-                 "turnLow": limits == _ROTARY}
+                 "turnLow": limits == _ROTARY, "roughness": self.strategy_name == ROUGH}
         members = {"limitX": ("limitX", "limitY", "limitZ"), "tiltLow": ("tiltLow", "tiltHigh"),
                    "turnLow": ("turnLow", "turnHigh")}
         for combo, spin in self.counts.values():
             spin.setVisible(combo.currentIndex() == _NUMBER)
+        self._find("strategyNote").setText(needs(self.strategy_name))
+        for name in ("method", "orientations", "orientationsNumber", "blades"):
+            self._find(name).setEnabled(self.strategy_name == INDEXED)
         for name, visible in shown.items():
             for member in (*members.get(name, (name,)), f"{name}Label"):
                 self._find(member).setVisible(visible)
+
+    @property
+    def strategy_name(self):
+        """The strategy that is chosen, by its name in `STRATEGIES`."""
+        return STRATEGIES[max(self.strategy.currentIndex(), 0)]
 
     def set_tool(self, text):
         """Show the sizes of a cutter.
@@ -202,6 +214,8 @@ class PlanForm:
             "regions" or "orientations".
         """
         combo, spin = self.counts[name]
+        if name == "orientations" and self.strategy_name != INDEXED:
+            return None
         return {_NONE: None, _AUTO: "auto"}.get(combo.currentIndex(), spin.value())
 
     def set_count(self, name, count):
@@ -234,6 +248,8 @@ class PlanForm:
         self._find("objective", QtWidgets.QComboBox).setCurrentIndex(OBJECTIVES.index(inputs.objective))
         self._find("direction", QtWidgets.QComboBox).setCurrentIndex(DIRECTIONS.index(inputs.direction))
         self._find("method", QtWidgets.QComboBox).setCurrentIndex(METHODS.index(inputs.method))
+        self.strategy.setCurrentIndex(STRATEGIES.index(inputs.strategy))
+        self.roughness.setValue(inputs.roughness)
         for name in self.counts:
             self.set_count(name, getattr(inputs, name))
         for name, box in self.switches.items():
@@ -255,7 +271,9 @@ class PlanForm:
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
                 "feedrate": self.quantities["feedrate"].value, "spindle": float(self.spindle.value()),
-                "method": METHODS[self._find("method", QtWidgets.QComboBox).currentIndex()],
+                "method": METHODS[self._find("method", QtWidgets.QComboBox).currentIndex()]
+                if self.strategy_name == INDEXED else METHODS[0],
+                "strategy": self.strategy_name, "roughness": self.roughness.value(),
                 **{name: self.count(name) for name in self.counts},
                 **{name: box.isChecked() for name, box in self.switches.items()}}
 

@@ -12,6 +12,7 @@ from ..cam import speeds
 from ..machines import offered
 from ..macros import again_lines, plan_line, record
 from ..objects import is_operation
+from ..pictures import drawn
 from ..reading import titles_of
 from ..tasks import Work, sentence
 from .axisview import AxisView
@@ -19,6 +20,7 @@ from .fields import load_form, tell
 from .locks import Locks
 from .outcome import outcome_sentence
 from .panel import Panel
+from .pictures import show_pictures
 from .planform import PlanForm
 from .preview import Preview
 from .selected import bodies_in, selected_faces, tools_in
@@ -116,6 +118,7 @@ class PlanPanel(Panel):
         form.tool.activated.connect(self._tool_chosen)
         form.compute.clicked.connect(self.compute)
         form.stop.clicked.connect(self.stop)
+        form.pictures.clicked.connect(self.draw)
         self.view.changed.connect(self._show_state)
         self.view.told.connect(lambda text: self._tell(text, bad=True))
         self.view.curve.picked.connect(self.compute_with)
@@ -212,6 +215,27 @@ class PlanPanel(Panel):
         self._tell(translate("ToolAxis", "Reading the part"))
         self._show_state()
         self.work.start()
+
+    def draw(self):
+        """Draw the plan that is shown, off the GUI thread, and open the window with its pictures."""
+        plan = self.view.plan
+        if plan is None or self.work is not None:
+            return
+        self.view.leave()
+        self.work = Work(lambda progress: drawn(plan, progress))
+        self.work.progressed.connect(self._progressed)
+        self.work.done.connect(self._drawn)
+        self.work.failed.connect(self._not_computed)
+        self.work.cancelled.connect(lambda: self._drawn(()))
+        self.form.progress.setMaximum(0)
+        self._show_state()
+        self.work.start()
+
+    def _drawn(self, pictures):
+        self.work = None
+        self._show_state()
+        if pictures:
+            show_pictures(pictures)
 
     def compute_with(self, count):
         """Compute again with a number of different axes.

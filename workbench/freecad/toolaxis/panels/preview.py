@@ -9,6 +9,7 @@ import numpy as np
 from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
 from PySide import QtCore
 
+from ..objects.axislines import COLOUR, SHARE, ends_of
 from ..preferences import colours
 
 _COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder": (0.35, 0.45, 0.60)}
@@ -60,6 +61,7 @@ class Preview:
         tool.addChild(self.transform)
         root.addChild(tool)
         self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
+                      *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
                       *((tool, partial(_revolved, *solid)) for solid in solids(plan.tool))]
         self.stations = Stations(op.path)
         self.root, self.view = root, view
@@ -201,6 +203,14 @@ def _lines(path):
         if lines:
             node.addChild(_polylines(colour, lines, width))
     return node
+
+
+def _axes(op):
+    """The axis that moves, as short lines along the passes."""
+    from toolaxis.cldata.toolpath import Motion
+
+    lines, _ = ends_of(op.path.cl, op.path.axis, op.path.kind == Motion.CUT, SHARE * op.face.diagonal)
+    return _polylines(COLOUR, list(lines), 1.2)
 
 
 def _frame(frame, size):
