@@ -1350,6 +1350,10 @@
    <translation>Farben, während ein Plan betrachtet wird</translation>
   </message>
   <message>
+   <source>Computing</source>
+   <translation>Rechnen</translation>
+  </message>
+  <message>
    <source>Cuts</source>
    <translation>Schnitte</translation>
   </message>
@@ -1404,6 +1408,14 @@
   <message>
    <source>Spindle speed.</source>
    <translation>Drehzahl der Spindel.</translation>
+  </message>
+  <message>
+   <source>Threads</source>
+   <translation>Threads</translation>
+  </message>
+  <message>
+   <source>Threads that judge a plan. The verdict does not depend on them; planning has one.</source>
+   <translation>Threads, die einen Plan prüfen. Das Urteil hängt nicht von ihnen ab; geplant wird mit einem.</translation>
   </message>
   <message>
    <source>Tool</source>

@@ -44,16 +44,21 @@ def on_page(desk, act):
 
 
 def test_the_page_keeps_what_is_set(desk, kept, tmp_path):
+    from freecad.toolaxis.preferences import threads
+
     def fill(page):
         page.findChild(desk.widgets.QWidget, "tool").setText("ball:4")
         page.findChild(desk.widgets.QWidget, "scallop").setValue(0.03)
         page.findChild(desk.widgets.QWidget, "feed").setValue(640)
         page.findChild(desk.widgets.QWidget, "folder").setProperty("fileName", str(tmp_path))
+        assert page.findChild(desk.widgets.QWidget, "threads").value() == threads() == 2
+        page.findChild(desk.widgets.QWidget, "threads").setValue(3)
         desk.shot("90-preferences")
 
     on_page(desk, fill)
     assert kept.GetString("Tool") == "ball:4" and kept.GetFloat("Scallop") == pytest.approx(0.03)
     assert kept.GetFloat("FeedRate") == 640 and kept.GetString("MachinesFolder") == str(tmp_path)
+    assert threads() == 3
 
 
 def test_new_plans_begin_with_what_is_preferred(desk, kept, wavy):

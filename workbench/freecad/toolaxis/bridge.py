@@ -9,6 +9,7 @@ from .inputs import Inputs as Inputs
 from .inputs import inputs_of as inputs_of
 from .machines import limits_from
 from .objects import is_plan, plan_of
+from .preferences import threads
 from .results import apply as apply
 from .results import keep_verdict as keep_verdict
 from .strategies import asked_of, refuse_in_vain
@@ -82,14 +83,14 @@ def verification(operation):
     inputs = inputs_of(operation)
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
-    standing, source, tool = Standing.of(operation), Source.of(inputs), inputs.assembled()
+    standing, source, tool, count = Standing.of(operation), Source.of(inputs), inputs.assembled(), threads()
     operation.Proxy.judging = what_stands(operation)
 
     def compute(progress):
         import toolaxis as ta
 
         part, bodies = source.read(progress)
-        return ta.verify(standing.plan(part, bodies, tool, inputs.job()), progress=progress)
+        return ta.verify(standing.plan(part, bodies, tool, inputs.job()), threads=count, progress=progress)
 
     return compute
 

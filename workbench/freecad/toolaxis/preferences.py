@@ -6,6 +6,8 @@ import FreeCAD
 PLACE = "User parameter:BaseApp/Preferences/Mod/ToolAxis"
 #: Colours as FreeCAD's buttons keep them, 0xRRGGBBAA: orange and grey that colour-blind eyes tell apart.
 _CUT, _LINK = 0xE66100FF, 0x737373FF
+#: Threads unless others are preferred.
+_THREADS = 2
 
 
 def _kept():
@@ -15,6 +17,11 @@ def _kept():
 def machines_folder():
     """The user's folder of machines; empty where none is named."""
     return _kept().GetString("MachinesFolder", "").strip()
+
+
+def threads():
+    """Threads that judge a plan."""
+    return max(1, _kept().GetInt("Threads", _THREADS))
 
 
 def preferred_inputs():
