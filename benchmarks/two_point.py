@@ -1,29 +1,43 @@
 """Two-point contact of a flat end on the surface of [jang2021]: R = 30 mm, tolerance 0.03 mm, allowance 0.5 mm.
 
-The paper's postures, curvature matching and the formula of two points, gouge where the surface bends along the feed;
-beside them stand the least lean with one contact, the least constant lead (Sturz), and two contacts.  All follow
-iso-parametric passes with full strips and the same links; the judge measures what they leave, and the planner of feeds
-times them on the Mikron UCP 710 at 3 m/min.  The paper's own pass counts, 29 and 21, do not follow from full strips;
-its Fig. 10 shows deviations without numbers.  ``--short`` prints the formula's rows and the paper's postures only.
+The paper's postures, curvature matching and the formula of two points, gouge where the surface bends along the feed,
+with any tolerance in the formula.  Beside them stand postures that gouge nowhere: the least constant lead (Sturz), the
+paper's leans raised point by point where they gouge, the formula's for parts of the tolerance too, the least lean with
+one contact, and two contacts.  All follow iso-parametric passes with full strips and the same links, along the
+parameter and leaning the way that is reckoned to take the fewest; the judge measures what they leave, and the planner
+of feeds times them on the Mikron UCP 710 at 3 m/min.  The paper's own pass counts, 29 and 21, do not follow from full
+strips; its Fig. 10 shows deviations without numbers, as `two-point-deviations.png` in the folder out does.
+``--short`` prints the formula's rows and the paper's postures only.
 """
 
 import json
 import time
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.figure import Figure
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.two_point import circle_strip_width, matched_lead, two_point_lead
+from toolaxis.contact.two_point import (
+    STEEPEST,
+    circle_strip_width,
+    matched_lead,
+    settle,
+    two_point_lead,
+)
 from toolaxis.errors import ToolAxisError
 from toolaxis.feed.five_axes import five_axis_time
 from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.orient.flat_plan import PROBES, TRIED, gouging, linked, told
-from toolaxis.orient.flat_strips import Strip, lay_strips, strip
-from toolaxis.orient.flat_tilt import postures
+from toolaxis.orient.flat_strips import lay_strips, nodes, strip
 from toolaxis.orient.flat_work import Work
 from toolaxis.orient.indexed import Task, task
+from toolaxis.orient.worth import FEEDS
+from toolaxis.report.plots import GREY, VERMILION, bare, cutting_lines, figure
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.task import Task as Judged
@@ -32,7 +46,17 @@ from toolaxis.verify.verdict import OperationVerdict, judge
 EXAMPLE = Path(__file__).parents[1] / "examples" / "biquintic.json"
 R, D, A = 30.0, 0.03, 0.5
 TOOL, MACHINE = Tool.flat(2 * R), "mikron-ucp-710"
-FEEDS = Feeds(50.0, rapid=float("inf"), crossing=10000 / 60, smooth=True)
+OUT, GOUGE = Path(__file__).parents[1] / "out", 0.002
+#: Gouge-free postures, the last ours: title, posture, and the share of the tolerance in the formula.
+COMPARED = (("Sturz, least constant lead", "sturz", 1.0),
+            ("matched, raised where it gouges", "matched-raised", 1.0),
+            ("formula for 0.5 d, raised", "formula-raised", 0.5),
+            ("formula for 0.25 d, raised", "formula-raised", 0.25),
+            ("one contact, least lean", "one-point", 1.0),
+            ("two contacts, gouge-free", "two-point", 1.0))
+#: Feeds along which passes are so many times more are not looked at.
+MORE = 1.5
+PACE = Feeds(50.0, rapid=float("inf"), crossing=10000 / 60, smooth=True)
 
 
 def face() -> Face:
@@ -77,15 +101,16 @@ def reckoned() -> None:
           f"{counts[0] / counts[1]:.3f} (printed: 29, 21, 1.38)")
 
 
-def least_constant_lead(work: Work) -> tuple[float, str]:
-    """The least constant lead at which no ring gouges at a grid of contacts, rad, and the way to lean."""
+def least_constant_lead(work: Work, leaning: str) -> float:
+    """The least constant lead at which no ring gouges at a grid of contacts on passes and beyond their ends, rad."""
     *_, s0, s1 = work.span
-    found = []
-    for sense, leaning in ((1, "ahead"), (-1, "back")):
-        along = np.linspace(*work.span[:2], 41)
-        leans = [postures(work, along, float(step), sense).stand.lean.max() for step in np.linspace(s0, s1, 9)]
-        found.append((float(max(leans)), leaning))
-    return min(found)
+    sense = 1 if leaning == "ahead" else -1
+    leans = []
+    for step in np.linspace(s0, s1, 11)[1:-1]:
+        setting = work.setting(work.uv(nodes(work, float(step)), float(step)), sense)
+        stand, ring = settle(setting, 0.0)
+        leans.append(np.where((stand.lift <= 1e-4) & (ring.least >= -1e-4), stand.lean, STEEPEST).max())
+    return float(max(leans))
 
 
 def judged(path: ToolPath, sample: Face) -> OperationVerdict:
@@ -100,33 +125,44 @@ def reckoned_passes(work: Work, leaning: str) -> float:
     return float((s1 - s0) * np.mean([1 / max(rows[rows > 0].min(initial=s1 - s0), 1e-3) for rows in wide]))
 
 
-def row(title: str, job: Task, work: Work, leaning: str,
-        proof: bool = False) -> tuple[tuple[Strip, ...], ToolPath, OperationVerdict] | None:
+@dataclass(frozen=True)
+class Row:
+    """One line of the table, for the picture."""
+
+    title: str
+    path: ToolPath
+    verdict: OperationVerdict
+
+
+def row(title: str, job: Task, work: Work, leaning: str, proof: bool = False) -> Row | None:
     """One line of the table."""
     begun = time.perf_counter()
+    where = f"{work.feed}, {leaning}"
     try:
         strips = lay_strips(work, leaning)
         path = linked(job, work, strips)
     except ToolAxisError as reason:
-        print(f"{title:34} {leaning:7} none: {reason}", flush=True)
+        print(f"{title:34} {where:9} none: {reason}", flush=True)
         return None
     taken = time.perf_counter() - begun
     proven = "-" if not proof else "no" if len(gouging(job, path)) else "yes"
     verdict = judged(path, job.worth.face)
     try:
-        seconds = f"{five_axis_time(load_machine(MACHINE), path, FEEDS)[0].path:7.1f}"
-    except ToolAxisError as reason:
-        seconds = f"refused ({str(reason)[:40]})"
+        seconds = f"{five_axis_time(load_machine(MACHINE), path, PACE)[0].path:7.1f}"
+    except ToolAxisError:
+        seconds = "refused"
     deep = f"{verdict.gouge_max:.4f}" if verdict.gouge_max < 1 else "1 or more"
     cut = path.length(Motion.CUT)
-    print(f"{title:34} {leaning:7} {path.passes:6d} {cut:8.0f} {seconds:>8} {verdict.scallop_max:8.4f} "
+    print(f"{title:34} {where:9} {path.passes:6d} {cut:8.0f} {seconds:>8} {verdict.scallop_max:8.4f} "
           f"{100 * verdict.share_within:7.2f} {deep:>9} {proven:>7} {taken:7.1f}", flush=True)
-    return strips, path, verdict
+    if proof and work.posture == "two-point":
+        print("   " + "; ".join(told(work, strips)), flush=True)
+    return Row(title, path, verdict)
 
 
 def head() -> None:
     """Titles of the columns."""
-    print(f"\n{'posture':34} {'leaning':7} {'passes':>6} {'cut mm':>8} {'time s':>8} {'left mm':>8} {'in %':>7} "
+    print(f"\n{'posture':34} {'leaning':9} {'passes':>6} {'cut mm':>8} {'time s':>8} {'left mm':>8} {'in %':>7} "
           f"{'gouge mm':>9} {'proven':>7} {'taken s':>7}")
 
 
@@ -138,10 +174,36 @@ def short() -> None:
     paper(task(face(), TOOL, D, allowance=A))
 
 
-def paper(job: Task) -> None:
+def paper(job: Task) -> list[Row]:
     """Curvature matching and the formula of two contacts."""
-    for posture, title in (("matched", "curvature matched, as printed"), ("formula", "two points, as printed")):
-        row(title, job, Work(job.worth.face, TOOL, D, "u", posture, allowance=A), "ahead")
+    rows = [row(title, job, Work(job.worth.face, TOOL, D, "u", posture, allowance=A), "ahead")
+            for posture, title in (("matched", "curvature matched, as printed"), ("formula", "two points, as printed"))]
+    return [one for one in rows if one is not None]
+
+
+def feeds(job: Task) -> tuple[str, ...]:
+    """Feeds that are looked at: along which passes with one contact are not far more than along the other."""
+    counts = {feed: min(reckoned_passes(Work(job.worth.face, TOOL, D, feed, "one-point", allowance=A), leaning)
+                        for leaning in TRIED) for feed in FEEDS}
+    told_of = ", ".join(f"{count:.1f} along {feed}" for feed, count in counts.items())
+    print(f"passes reckoned with one contact: {told_of}")
+    return tuple(feed for feed, count in counts.items() if count <= MORE * min(counts.values()))
+
+
+def fewest(title: str, job: Task, along: tuple[str, ...], posture: str, share: float) -> Row | None:
+    """A gouge-free posture laid the way that is reckoned to take the fewest passes."""
+    found = []
+    for feed in along:
+        work = Work(job.worth.face, TOOL, D, feed, posture, allowance=A, share=share)
+        for leaning in TRIED if posture != "sturz" else TRIED[:2]:
+            own = work if posture != "sturz" else replace(work, lead=least_constant_lead(work, leaning))
+            found.append((reckoned_passes(own, leaning), f"{feed}, {leaning}", own, leaning))
+    found.sort(key=lambda one: one[:2])
+    made = next((one for one in (row(title, job, work, leaning, proof=True) for *_, work, leaning in found) if one),
+                None)
+    leads = f"; lead {np.degrees(found[0][2].lead):.2f} deg" if posture == "sturz" else ""
+    print("   reckoned: " + "; ".join(f"{where} {count:.1f}" for count, where, *_ in found) + leads, flush=True)
+    return made
 
 
 def main() -> None:
@@ -149,19 +211,46 @@ def main() -> None:
     formula()
     reckoned()
     job = task(face(), TOOL, D, allowance=A)
+    along = feeds(job)
     head()
-    paper(job)
-    for posture, title in (("one-point", "one contact, least lean"), ("two-point", "two contacts, gouge-free")):
-        work = Work(job.worth.face, TOOL, D, "u", posture, allowance=A)
-        found = sorted((reckoned_passes(work, leaning), leaning) for leaning in TRIED)
-        made = next((one for one in (row(title, job, work, leaning, proof=True) for _, leaning in found) if one), None)
-        print("   reckoned for each way to lean: " + ", ".join(f"{count:.1f} {leaning}" for count, leaning in found))
-        if made is not None:
-            print("   " + "; ".join(told(work, made[0])), flush=True)
-    lead, leaning = least_constant_lead(Work(job.worth.face, TOOL, D, "u", "one-point", allowance=A))
-    work = Work(job.worth.face, TOOL, D, "u", "sturz", lead, A)
-    print(f"Sturz, least constant lead at 41 x 9 places: {np.degrees(lead):.2f} deg, leaning {leaning}, reckoned "
-          f"{reckoned_passes(work, leaning):.1f} passes")
+    rows = paper(job)
+    free = [fewest(title, job, along, posture, share) for title, posture, share in COMPARED]
+    made = [one for one in free if one is not None]
+    for one in made:
+        print(f"{one.path.passes / made[-1].path.passes:6.2f} times the passes of two contacts: {one.title}")
+    if free[1] is not None and free[-1] is not None:
+        print(f"passes and lengths of gouge-free postures, matched by two contacts: "
+              f"{free[1].path.passes / free[-1].path.passes:.2f} and "
+              f"{free[1].path.length(Motion.CUT) / free[-1].path.length(Motion.CUT):.2f} (printed: 1.38)")
+    OUT.mkdir(parents=True, exist_ok=True)
+    deviations([*rows, *made]).savefig(OUT / "two-point-deviations.png", dpi=110)
+    print(f"deviations are drawn in {OUT / 'two-point-deviations.png'}")
+
+
+def deviations(rows: list[Row]) -> Figure:
+    """What each posture leaves and takes too much, seen from above the surface; beside [jang2021] Fig. 10."""
+    columns = 3
+    made = figure(4.2 * columns, 3.1 * -(-len(rows) // columns))
+    axes = made.subplots(-(-len(rows) // columns), columns, squeeze=False).ravel()
+    shades = ListedColormap(colormaps["viridis"](np.linspace(0, 1, 64)))
+    image = None
+    for ax, one in zip(axes, rows, strict=False):
+        area = one.verdict.maps[0]
+        left = np.where(area.gouge > GOUGE, -1.0, 1000 * area.remaining)
+        image = ax.scatter(area.point[:, 0], area.point[:, 1], c=left, s=2.0, linewidths=0, rasterized=True,
+                           cmap=shades.with_extremes(under=VERMILION, over=GREY), norm=Normalize(0, 1000 * D * 1.02))
+        for line in cutting_lines(one.path):
+            ax.plot(line[:, 0], line[:, 1], color="white", linewidth=0.4)
+        deep = f"gouge {1000 * one.verdict.gouge_max:.1f} µm" if one.verdict.gouge_max < 1 else "gouge 1 mm or more"
+        ax.set_title(f"{one.title}\n{one.path.passes} passes, {deep}", fontsize=8)
+        ax.set_aspect("equal")
+        bare(ax)
+    for ax in axes[len(rows):]:
+        ax.set_visible(False)
+    if image is not None:
+        bar = made.colorbar(image, ax=list(axes), extend="both", shrink=0.6)
+        bar.set_label("left, µm; red: more than 2 µm below what is to stay; grey: above the tolerance")
+    return made
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.two_point import circle_strip_width, matched_lead, two_point_lead
+from toolaxis.contact.two_point import BRIDGE, circle_strip_width, matched_lead, two_point_lead
 from toolaxis.errors import InvalidInput
 from toolaxis.orient.flat_field import field_of
 from toolaxis.orient.flat_plan import gouging, told, two_point
@@ -71,7 +71,7 @@ def test_leans_are_raised_until_nothing_gouges(posture, share):
     assert printed.ring.least.min() < -0.01 and free.ring.least.min() >= -2e-5
     assert (free.stand.lean >= printed.stand.lean - 1e-12).all()
     assert (free.stand.lean - printed.stand.lean).max() > 1e-3
-    lift = share * H if posture == "formula" else 0.0
+    lift = BRIDGE * share * H if posture == "formula" else 0.0
     np.testing.assert_allclose(printed.stand.lift, lift)
     assert (free.stand.lift <= lift + 1e-12).all()
 

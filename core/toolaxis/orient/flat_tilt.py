@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.rings import Rings, Setting, Stand, rings
 from toolaxis.contact.two_point import (
+    BRIDGE,
     FREE,
     STEEPEST,
     TOUCH,
@@ -134,10 +135,10 @@ def _by_formula(work: Work, setting: Setting) -> Stand:
         return Stand(zero + work.lead, zero, zero)
     fits = (across > 1e-9) & (radius * across < np.sin(STEEPEST))
     rho = np.where(fits, 1 / np.where(fits, across, 1.0), 1e9)
-    lift = work.share * work.scallop if work.posture.startswith("formula") else 0.0
-    lean = two_point_lead(radius, rho, lift) if lift else matched_lead(radius, rho)
+    bridged = work.share * work.scallop if work.posture.startswith("formula") else 0.0
+    lean = two_point_lead(radius, rho, bridged) if bridged else matched_lead(radius, rho)
     lean = np.clip(np.where(fits, lean, np.where(across > 0, STEEPEST, 0.0)), setting.least_lean, STEEPEST)
-    return Stand(lean, zero, zero + lift)
+    return Stand(lean, zero, zero + BRIDGE * bridged)
 
 
 def _even(along: Array, direction: Array) -> Array:

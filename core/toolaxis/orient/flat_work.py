@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.rings import Setting
-from toolaxis.contact.two_point import BRIDGE, STEEPEST
+from toolaxis.contact.two_point import STEEPEST
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
@@ -45,7 +45,7 @@ class Work:
     lead : float
         Of "sturz", rad.
     share : float
-        Of the tolerance, which "formula" and "formula-raised" bridge.
+        Of the tolerance, for which "formula" and "formula-raised" are reckoned.
     allowance : float
         Stock left on the face, mm.
     limits : Tolerance
@@ -64,7 +64,7 @@ class Work:
     lead: float = radians(20.0)
     allowance: float = 0.0
     limits: Tolerance = field(default_factory=Tolerance)
-    share: float = BRIDGE
+    share: float = 1.0
     _fields: "dict[int, Field]" = field(default_factory=dict, repr=False, init=False)
 
     def __post_init__(self) -> None:
