@@ -4,8 +4,6 @@ It needs a display, and runs in the FreeCAD that TOOLAXIS_FREECAD names, or wher
 face there: `python3 -m benchmarks.freecad_panel [PART.step [FACE [TOOL [SCALLOP]]]]`.
 """
 
-import os
-import sys
 import time
 from pathlib import Path
 
@@ -92,26 +90,17 @@ def measured(path, face, tool, scallop):
     yield panel.form.message.text(), 0.0, 0.0
 
 
-def printed():
-    """Print the table and leave before the window closes."""
-    arguments = dict(enumerate(sys.argv[1:]))
-    try:
-        for name, seconds, pause in measured(arguments.get(0, ROOT / "examples" / "freeform.step"),
-                                             arguments.get(1, "Face1"), arguments.get(2, "torus:12x1"),
-                                             float(arguments.get(3, 0.02))):
-            sys.__stdout__.write(f"{name:32s} {seconds:8.3f} s   longest pause {pause:6.0f} ms\n")
-            sys.__stdout__.flush()
-        status = 0
-    except Exception as reason:
-        sys.__stdout__.write(f"{type(reason).__name__}: {reason}\n")
-        status = 1
-    sys.__stdout__.flush()
-    os._exit(status)
+def rows(arguments):
+    """What is measured of the face that is named, or of the freeform part's."""
+    given = dict(enumerate(arguments))
+    for name, seconds, pause in measured(given.get(0, ROOT / "examples" / "freeform.step"), given.get(1, "Face1"),
+                                         given.get(2, "torus:12x1"), float(given.get(3, 0.02))):
+        yield name, f"{seconds:8.3f} s   longest pause {pause:6.0f} ms"
 
 
 def main():
     """Print the table by whichever FreeCAD there is."""
-    in_freecad("freecad_panel", printed)
+    in_freecad("freecad_panel", rows)
 
 
 if __name__ == "__main__":
