@@ -193,5 +193,8 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema):
         desk.type(form.scallop, "0.2 mm")
         desk.computed(form)
         assert any("in" in form.results.item(row, 0).text().split() for row in (2, 3)) == inches
+        desk.press(desk.standard_button("Ok"))
+        rate = 60 * desk.operation_in(wavy[0].Document).FeedRate.Value
+        assert rate == pytest.approx(1000, abs=1e-6), "not 1000.2, from 16.67 mm/s"
     finally:
         FreeCAD.Units.setSchema(before)

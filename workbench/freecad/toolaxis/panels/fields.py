@@ -121,11 +121,13 @@ class QuantityField:
     unit : str
         The unit of `value`, for instance "mm", "deg" or "mm/min".
     decimals : int, optional
-        Digits behind the point at least.
+        Digits behind the point at least, in that unit.
+    rounded : bool
+        Whether `value` has no more digits than these: 1000 mm/min have no end in mm/s.
     """
 
-    def __init__(self, widget, unit="mm", decimals=None):
-        self.widget, self.unit, self.decimals = widget, unit, decimals
+    def __init__(self, widget, unit="mm", decimals=None, rounded=False):
+        self.widget, self.unit, self.decimals, self.rounded = widget, unit, decimals, rounded
         self._one = Units.Quantity(f"1 {unit}")
         widget.setProperty("minimum", -1e9)
         widget.setProperty("maximum", 1e9)
@@ -133,7 +135,8 @@ class QuantityField:
     @property
     def value(self):
         """The number in the field's unit."""
-        return float(self.widget.property("rawValue")) / self._one.Value
+        number = float(self.widget.property("rawValue")) / self._one.Value
+        return round(number, self.decimals) if self.rounded else number
 
     @value.setter
     def value(self, number):
@@ -144,10 +147,10 @@ class QuantityField:
         self.widget.setProperty("value", quantity)
 
     def _digits(self):
-        """Digits behind the point that show thousandths of a millimetre in FreeCAD's unit too."""
+        """Digits behind the point that show as much in FreeCAD's unit as `decimals` do in the field's."""
         if self.decimals is None:
             return 0
-        factor = Units.Quantity(10.0, Units.Length).getUserPreferred()[1]
+        factor = Units.Quantity(10.0 * self._one.Value, self._one.Unit).getUserPreferred()[1] / self._one.Value
         return self.decimals + max(0, ceil(log10(factor)))
 
     def on_change(self, slot):

@@ -37,7 +37,7 @@ class PlanForm:
         self.quantities = {name: QuantityField(self._find(name), decimals=3) for name in lengths}
         self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
         self.quantities |= {name: QuantityField(self._find(name), decimals=4) for name in ("scallop", "allowance")}
-        self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min")
+        self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", decimals=2, rounded=True)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.limits = self._find("limits", QtWidgets.QComboBox)
         self.spindle = self._find("spindle", QtWidgets.QSpinBox)
