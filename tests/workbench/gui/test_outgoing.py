@@ -144,6 +144,8 @@ def machine_panel(desk, name, offset):
 
 def test_a_machine_is_picked_and_moves(desk, leaning):
     document = leaning[0].Document
+    view = desk.gui.getDocument(document.Name).ActiveView
+    seen = view.getCameraOrientation()
     form = machine_panel(desk, "bc-table-table", (0, 0, 20))
     assert "can be held" in form.message.text(), form.message.text()
     assert form.still.isChecked() and form.angles.rowCount() == 2 and form.angles.columnCount() == 2
@@ -161,8 +163,10 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
     form.slide.setValue(1000)
     desk.shot("72-second-operation")
     steps = document.UndoCount
+    assert not view.getCameraOrientation().isSame(seen, 1e-6)
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
+    assert view.getCameraOrientation().isSame(seen, 1e-6), "the view is as it was before"
     thing = next(one for one in document.Objects if one.Name.startswith("Machine"))
     assert thing.Machine == "bc-table-table" and thing.Offset == Vector(0, 0, 20)
     assert len(leaning[1].RotaryAngles) == 2 and document.UndoCount == steps + 1
@@ -222,3 +226,23 @@ def test_a_plan_made_by_the_panel_is_made_again_by_the_macro(desk, wavy, recorde
     again = desk.operation_in(document)
     assert again.Passes == passes and again.Axis.isEqual(axis, 1e-9)
     assert len(document.Objects) == len(names)
+
+
+@pytest.mark.long
+def test_the_pictures_of_the_tour_are_made_again_and_its_program_is_posted(desk, tmp_path):
+    import importlib.util
+    import re
+    from pathlib import Path
+
+    manual = Path(__file__).resolve().parents[3] / "resources" / "manual"
+    spec = importlib.util.spec_from_file_location("tour", manual / "tour.py")
+    tour = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tour)
+    posted = {line.strip() for line in tour.Tour(desk, tmp_path / "pictures", tmp_path / "plan").walk().splitlines()}
+    page = (manual / "freecad.md").read_text(encoding="utf-8")
+    made = {f"figures/{path.name}" for path in (tmp_path / "pictures").iterdir()}
+    assert made == set(re.findall(r"\]\((figures/freecad-[^)]+)\)", page))
+    codes = [line for block in re.findall(r"^```\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+             for line in block.splitlines()]
+    assert len(codes) == 5 and set(codes) <= posted
+    assert (tmp_path / "plan" / "program-linuxcnc.ngc").is_file()

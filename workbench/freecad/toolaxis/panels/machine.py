@@ -195,7 +195,12 @@ class MachinePanel(Panel):
         table.setColumnCount(count)
         table.setRowCount(len(rows))
         table.setHorizontalHeaderLabels([translate("ToolAxis", "Solution {}").format(k + 1) for k in range(count)])
-        table.setVerticalHeaderLabels([operation.Label for operation in self.operations])
+        metrics = table.fontMetrics()  # the end tells faces of one part apart
+        for row, operation in enumerate(self.operations):
+            name = metrics.elidedText(operation.Label, QtCore.Qt.ElideMiddle, _NAMES - 12)
+            item = QtWidgets.QTableWidgetItem(name)
+            item.setToolTip(operation.Label)
+            table.setVerticalHeaderItem(row, item)
         for row, (ways, taken) in enumerate(rows):
             if not ways:
                 table.setItem(row, 0, QtWidgets.QTableWidgetItem(translate("ToolAxis", "no position reaches it")))
@@ -279,7 +284,7 @@ class MachinePanel(Panel):
 
     def _let_go(self):
         self.timer.stop()
-        self.scene.clear()
+        self.scene.leave()
 
 
 def _looked_at(text, stands, tools):

@@ -22,7 +22,7 @@ class MachineScene:
 
     def __init__(self, document):
         self.name = document.Name
-        self.root = self.view = self.mounted = None
+        self.root = self.view = self.mounted = self.seen = None
         self.bed = np.eye(4)
 
     def show(self, mounted, tool):
@@ -39,6 +39,7 @@ class MachineScene:
         self.view, self.mounted = view_of(self.name), mounted
         if self.view is None:
             return
+        self.seen = self.seen or self.view.getCamera()
         self.root = coin.SoSeparator()
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
@@ -105,6 +106,14 @@ class MachineScene:
         camera.orientation.setValue(_looking(-way, up))
         viewport = coin.SbViewportRegion(*self.view.getSize())
         camera.viewAll(self.root, viewport)
+
+    def leave(self):
+        """Take everything out of the view, and look again as before the machine was looked at."""
+        view = view_of(self.name)
+        self.clear()
+        if view is not None and self.seen:
+            view.setCamera(self.seen)
+        self.seen = None
 
     def clear(self):
         """Take everything out of the view."""
