@@ -147,11 +147,13 @@ class Job:
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
         made = self._as_asked(faces, progress)
-        if self.inputs.objective != "time" or "auto" not in (self.regions, self.orientations) \
-                or made.outcome == "cancelled" or len(made.operations) == len(faces) + len(self.whole):
+        free = "auto" in (self.regions, self.orientations) or (self.regions is None and self.orientations is not None)
+        if self.inputs.objective != "time" or not free or made.outcome == "cancelled" \
+                or len(made.operations) == len(faces) + len(self.whole):
             return made
         whole = replace(self, regions=None, orientations=None)._as_asked(faces, progress.within("undivided"))
-        return quicker(made, whole)
+        most = self.orientations if isinstance(self.orientations, int) else np.inf
+        return quicker(made, whole) if whole.orientations <= most else made
 
     def _as_asked(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
