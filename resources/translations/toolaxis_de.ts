@@ -15,8 +15,8 @@
    <translation>, verfehlt um {}</translation>
   </message>
   <message>
-   <source>A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end and a closed face around the blade.</source>
-   <translation>Ein Kugelfräser läuft in Schichten um eine Schaufel, eine Drehachse schwenkt. Braucht einen Kugelfräser und eine geschlossene Fläche um die Schaufel.</translation>
+   <source>A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end; of the faces around a blade one is enough.</source>
+   <translation>Ein Kugelfräser läuft in Schichten um eine Schaufel, eine Drehachse schwenkt. Braucht einen Kugelfräser; von den Flächen um eine Schaufel genügt eine.</translation>
   </message>
   <message>
    <source>Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip width.</source>

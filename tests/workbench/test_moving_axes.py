@@ -1,6 +1,7 @@
 """Axes that move while they cut: the command's plan through the document, what stands in the tree, what is refused."""
 
 import json
+from pathlib import Path
 from types import SimpleNamespace
 
 import FreeCAD
@@ -19,6 +20,7 @@ from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.post.apt_reading import read_apt
 from toolaxis.progress import NO_PROGRESS
 
+ROOT = Path(__file__).resolve().parents[2]
 TURNED = Placement(Vector(30, -10, 5), Rotation(Vector(1, 2, 3), 40))
 
 
@@ -130,6 +132,49 @@ def test_what_does_not_go_with_a_strategy_is_told_and_nothing_is_made(document, 
         bridge.plan(document, (block, parts.sculptured_name(block)), scallop=parts.SCALLOP, shank=None, holder=None,
                     **given)
     assert [one.Name for one in document.Objects] == names
+
+
+def split_blade(document):
+    """The blade of the examples with its closed face in two halves, and the name of one of these."""
+    shape = Part.read(str(ROOT / "examples" / "blade.step"))
+    closed = next(face for face in shape.Faces if type(face.Surface).__name__ == "BSplineSurface")
+    others, halves = [face for face in shape.Faces if not face.isSame(closed)], []
+    for low, high in ((0.0, 0.5), (0.5, 1.0)):
+        half = closed.Surface.copy()
+        half.segment(low, high, 0.0, 1.0)
+        halves.append(half.toShape())
+    shell = Part.makeShell([*others, *halves])
+    shell.sewShape()
+    thing = document.addObject("Part::Feature", "Blade")
+    thing.Shape = shell
+    document.recompute()
+    return thing, f"Face{len(shell.Faces)}"
+
+
+def test_faces_around_a_blade_are_one_in_the_tree_too(document):
+    thing, name = split_blade(document)
+    made, = bridge.plan(document, (thing, name), "ball:8", 1.0, strategy="blade", limits="machine:four-axis-a",
+                        stickout=100.0, holder=((12.5, 0.0), (12.5, 60.0)), shank=None, direction="climb")
+    label = json.loads(made.Details)["label"]
+    assert made.AxisMoves and label.startswith(f"{name[4:]}+") and made.Label.endswith(label)
+    op, = plan_task([made])(NO_PROGRESS).operations
+    assert op.face.label == label and op.path.passes == made.Passes
+    assert op.face.area == pytest.approx(sum(thing.Shape.Faces[k - 1].Area for k in op.face.numbers), rel=1e-3)
+    assert not made.Stale
+
+
+@pytest.mark.long
+def test_two_point_contact_is_refused_on_a_convex_face(document, parts):
+    surface = Part.BSplineSurface()
+    surface.interpolate([[Vector(x, y, 10 - 0.02 * (x - 10) ** 2 - 0.02 * (y - 8) ** 2) for y in range(0, 17, 4)]
+                         for x in range(0, 21, 5)])
+    thing = document.addObject("Part::Feature", "Convex")
+    thing.Shape = surface.toShape()
+    document.recompute()
+    with pytest.raises(ToolAxisError, match=r"touched at two points nowhere .*choose another strategy"):
+        bridge.plan(document, (thing, "Face1"), parts.TOOL, parts.SCALLOP, shank=None, holder=parts.HOLDER,
+                    stickout=25.0, strategy="two-point")
+    assert [one.Name for one in document.Objects] == ["Convex"]
 
 
 def test_a_strategy_that_comes_to_nothing_leaves_the_tree_as_it_is(document, parts):

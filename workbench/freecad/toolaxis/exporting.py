@@ -131,6 +131,8 @@ def plan_task(operations):
         from toolaxis.plan.plan import Plan, outcome_of
 
         part, bodies = source.read(progress)
+        for row in rows:
+            part = Standing(None, None, None, row[2]).joined(part)
         made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
         mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
@@ -187,7 +189,8 @@ def _numbered(details, before):
     own = str(details["face"])
     suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
     number = details["face"] + before
-    return details | {"face": number, "label": f"{number}{suffix}"}
+    members = [member + before for member in details.get("members", ())]
+    return details | {"face": number, "label": f"{number}{suffix}", "members": members}
 
 
 def _operation(number, part, row):

@@ -91,7 +91,8 @@ def owners_of(inputs, plan):
     from .reading import numbered
 
     shapes = [shape_of(thing) for thing in inputs.things]
-    if sum(len(shape.Faces) for shape in shapes) != len(plan.part.faces):
+    whole = plan.part.original or plan.part  # as it was before faces around a blade were joined
+    if sum(len(shape.Faces) for shape in shapes) != len(whole.faces):
         raise InvalidInput("the part has changed while it was planned: compute again")
     found = numbered(inputs, shapes)
     return [found[op.face.number] for op in plan.operations]
@@ -186,7 +187,7 @@ def _fill(operation, inputs, plan, which):
     operation.Label = title
     set_inputs(operation, inputs)
     set_results(operation, op.orientation, plan.not_checked)
-    _keep(operation, inputs, (op, plan), f"{number}{label}" if label else str(number))
+    _keep(operation, inputs, (op, plan), (number, f"{number}{label}"))
     remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
     if op.done:
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
@@ -199,14 +200,14 @@ def _fill(operation, inputs, plan, which):
     mark(operation)
 
 
-def _keep(operation, inputs, which, label):
+def _keep(operation, inputs, which, names):
     from toolaxis.plan.document import orientation_document
 
-    op, plan = which
-    number = int("".join(c for c in label if c.isdigit()) or 0)
+    (op, plan), (number, label) = which, names
+    members = [own - op.face.number + number for own in op.face.numbers] if op.face.members else []
     operation.AxisMap = json.dumps(orientation_document(op.orientation))
     operation.Details = json.dumps({"face": number, "label": label, "region": region_of(op, plan),
-                                    "about": facts_of(*inputs.faces[0])})
+                                    "about": facts_of(*inputs.faces[0]), **({"members": members} if members else {})})
     operation.PlannedWith = digest(inputs)
     operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
     operation.Motions = [] if op.path is None else [int(kind) for kind in op.path.kind]

@@ -87,6 +87,7 @@ class Standing:
         from toolaxis.plan.operation import Operation
         from toolaxis.plan.plan import Plan
 
+        part = self.joined(part)
         made = Operation(1, self.face(part), self.orientation, self.path, self.frame)
         return Plan(part, tool, inputs, (made,), tuple(bodies), self.frame.origin, "complete")
 
@@ -98,8 +99,22 @@ class Standing:
         m = self.matrix
         return WorkCoordinates(m[:3, 3], m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3])
 
+    def joined(self, part):
+        """The part with the faces as one that were machined as one.
+
+        Parameters
+        ----------
+        part : toolaxis.shape.part.Part
+        """
+        from math import pi
+
+        from toolaxis.shape.skins import join
+
+        members = self.details.get("members")
+        return join(part, members, corner=pi) if members and not part.face(members[0]).members else part
+
     def face(self, part):
-        """The sub-surface.
+        """The sub-surface, of the part as `joined` gives it.
 
         Parameters
         ----------

@@ -108,8 +108,8 @@ def needs(strategy):
     strategy : str
         One of `STRATEGIES`.
     """
-    blade = translate("ToolAxis", "A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end "
-                                  "and a closed face around the blade.")
+    blade = translate("ToolAxis", "A ball end goes around a blade in layers, one rotary axis swings. Needs a ball "
+                                  "end; of the faces around a blade one is enough.")
     return {
         "four-plus-one": translate("ToolAxis", "One rotary axis is clamped, the other turns along the passes. Needs a "
                                                "machine on the tab Limits."),
