@@ -140,6 +140,7 @@ def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change,
     document.recompute()
     document.commitTransaction()
     assert plan.Stale and list(plan.StaleReasons) == [words]
+    assert not [one.Name for one in document.Objects if "Invalid" in one.State]
     if reason == "the part was deleted":
         for act in (lambda: bridge.recompute(plan), lambda: bridge.split(made[0]), lambda: bridge.merge(made)):
             with pytest.raises(ta.InvalidInput, match="deleted"):
@@ -147,6 +148,7 @@ def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change,
     document.undo()
     document.recompute()
     assert not plan.Stale and [one.Name for one in operations_in(plan)] == names
+    assert all(mesh.ExpressionEngine for one in operations_in(plan) for mesh in shown(one, SURFACE)), "it follows again"
     divided[0][:] = operations_in(plan)
 
 
@@ -237,13 +239,16 @@ def test_one_undo_takes_blades_and_links(bladed):
         assert plan.Stale and list(plan.StaleReasons) == [words]
         document.undo()
         assert sorted(one.Name for one in document.Objects) == names and not plan.Stale
+    document.recompute()
     document.openTransaction("delete")
     document.removeObject(thing.Name)
     document.recompute()
     document.commitTransaction()
     assert plan.Stale and list(plan.StaleReasons) == ["the part was deleted"]
+    assert not [one.Name for one in document.Objects if "Invalid" in one.State]
     document.undo()
     document.recompute()
+    assert all(one.ExpressionEngine for one in links(plan)), "they follow again"
     assert not plan.Stale and not [one for one in document.Objects if "Invalid" in one.State]
 
 

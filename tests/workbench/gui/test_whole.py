@@ -105,6 +105,25 @@ def test_two_sub_surfaces_stand_in_the_tree_and_go_with_one_undo(desk, roof, for
     assert sum(colours_of(again), ()) == pytest.approx(sum(colours, ()), abs=0.01)
     desk.gui.getDocument(again.Name).ActiveView.fitAll()
     desk.shot("63-reopened")
+    again.UndoMode = 1
+    part = operations(again)[0].Faces[0][0]
+    for gone, words in ((operations(again)[1], "deleted"), (part, "the part was deleted")):
+        again.openTransaction("Delete")
+        again.removeObject(gone.Name)
+        again.recompute()
+        again.commitTransaction()
+        assert plan_in(again).Stale and words in plan_in(again).StaleReasons[0]
+        if words != "deleted":
+            desk.gui.runCommand("ToolAxis_Recompute")
+            desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+            form = desk.form("ToolAxisPlan")
+            assert "The part was deleted" in form.message.text() and not form.compute.isEnabled()
+            desk.shot("68-part-deleted")
+            desk.press(desk.standard_button("Cancel"))
+            desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+        again.undo()
+        again.recompute()
+        assert not plan_in(again).Stale
     desk.gui.Selection.addSelection(again.Name, plan_in(again).Name)
     desk.gui.runCommand("Std_Delete")
     desk.pump(0.2)

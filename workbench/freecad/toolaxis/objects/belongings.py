@@ -12,6 +12,8 @@ from .surfaces import colour_view, is_shown
 FRAMES = ("Part::LocalCoordinateSystem", "PartDesign::CoordinateSystem")
 #: Name of the group that planning makes, at least how it begins.
 GROUP = "Orientations"
+#: What a placement is called in expressions of objects, and in those of links.
+_PLACES = ("Placement", "LinkPlacement")
 _FEATURES = ("App::Line", "App::Plane", "App::Point")
 
 
@@ -116,8 +118,24 @@ def _untie(operation, without):
     if not any(map(_is_passes, own)):
         tied += [thing for thing in own if not _is_frame(thing) and not is_shown(thing)]
     for thing in tied:
-        if any(name == "Placement" for name, _ in thing.ExpressionEngine):
-            thing.setExpression("Placement", None)
+        _let_stand(thing)
+
+
+def _followers(thing):
+    """What follows a part, or what carries it, by an expression; FreeCAD's own list of them has gaps after an undo."""
+    found = list(thing.InList)
+    if any((is_operation(one) or is_plan(one)) and thing not in one.Group for one in found):
+        words = f"{thing.Name}.Placement", f"<<{thing.Label}>>.Placement"
+        found += [one for one in thing.Document.Objects
+                  if any(word in text for _, text in one.ExpressionEngine for word in words)]
+    return [one for one in found if is_shown(one) or _is_frame(one) or "Turn" in one.PropertiesList]
+
+
+def _let_stand(thing):
+    """Let an object stay where it is instead of following another one."""
+    for name, _ in list(thing.ExpressionEngine):
+        if name.lstrip(".") in _PLACES:
+            thing.setExpression(name, None)
 
 
 class Keeper:
@@ -142,6 +160,8 @@ class Keeper:
         if is_plan(thing):
             self._take_plan(document, thing)
             return
+        for one in _followers(thing):
+            _let_stand(one)
         for above in thing.InList:
             if is_operation(above) and above.Name not in self.going and thing in above.Group:
                 note(above, thing)

@@ -107,6 +107,8 @@ class PlanPanel(Panel):
         self.fields.fill(inputs)
         bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
         self.fields.avoid.offer(bodies, inputs.obstacles)
+        if self.operation is not None and not inputs.faces:
+            problems = [translate("ToolAxis", "The part was deleted: select other faces")]
         self.problem = "; ".join(problems)
 
     def _connect(self):
@@ -190,11 +192,11 @@ class PlanPanel(Panel):
 
     def compute(self):
         """Compute off the GUI thread; refused while the fields are not right."""
-        self.problem = ""
         self.refusal = self.fields.refusal()
         if self.refusal or self.work is not None:
             self._show_state()
             return
+        self.problem = ""
         inputs = bridge.Inputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
