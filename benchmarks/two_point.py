@@ -50,7 +50,7 @@ OUT, GOUGE = Path(__file__).parents[1] / "out", 0.002
 #: Gouge-free postures, ours first: title, posture, and the share of the tolerance in the formula.
 COMPARED = (("two contacts, gouge-free", "two-point", 1.0),
             ("matched, raised where it gouges", "matched-raised", 1.0),
-            ("Sturz, least constant lead", "sturz", 1.0),
+            ("Sturz, least lead", "sturz", 1.0),
             ("formula for 0.5 d, raised", "formula-raised", 0.5),
             ("formula for 0.25 d, raised", "formula-raised", 0.25))
 #: Feeds along which passes are so many times more are not looked at.
@@ -131,6 +131,7 @@ class Row:
     title: str
     path: ToolPath
     verdict: OperationVerdict
+    proven: bool
 
 
 def row(title: str, job: Task, work: Work, leaning: str, proof: bool = False) -> Row | None:
@@ -156,7 +157,7 @@ def row(title: str, job: Task, work: Work, leaning: str, proof: bool = False) ->
           f"{100 * verdict.share_within:7.2f} {deep:>9} {proven:>7} {taken:7.1f}", flush=True)
     if proof and work.posture == "two-point":
         print("   " + "; ".join(told(work, strips)), flush=True)
-    return Row(title, path, verdict)
+    return Row(title, path, verdict, proven == "yes")
 
 
 def head() -> None:
@@ -198,11 +199,21 @@ def fewest(title: str, job: Task, along: tuple[str, ...], posture: str, share: f
             own = work if posture != "sturz" else replace(work, lead=least_constant_lead(work, leaning))
             found.append((reckoned_passes(own, leaning), f"{feed}, {leaning}", own, leaning))
     found.sort(key=lambda one: one[:2])
-    made = next((one for one in (row(title, job, work, leaning, proof=True) for *_, work, leaning in found) if one),
+    print("   reckoned: " + "; ".join(f"{where} {count:.1f}" for count, where, *_ in found), flush=True)
+    if posture == "sturz":
+        return steeper(title, job, *found[0][2:])
+    return next((one for one in (row(title, job, work, leaning, proof=True) for *_, work, leaning in found) if one),
                 None)
-    leads = f"; lead {np.degrees(found[0][2].lead):.2f} deg" if posture == "sturz" else ""
-    print("   reckoned: " + "; ".join(f"{where} {count:.1f}" for count, where, *_ in found) + leads, flush=True)
-    return made
+
+
+def steeper(title: str, job: Task, work: Work, leaning: str) -> Row | None:
+    """A constant lead, half a degree more at a time until the whole path is proven: contacts between those looked at
+    may ask for more."""
+    while True:
+        made = row(f"{title} {np.degrees(work.lead):.2f} deg", job, work, leaning, proof=True)
+        if made is None or made.proven or work.lead >= STEEPEST:
+            return made
+        work = replace(work, lead=min(work.lead + np.radians(0.5), STEEPEST))
 
 
 def main() -> None:
