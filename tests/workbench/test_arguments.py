@@ -147,6 +147,21 @@ def test_faces_are_written_in_many_ways(document, part, face):
         assert arguments.faces_of(document, given) == whole and face in whole, given
 
 
+def test_bodies_of_the_same_assembly_are_avoided(document, part):
+    from freecad.toolaxis.bodies import bodies_in
+    from freecad.toolaxis.defaults import defaults
+
+    outer, inner = (document.addObject("App::Part", name) for name in ("Outer", "Inner"))
+    disc, hidden, apart = (document.addObject("Part::Box", name) for name in ("Disc", "Hidden", "Apart"))
+    for holder, thing in ((outer, part), (outer, inner), (inner, disc), (outer, hidden)):
+        holder.addObject(thing)
+    hidden.Visibility = False
+    document.recompute()
+    assert set(bodies_in(document, [part])) == {disc, hidden, apart}
+    assert defaults(document, ((part, "Face1"),)).obstacles == (disc,)
+    assert defaults(document, ((apart, "Face1"),)).obstacles == ()
+
+
 def test_numbers_may_have_units(document, part):
     given = {"scallop": Quantity("20 um"), "allowance": "0.1 mm", "stickout": "2 in", "feedrate": Quantity("10 mm/s"),
              "spindle": 8000}

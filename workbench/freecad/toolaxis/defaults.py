@@ -3,6 +3,7 @@
 from contextlib import suppress
 from dataclasses import replace
 
+from .bodies import bodies_beside
 from .preferences import preferred_inputs
 
 #: Diameters that cutters come in, mm.
@@ -13,6 +14,8 @@ _GRID = 5
 
 def defaults(document, faces):
     """Inputs for faces: the first usable tool of a CAM job, else what is preferred, or a bull nose that fits the faces.
+
+    The other bodies of the assembly, or part container, of which they are, are to be avoided.
 
     Parameters
     ----------
@@ -28,7 +31,8 @@ def defaults(document, faces):
     from .cam import controllers, speeds, tool_from
 
     shapes = _faces(faces)
-    inputs = _preferred(_for_size(Inputs(tuple(faces)), shapes))
+    beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
+    inputs = _preferred(_for_size(Inputs(tuple(faces), obstacles=tuple(beside)), shapes))
     for controller in controllers(document):
         with suppress(Exception):  # a tool of another kind: the next one
             found = tool_fields(tool_from(controller))

@@ -8,6 +8,7 @@ import FreeCADGui
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
+from ..bodies import bodies_in
 from ..cam import speeds
 from ..machines import offered
 from ..macros import again_lines, plan_line, record
@@ -23,7 +24,7 @@ from .panel import Panel
 from .pictures import show_pictures
 from .planform import PlanForm
 from .preview import Preview
-from .selected import bodies_in, selected_faces, tools_in
+from .selected import selected_faces, tools_in
 
 translate = FreeCAD.Qt.translate
 

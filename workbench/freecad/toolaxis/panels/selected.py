@@ -70,20 +70,6 @@ def owner_of(thing, name):
     return thing, ".".join([*way, element])
 
 
-def bodies_in(document, parts):
-    """Objects of a document that may have to be avoided: solids and shells at the top, but for some parts.
-
-    Parameters
-    ----------
-    document : App.Document
-    parts : sequence of objects
-    """
-    own = {part.Name for part in parts}
-    for part in parts:
-        own |= {above.Name for above in part.InListRecursive}
-    return [thing for thing in document.Objects if thing.Name not in own and _is_body(thing)]
-
-
 def tools_in(document):
     """Tool controllers of a document's CAM jobs, and tool bits that are in none of them, as (label, object).
 
@@ -96,15 +82,3 @@ def tools_in(document):
     bits = [thing for thing in document.Objects if thing.Name not in held and thing not in found
             and "ToolBit" in type(getattr(thing, "Proxy", None)).__name__]
     return [(thing.Label, thing) for thing in (*found, *bits)]
-
-
-def _is_body(thing):
-    shape = getattr(thing, "Shape", None)
-    if shape is None or not (thing.isDerivedFrom("Part::Feature") or thing.isDerivedFrom("App::Link")):
-        return False
-    if thing.isDerivedFrom("PartDesign::Feature") or thing.isDerivedFrom("Part::Part2DObject"):
-        return False
-    if "ToolBit" in type(getattr(thing, "Proxy", None)).__name__:
-        return False
-    inside = [above for above in thing.InList if above.TypeId == "PartDesign::Body" or hasattr(above, "Proxy")]
-    return not inside and not shape.isNull() and bool(shape.Faces)

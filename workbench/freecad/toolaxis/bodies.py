@@ -1,0 +1,41 @@
+"""Bodies of a document that the tool may meet beside the part."""
+
+from .places import chain_of
+
+
+def bodies_in(document, parts):
+    """Objects of a document that may have to be avoided: solids and shells at the top, but for some parts.
+
+    Parameters
+    ----------
+    document : App.Document
+    parts : sequence of objects
+    """
+    own = {part.Name for part in parts}
+    for part in parts:
+        own |= {above.Name for above in part.InListRecursive}
+    return [thing for thing in document.Objects if thing.Name not in own and _is_body(thing)]
+
+
+def bodies_beside(document, parts):
+    """What of them is avoided unless the user says otherwise: those seen in one assembly or container with a part.
+
+    Parameters
+    ----------
+    document : App.Document
+    parts : sequence of objects
+    """
+    containers = {chain[0].Name for chain in map(chain_of, parts) if chain and chain[0].isDerivedFrom("App::Part")}
+    return [body for body in bodies_in(document, parts) if body.Visibility and chain_of(body)[0].Name in containers]
+
+
+def _is_body(thing):
+    shape = getattr(thing, "Shape", None)
+    if shape is None or not (thing.isDerivedFrom("Part::Feature") or thing.isDerivedFrom("App::Link")):
+        return False
+    if thing.isDerivedFrom("PartDesign::Feature") or thing.isDerivedFrom("Part::Part2DObject"):
+        return False
+    if "ToolBit" in type(getattr(thing, "Proxy", None)).__name__:
+        return False
+    inside = [above for above in thing.InList if above.TypeId == "PartDesign::Body" or hasattr(above, "Proxy")]
+    return not inside and not shape.isNull() and bool(shape.Faces)
