@@ -1,6 +1,5 @@
 """A desk to drive FreeCAD's window as a user does: clicks, keys, waits with a limit, and screenshots to look at."""
 
-import gc
 import os
 import subprocess
 import sys
@@ -245,6 +244,7 @@ class Desk:
     def tidy(self):
         """Close the panel and all documents, unsaved as they are."""
         import FreeCAD
+        from freecad.toolaxis.tasks import clear_away
 
         if self.gui.Control.activeDialog():
             self.gui.Control.closeDialog()
@@ -252,7 +252,7 @@ class Desk:
         for name in list(FreeCAD.listDocuments()):
             FreeCAD.closeDocument(name)
         self.pump(0.1)
-        gc.collect()
+        clear_away()
 
 
 @pytest.fixture(scope="session")

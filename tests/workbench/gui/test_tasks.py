@@ -4,6 +4,7 @@ import gc
 import sys
 import threading
 import time
+import weakref
 
 import pytest
 
@@ -115,6 +116,23 @@ def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotte
     from freecad.toolaxis import tasks
 
     desk.wait(lambda: not tasks._running, "the thread is let go")
+
+
+def test_what_was_closed_is_let_go_while_something_is_computed(desk):
+    from freecad.toolaxis import tasks
+
+    class Panel:
+        def __init__(self):
+            self.itself = self
+
+    gone = weakref.ref(Panel())
+    work, _ = started(patient)
+    gc.collect()
+    assert gone() is not None, "set aside"
+    tasks.clear_away()
+    assert gone() is None and gc.get_freeze_count() > 0
+    work.cancel()
+    desk.wait(lambda: not tasks._running, "it ends")
 
 
 @pytest.mark.parametrize("end", ["cancel", "leave"])

@@ -99,6 +99,18 @@ def _load() -> None:
     gc.freeze()
 
 
+def clear_away() -> None:
+    """Collect what nobody holds any more, also what was set aside while something is computed.
+
+    Panels that were closed leave Python objects of widgets behind, which the bindings hand out again for a new widget
+    that lies at a dead one's address; collected later, they would take the new one for dead.
+    """
+    gc.unfreeze()
+    gc.collect()
+    if _running:
+        gc.freeze()
+
+
 def sentence(reason: BaseException) -> str:
     """An error as one line without a stop at its end.
 

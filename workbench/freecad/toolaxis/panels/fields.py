@@ -9,6 +9,7 @@ from FreeCAD import Units
 from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES
+from ..tasks import clear_away
 from . import palette
 
 translate = FreeCAD.Qt.translate
@@ -23,7 +24,7 @@ def load_form(name):
 
     Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
     is of another class or raises when touched (seen: a QWidget instead of a slider, a dead box of buttons instead of
-    the form).  Then the layout is loaded again, elsewhere in memory.
+    the form).  So these are collected first; where that does not do, the layout is loaded again, elsewhere in memory.
 
     Parameters
     ----------
@@ -35,6 +36,7 @@ def load_form(name):
     expected = {widget.get("name"): getattr(QtWidgets, widget.get("class"), QtWidgets.QWidget)
                 for widget in widgets[1:]}
     spoilt = []
+    clear_away()
     for _ in range(_LOADINGS):
         form = FreeCADGui.PySideUic.loadUi(str(file))
         if _sound(form, widgets[0].get("name"), expected):
