@@ -61,9 +61,9 @@ def directions(work: Work, sense: int) -> Field:
     sense : int
         1 where the axis leans towards growing parameter, -1 where towards the other end.
     """
-    if sense not in work._fields:
-        work._fields[sense] = field_of(work, sense)
-    return work._fields[sense]
+    if sense not in work.found:
+        work.found[sense] = field_of(work, sense)
+    return work.found[sense]
 
 
 def field_of(work: Work, sense: int) -> Field:

@@ -49,6 +49,8 @@ class Work:
     allowance : float
         Stock left on the face, mm.
     limits : Tolerance
+    found : dict of int to Field
+        Directions of two-point contact by the sense of the lean, once they were looked for.
 
     Raises
     ------
@@ -65,7 +67,7 @@ class Work:
     allowance: float = 0.0
     limits: Tolerance = field(default_factory=Tolerance)
     share: float = 1.0
-    _fields: "dict[int, Field]" = field(default_factory=dict, repr=False, init=False)
+    found: "dict[int, Field]" = field(default_factory=dict, repr=False, init=False)
 
     def __post_init__(self) -> None:
         if self.feed not in ("u", "v"):

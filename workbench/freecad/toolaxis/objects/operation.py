@@ -114,13 +114,13 @@ class _Watch(Keeper):
 
     def slotRecomputedDocument(self, document):
         """Mark the operations, and then the whole plans, of a document where something is invalid."""
-        from .wholeplan import mark as mark_plan
+        from .wholeplan import why_stale as why_plan_stale
 
         if any("Invalid" in thing.State for thing in document.Objects):
             for thing in filter(is_operation, document.Objects):
                 mark(thing)
             for thing in filter(is_plan, document.Objects):
-                mark_plan(thing)
+                compare(thing, why_plan_stale)
 
 
 _WATCH = _Watch()
@@ -143,15 +143,27 @@ def mark(thing):
     """
     from ..staleness import why_stale
 
+    compare(thing, why_stale)
+    if thing.Verdict in ("passed", "failed") and not _verdict_holds(thing):
+        assign(thing, Verdict="out of date", VerdictReasons=["the part or the inputs have changed since: verify again"])
+    return thing.Stale
+
+
+def compare(thing, why):
+    """Set the stale mark of an operation or a whole plan by what makes it stale.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    why : callable
+        Takes the object, returns sentences.
+    """
     try:
-        reasons = why_stale(thing)
+        reasons = why(thing)
     except Exception as reason:  # not known to hold is not to hold
         FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
         reasons = [f"it cannot be compared with what was planned ({reason})"]
     assign(thing, StaleReasons=reasons, Stale=bool(reasons))
-    if thing.Verdict in ("passed", "failed") and not _verdict_holds(thing):
-        assign(thing, Verdict="out of date", VerdictReasons=["the part or the inputs have changed since: verify again"])
-    return bool(reasons)
 
 
 def _verdict_holds(thing):

@@ -5,7 +5,7 @@ import json
 import FreeCAD
 
 from . import operations_in
-from .operation import INPUTS, set_inputs, watch
+from .operation import INPUTS, compare, set_inputs, watch
 from .properties import Property, Proxy, assign
 from .surfaces import CLEAN_UP, is_shown
 
@@ -53,22 +53,7 @@ class WholePlan(Proxy):
 
     def execute(self, thing):
         """Compare with what was planned; computes no axis."""
-        mark(thing)
-
-
-def mark(plan):
-    """Set the stale mark of a whole plan by how things stand now.
-
-    Parameters
-    ----------
-    plan : App.DocumentObject
-    """
-    try:
-        reasons = why_stale(plan)
-    except Exception as reason:  # not known to hold is not to hold
-        FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
-        reasons = [f"it cannot be compared with what was planned ({reason})"]
-    assign(plan, StaleReasons=reasons, Stale=bool(reasons))
+        compare(thing, why_stale)
 
 
 def why_stale(plan):
