@@ -223,7 +223,9 @@ class Tour:
         desk.type(form.folder, str(self.written))
         form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
         desk.press(form.write)
-        desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is written")
+        desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is done")
+        if not (self.written / "plan.json").is_file():
+            raise RuntimeError(f"nothing was exported: {form.message.text()}")
         self.picture("11-export")
         desk.press(desk.standard_button("Close"))
 
