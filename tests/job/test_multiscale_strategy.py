@@ -96,6 +96,12 @@ def test_a_scallop_below_that_of_the_roughness_is_told() -> None:
     assert "Ra 1.6 um stands for scallops of 0.00624 mm" in made.operations[0].orientation.reasons[0]
 
 
+def test_a_scallop_too_high_for_the_cutter_is_told_with_the_strips_that_it_leaves() -> None:
+    made = ta.plan(hill(), "torus:6x1", 0.3, strategy="multiscale", machine="bc-table-table", workers=1)
+    assert made.outcome == "incomplete"
+    assert "strips are 3.6" in (why := made.operations[0].orientation.reasons[0]) and "a smaller scallop height" in why
+
+
 def test_the_command_takes_micrometres(capsys) -> None:
     told = main(["plan", "none.step", "--tool", "torus:10x3", "--scallop", "0.1", "--roughness", "-2", "--strategy",
                  "multiscale", "--machine", "bc-table-table"])

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from toolaxis.cldata.toolpath import Motion
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.orient.indexed import task
 from toolaxis.orient.laying import made
 from toolaxis.orient.moving import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
-from toolaxis.orient.setting import Group
+from toolaxis.orient.setting import SKIN, Group
 from toolaxis.orient.sturz import Sturz, sturz
 from toolaxis.path.leading import LeadChart
 from toolaxis.shape.nearest import nearest
@@ -97,6 +97,21 @@ def test_a_lead_that_gouges_is_found_out_at_points() -> None:
     _, path = made(job, LeadChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
     witness = prove_moving(path, job.worth.tool, job.groups).witness
     assert witness is not None and witness.distance < -0.01
+
+
+def test_what_is_proven_alone_is_proven_beside_wider_turns() -> None:
+    """Two motions over a plane: one just over it that hardly turns, one a little higher that turns by a degree."""
+    tool, floor = Tool.ball(6), flat([-50, -50, 0], [100, 0, 0], [0, 100, 0])
+    tips = np.array([[0, 0, 0.004], [0, 1, 0.004], [0, 1, 0.012], [0, 2, 0.012]])
+    axes = np.array([[np.sin(a), 0, np.cos(a)] for a in (0, 1e-4, 1e-4, 2e-2)])
+    path = ToolPath(tips, tips, axes, np.tile([0.0, 0, 1], (4, 1)), np.full(4, Motion.LINK, dtype=np.int8),
+                    np.array([0, 4]))
+    groups = task(floor, tool, H).groups
+    skin = next(group for group in groups if group.role == SKIN)
+    spans = spans_of(path)
+    assert not kept(tool, skin, spans, skin.required).all()
+    assert all(kept(tool, skin, spans.rows(np.array([k])), skin.required)[0] for k in range(3))
+    assert prove_moving(path, tool, groups).witness is None
 
 
 def test_positions_looked_at_lie_close() -> None:

@@ -187,7 +187,7 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowanc
         without = np.concatenate([[-inf], group.required[1:]])
         for rows, required in ((on, without), (off, group.required)):
             free = kept(tool, group, spans.rows(rows), required)
-            if not free.all():
+            if not _alone(tool, group, spans.rows(rows[~free]), required):
                 return Proof(_witness(tool, group, spans.rows(rows[~free]), required))
         if len(on):
             depth = _touching(tool, group, spans.rows(on), allowance)
@@ -199,6 +199,12 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowanc
                        if name != "cutter" or group.role == OTHER) for name in known
              if name != "cutter" or any(group.role == OTHER for group in groups)}
     return Proof(None, gouge, least)
+
+
+def _alone(tool: Tool, group: Group, spans: Spans, required: Array) -> bool:
+    """Whether motions that are not proven together are each proven alone: bounds are those of the widest turn among
+    them, and links were laid by their own."""
+    return all(kept(tool, group, spans.rows(np.array([k])), required)[0] for k in range(len(spans.start)))
 
 
 def standing(spans: Spans) -> Array:

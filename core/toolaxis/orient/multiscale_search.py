@@ -21,7 +21,19 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.mounting import Mounting
 from toolaxis.orient.indexed import Task
-from toolaxis.orient.lane import LEAST_LEAN, MOST_LEAN, Lane, Wish, beginnings, followed, knots_of, leaning
+from toolaxis.orient.lane import (
+    GOUGE,
+    LEANING,
+    LEAST_LEAN,
+    MOST_LEAN,
+    UPRIGHT,
+    Lane,
+    Wish,
+    beginnings,
+    followed,
+    knots_of,
+    leaning,
+)
 from toolaxis.orient.mounted import mounting_of
 from toolaxis.orient.multiscale import Smoothed, smoothed
 from toolaxis.orient.multiscale_path import (
@@ -228,11 +240,22 @@ class Multiscale:
             found[good] = lean
         none = np.isnan(found)
         if none.any():
-            where = np.round(lane.bench.point[np.argmax(none)], 2).tolist()
-            low, high = self.wish.widths
-            raise InvalidInput(f"no lean along the feed near {where} of face {self.face.label} is free with a strip of "
-                               f"{low:.4g} to {high:.4g} mm: take another cutter, scallop height or range")
+            raise InvalidInput(self._without(_only(lane, none)))
         return found
+
+    def _without(self, lane: Lane) -> str:
+        """Why the first place of a lane has no lean along the feed: too narrow, too wide, or too close to something."""
+        where, (low, high) = np.round(lane.bench.point[0], 2).tolist(), self.wish.widths
+        every = [leaning(lane, lean) for lean in np.linspace(*self.wish.leans, _LEANS)]
+        wide = np.array([lane.widths(axes)[0] for axes in every])
+        free = [lane.margins(axes)[0, [GOUGE, UPRIGHT, LEANING]].min() >= 0 for axes in every]
+        begin = (f"no lean along the feed near {where} of face {self.face.label} is free with a strip of {low:.4g} to "
+                 f"{high:.4g} mm at a height of {self.wish.scallop:g} mm")
+        if any(free) and wide[free].max() < low:
+            return f"{begin}: strips are {wide[free].max():.4g} mm wide at most; take a smaller scallop height"
+        if any(free) and wide[free].min() > high:
+            return f"{begin}: strips are {wide[free].min():.4g} mm wide at least; take a smaller cutter"
+        return f"{begin}: take another cutter, scallop height or range"
 
     def found(self, feed: str) -> Found:
         """Passes along a feed with smooth rotary axes.
