@@ -11,9 +11,11 @@ from toolaxis.job.folder import read_json, read_plan, write_plan
 from toolaxis.job.spec import by_strategy, check_five_axes
 from toolaxis.job.timing import timed
 from toolaxis.machine.mounting import Mounting
+from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan
 from toolaxis.report.plots import standing
 from toolaxis.report.tables import plan_table
+from toolaxis.report.warnings import warnings_of
 
 TOOL = "torus:12x1"
 
@@ -79,7 +81,26 @@ def test_a_machine_times_the_path_and_not_below_what_its_feed_takes(plan) -> Non
     assert time.cut < 1.5 * plan.length / (plan.inputs.feedrate / 60) and len(time.rotary) == 2
     assert "collision with the machine itself" in made.not_checked
     short = replace(machine.machine, table=tuple(replace(axis, low=0.3, high=0.4) for axis in machine.machine.table))
-    assert not timed(replace(plan, machine=Mounting(short))).timed
+    lost = timed(replace(plan, machine=Mounting(short)))
+    assert not lost.timed and lost.operations[0].orientation.reasons[-1].startswith("not timed: ")
+    assert any("not timed" in one.text for one in warnings_of(lost, None))
+
+
+def test_a_path_on_which_the_axis_jumps_is_told(plan) -> None:
+    """Where the tip would all but stand still, the operation says so with the place, once."""
+    machine, op = Mounting(ta.load_machine("mikron-ucp-710")), plan.operations[0]
+    cut = np.flatnonzero(op.path.kind == 0)
+    k = int(cut[len(cut) // 2])
+    leant = op.path.axis.copy()
+    leant[k:] = leant[k:] + np.array([0.0, 1.0, 0.0])
+    jumping = replace(plan, machine=machine, operations=(replace(op, path=replace(op.path, axis=unit(leant))),))
+    made = timed(timed(jumping))
+    told = [why for why in made.operations[0].orientation.reasons if why.startswith("the feed falls below")]
+    assert made.timed and len(told) == 1 and any(told[0] in one.text for one in warnings_of(made, None))
+    place = np.array([float(word) for word in told[0].partition("[")[2].partition("]")[0].split(",")])
+    assert np.linalg.norm(place - op.path.cl[k]) < 5.0
+    fine = timed(replace(plan, machine=machine))
+    assert not any(why.startswith("the feed falls") for why in fine.operations[0].orientation.reasons)
 
 
 def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:

@@ -13,6 +13,7 @@ from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of
+from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.progress import Progress
 
 
@@ -143,5 +144,5 @@ def _left_over(op: Operation) -> None:
         say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
             f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
-        if why.startswith(("undercut", "one contact", "no contact")):
+        if why.startswith(("undercut", "one contact", "no contact", *MOTION_WARNINGS)):
             say(f"toolaxis: warning: face {op.face.label}: {why}")

@@ -16,6 +16,7 @@ from scipy.interpolate import BSpline, make_lsq_spline
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.constraints import AxisBounds, linear_bounds
+from toolaxis.feed.crawling import Crawl, crawl
 from toolaxis.feed.curve import CurveSchedule, schedule_curve
 from toolaxis.feed.polyline import schedule_polyline
 from toolaxis.feed.schedule import CORNER, NO_STEP, Feeds
@@ -47,6 +48,9 @@ _PROBE = 1e-5
 _ARM = 10.0
 #: Least lever of a rotary axis, mm.
 _LEVER = 10.0
+#: Points that follow closer than this, mm, are left out in turn where speeds come out that had to be slowed down by
+#: more than a factor: curves through points much closer at one place than elsewhere swing between them.
+_THINNED, _SLOWED = (0.0, 0.05, 0.2), 1.5
 #: Distance from the tip within which smoothed rotary axes keep the tool to the tolerance, mm.
 REACH = 20.0
 
@@ -142,6 +146,18 @@ class FiveAxisSchedule:
         if len(places) < 2:
             return None
         poses = np.hstack([tips[kept], self.along.rotary[rows][kept]])
+        best: CurveSchedule | None = None
+        for gap in _THINNED:
+            some = _apart(places, gap)
+            found = self._scheduled(one, places[some], poses[some])
+            if best is None or not best.duration <= found.duration:
+                best = found
+            if best.stretch <= _SLOWED and np.isfinite(best.duration):
+                break
+        return best
+
+    def _scheduled(self, one: Stretch, places: Array, poses: Array) -> CurveSchedule:
+        """What the axes do along poses at places."""
         if len(places) < _POINTS:
             fine = np.linspace(0.0, places[-1], _POINTS)
             poses = np.column_stack([np.interp(fine, places, column) for column in poses.T])
@@ -175,16 +191,13 @@ class FiveAxisSchedule:
     def _feed(self, one: Stretch) -> float:
         return float(self.feeds.of([one.kind], [one.rapid])[0])
 
-    def times(self) -> Iterator[tuple[Motion, float]]:
-        """Kind and time of each stretch, s; those without a turn once for each kind in them."""
-        for one in self.stretches():
-            if one.turning:
-                found = self.curve(one)
-                yield one.kind, 0.0 if found is None else found.duration
-            else:
-                yield from self._straight(one)
+    def straight(self, one: Stretch) -> Iterator[tuple[Motion, float]]:
+        """Kinds and times of a stretch on which the axis stands still, s.
 
-    def _straight(self, one: Stretch) -> Iterator[tuple[Motion, float]]:
+        Parameters
+        ----------
+        one : Stretch
+        """
         rows = slice(one.begin, one.end + 1)
         tips, joints = self.along.tips[rows], self.along.linear[rows]
         kept = np.concatenate([[True], np.linalg.norm(np.diff(tips, axis=0), axis=1) > NO_STEP])
@@ -226,6 +239,15 @@ def smoothed(places: Array, poses: Array, room: Array) -> BSpline:
     return curve
 
 
+def _apart(places: Array, gap: float) -> NDArray[np.intp]:
+    """Which places are a gap apart at least, the first and the last among them."""
+    kept = [0]
+    for k in range(1, len(places) - 1) if gap else ():
+        if places[k] - places[kept[-1]] >= gap and places[-1] - places[k] >= gap:
+            kept.append(k)
+    return np.array([*kept, len(places) - 1]) if gap else np.arange(len(places))
+
+
 def _line(places: Array) -> Array:
     """Points whose ways are those of the path, (n, 3)."""
     return np.column_stack([places, np.zeros((len(places), 2))])
@@ -253,32 +275,67 @@ def axis_bounds(machine: Machine) -> AxisBounds:
     return AxisBounds(levels[:, 0], levels[:, 1], levels[:, 2])
 
 
-def five_axis_time(machine: Machine, path: ToolPath, feeds: Feeds, table_from_part: ArrayLike | None = None,
-                   tool_length: float = 0.0, near: ArrayLike = ()) -> tuple[MachiningTime, Array, Array]:
-    """Time of a path with a moving axis from rest to rest, by kind of motion.
+@dataclass(frozen=True, eq=False)
+class FiveAxisMotion:
+    """What a path with a moving axis comes to on a machine.
+
+    Attributes
+    ----------
+    time : MachiningTime
+    begin, end : (m,) array
+        Rotary angles there, rad.
+    crawl : Crawl or None
+        Where the tip all but stands still while it cuts, for longest; None where it does so nowhere.
+    """
+
+    time: MachiningTime
+    begin: Array
+    end: Array
+    crawl: Crawl | None
+
+
+def five_axis_motion(machine: Machine, path: ToolPath, feeds: Feeds, table_from_part: ArrayLike | None = None,
+                     tool_length: float = 0.0, near: ArrayLike = ()) -> FiveAxisMotion:
+    """Time of a path with a moving axis from rest to rest, by kind of motion, and where it crawls.
 
     Parameters
     ----------
     machine, path, feeds, table_from_part, tool_length, near
         As for `FiveAxisSchedule`.
 
-    Returns
-    -------
-    MachiningTime
-    begin, end : (m,) array
-        Rotary angles there, rad.
-
     Notes
     -----
     **Property**: no axis exceeds its velocity, acceleration or jerk.
     """
     plan = FiveAxisSchedule(machine, path, feeds, table_from_part, tool_length, near)
-    seconds = dict.fromkeys(Motion, 0.0)
-    for kind, taken in plan.times():
-        seconds[kind] += taken
+    seconds, slow = dict.fromkeys(Motion, 0.0), list[Crawl]()
+    for one in plan.stretches():
+        if not one.turning:
+            for kind, taken in plan.straight(one):
+                seconds[kind] += taken
+            continue
+        found = plan.curve(one)
+        if found is None:
+            continue
+        seconds[one.kind] += found.duration
+        crawled = crawl(found, feeds.cut, plan.along.tips[one.begin:one.end + 1]) if one.kind == Motion.CUT else None
+        slow += [] if crawled is None else [crawled]
     rotary = plan.along.rotary
-    return (MachiningTime(seconds[Motion.CUT], seconds[Motion.ENTRY], seconds[Motion.EXIT], seconds[Motion.LINK]),
-            rotary[0], rotary[-1])
+    time = MachiningTime(seconds[Motion.CUT], seconds[Motion.ENTRY], seconds[Motion.EXIT], seconds[Motion.LINK])
+    return FiveAxisMotion(time, rotary[0], rotary[-1], max(slow, key=lambda one: one.seconds, default=None))
+
+
+def five_axis_time(machine: Machine, path: ToolPath, feeds: Feeds, table_from_part: ArrayLike | None = None,
+                   tool_length: float = 0.0, near: ArrayLike = ()) -> tuple[MachiningTime, Array, Array]:
+    """Time of a path with a moving axis, and the rotary angles at its ends, rad, as `five_axis_motion` finds them.
+
+    Parameters
+    ----------
+    machine, path, feeds, table_from_part, tool_length, near
+        As for `FiveAxisSchedule`.
+    """
+    made = five_axis_motion(machine, path, feeds, table_from_part, tool_length, near)
+    return made.time, made.begin, made.end
 
 
 def turns(path: ToolPath) -> bool:

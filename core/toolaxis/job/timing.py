@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.five_axes import five_axis_time
+from toolaxis.feed.crawling import SLOW, Crawl
+from toolaxis.feed.five_axes import FiveAxisMotion, five_axis_motion
 from toolaxis.feed.profile import travel_time
 from toolaxis.feed.schedule import Feeds, index_time, machining_time
 from toolaxis.job.order import arranged
@@ -15,7 +16,7 @@ from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
-from toolaxis.plan.timing import MachiningTime
+from toolaxis.plan.timing import CRAWLING, MOTION_WARNINGS, UNTIMED, MachiningTime
 
 Array = NDArray[np.float64]
 
@@ -30,7 +31,8 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
     as its axes do in rapid traverse.  Between operations the rotary axes turn to those solutions that take least time
     together, as in programs; where the part's place on the table is known, Z goes up before that and X and Y go over
     after it.  Axes that are set by hand take `INDEX_SECONDS`.  Where the tool axis moves, all axes keep their limits
-    along the path; with a path that the machine cannot follow a plan stays without times.
+    along the path; with a path that the machine cannot follow a plan stays without times.  The reasons of an operation
+    say so, and where the tip would crawl.
 
     Parameters
     ----------
@@ -49,10 +51,13 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
             done.append(op)
             continue
         if op.orientation.lead is not None:
-            moved = _moving(mounting, op, stand, plan.inputs)
-            if moved is None:
-                return plain
-            time, angles, end = moved
+            try:
+                moved = _moving(mounting, op, stand, plan.inputs)
+            except InvalidInput as reason:
+                return replace(plain, operations=tuple(
+                    _told(one, f"{UNTIMED} {reason}") if one.number == op.number else one for one in plain.operations))
+            time, angles, end = moved.time, moved.begin, moved.end
+            op = _told(op, _crawls(moved.crawl, plan.inputs))
             index = 0.0 if last is None else _between(mounting, (last, stand), (op, angles))
             done.append(replace(op, time=time.at(tuple(angles.tolist()), index)))
             stand, last = end, op
@@ -78,16 +83,26 @@ def feeds_of(inputs: Inputs) -> Feeds:
                  smooth=True)
 
 
-def _moving(mounting: Mounting, op: Operation, stand: Array,
-            inputs: Inputs) -> tuple[MachiningTime, Array, Array] | None:
-    """Time of a path with a moving axis, and where the rotary axes stand at its ends; None where it is too much for
-    the machine."""
+def _moving(mounting: Mounting, op: Operation, stand: Array, inputs: Inputs) -> FiveAxisMotion:
+    """Time of a path with a moving axis, and where the rotary axes stand at its ends."""
     assert op.path is not None
-    try:
-        return five_axis_time(mounting.machine, op.path, feeds_of(inputs), mounting.table_from_part,
-                              float(mounting.tool_length or 0.0), stand)
-    except InvalidInput:
-        return None
+    return five_axis_motion(mounting.machine, op.path, feeds_of(inputs), mounting.table_from_part,
+                            float(mounting.tool_length or 0.0), stand)
+
+
+def _crawls(found: Crawl | None, inputs: Inputs) -> str:
+    """A sentence on where the tip crawls; empty where it does so nowhere."""
+    if found is None:
+        return ""
+    return (f"{CRAWLING} {100 * SLOW:g} % of the programmed {inputs.feedrate:g} mm/min for {found.seconds:.3g} s on "
+            f"{found.way:.3g} mm at {np.round(found.place, 2).tolist()}: the axes of the machine have to turn too fast "
+            "there; take another machine, offset or strategy")
+
+
+def _told(op: Operation, sentence: str) -> Operation:
+    """An operation with a sentence on its motion in place of that of an earlier timing."""
+    before = tuple(why for why in op.orientation.reasons if not why.startswith(MOTION_WARNINGS))
+    return replace(op, orientation=replace(op.orientation, reasons=(*before, sentence) if sentence else before))
 
 
 def _path_time(mounting: Mounting, op: Operation, angles: Array, inputs: Inputs) -> MachiningTime:

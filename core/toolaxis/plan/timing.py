@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+#: How sentences begin on paths whose axis moves: where the tip crawls, and what no machine time could be found for.
+CRAWLING, UNTIMED = "the feed falls below", "not timed:"
+MOTION_WARNINGS = (CRAWLING, UNTIMED)
 #: Decimals in which angles are compared, rad.
 _DIGITS = 9
 

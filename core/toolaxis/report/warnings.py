@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.plan.timing import MOTION_WARNINGS
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,9 @@ def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
     copies = {} if plan.blades is None else plan.blades.copies
     numbers = {op.number for op in plan.operations if not op.done}
     for op in plan.operations:
+        if op.done:
+            left += [Warning("mind", f"{op.name}: {why}") for why in op.orientation.reasons
+                     if why.startswith(MOTION_WARNINGS)]
         if op.done or copies.get(op.number) in numbers:
             continue
         turned = sum(copies.get(number) == op.number for number in numbers)
