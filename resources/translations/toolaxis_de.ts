@@ -211,6 +211,10 @@
    <translation>Auf der Maschine</translation>
   </message>
   <message>
+   <source>On the way from {} to {}: {}</source>
+   <translation>Auf dem Weg von {} nach {}: {}</translation>
+  </message>
+  <message>
    <source>One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits.</source>
    <translation>Eine Drehachse ist geklemmt, die andere dreht längs der Bahnen. Braucht eine Maschine auf der Karte Grenzen.</translation>
   </message>
@@ -617,6 +621,10 @@
   <message>
    <source>{} ({} of {})</source>
    <translation>{} ({} von {})</translation>
+  </message>
+  <message>
+   <source>{} Collisions with the part could not be looked for: {}</source>
+   <translation>{} Kollisionen mit dem Teil konnten nicht gesucht werden: {}</translation>
   </message>
   <message>
    <source>{} at ({}, {}, {}) on face {}</source>

@@ -1,21 +1,23 @@
 """Machines of documents: which there are, both solutions of an axis, and the way of the machine between operations."""
 
 import json
+from dataclasses import replace
 
 import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis import machines
+from freecad.toolaxis import machines, meetings
 from freecad.toolaxis.objects.machine import machine_of, place_machine
 from freecad.toolaxis.panels.machinemotion import Journey, corners, meeting, places
 from freecad.toolaxis.preferences import PLACE
 
 import toolaxis as ta
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.machine.catalogue import library
 from toolaxis.machine.kinematics import forward
 from toolaxis.machine.standing import beside_part
+from toolaxis.progress import NO_PROGRESS, Progress
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30, holder=[(10, 0), (10, 40)])
 TEXT = "machine:bc-table-table@0,0,20"
@@ -180,3 +182,43 @@ def test_planning_for_a_machine_allows_what_it_holds(document, parts):
     assert machines.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
     assert "machine" not in made.NotChecked
     assert 1 in json.loads(made.AxisMap)["map"]["reason"], "axes that the machine does not hold are grey on the map"
+
+
+@pytest.fixture
+def clamped(document):
+    """A block with its top at z = 10, and a post beside it whose near side is 12 mm from x = 0."""
+    import Part
+
+    for name, size, corner in (("Block", (40, 40, 10), (-20, -20, 0)), ("Post", (10, 10, 60), (12, -5, 0))):
+        document.addObject("Part::Feature", name).Shape = Part.makeBox(*size, Vector(*corner))
+    return [meetings.Copy(thing.Name, f"the {thing.Name}", thing.Shape) for thing in document.Objects]
+
+
+@pytest.mark.parametrize(("tip", "member", "thing"), [
+    ((-5, 0, 10), None, None), ((-5, 0, 9.95), None, None), ((-5, 0, 9), "cutter", "Block"),
+    ((3, 0, 12), "holder", "Post"), ((1.5, 0, 12), None, None)])
+def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member, thing):
+    """The holder of 20 mm begins 30 mm above the tip; the top of the block and the post are where they are."""
+    known = meetings.around(mounted, [TOOL], clamped, NO_PROGRESS)
+    journey = Journey.through(mounted, [(np.array(tip, dtype=float), np.zeros(2))])
+    found, = meetings.along(known, journey, [0], NO_PROGRESS)
+    passes = known.on_passes(0, np.zeros(2), np.array([[-5.0, 0.0, 20.0], tip]))
+    if member is None:
+        assert found is None and passes is None
+        return
+    assert (found.member, found.thing, found.body) == (member, thing, "") and (found.member, found.thing) == (
+        passes.member, passes.thing)
+    assert found.text.startswith(f"the {member} meets face ") and f" of the {thing} by 1.0 mm" in found.text
+
+
+def test_what_meets_on_the_way_is_found_between_stations(mounted, clamped):
+    """With little room above it the tool goes from one side of the post to the other through it."""
+    axes = tuple(replace(axis, high=130.0) if axis.name == "Z" else axis for axis in mounted.machine.linear)
+    low = replace(mounted, machine=replace(mounted.machine, linear=axes))
+    journey = Journey.through(low, [(np.array([x, 0.0, 12.0]), np.zeros(2)) for x in (-5.0, 40.0)])
+    known = meetings.around(low, [TOOL], clamped, NO_PROGRESS)
+    found = meetings.along(known, journey, [0, 0], NO_PROGRESS)
+    assert len(found) == meetings.STEPS + 1 and found[0] is None and found[-1] is None
+    assert {one.thing for one in found if one} == {"Post"}
+    with pytest.raises(Cancelled):
+        meetings.along(known, journey, [0, 0], Progress(cancelled=lambda: True))

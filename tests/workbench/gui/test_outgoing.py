@@ -192,6 +192,41 @@ def test_bodies_that_meet_are_red(desk, leaning):
     desk.shot("73-collision")
 
 
+def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
+    """A post that nobody ticked stands beside the first part, as high as the holder."""
+    document = leaning[0].Document
+    clamp = document.addObject("Part::Box", "Clamp")
+    clamp.Length, clamp.Width, clamp.Height = 6, 6, 90
+    clamp.Placement.Base = Vector(26, 4, 0)
+    document.recompute()
+    for thing in document.Objects:  # axes and rapid moves are red too
+        if thing.TypeId.endswith("CoordinateSystem") or thing.TypeId == "Path::Feature":
+            thing.ViewObject.Visibility = False
+    form = machine_panel(desk, "bc-table-table", (0, 0, 20))
+    desk.wait(lambda: "meets face" in form.message.text(), "collisions are looked for")
+    assert form.message.text().startswith(leaning[0].Label) and "of Clamp by" in form.message.text()
+    assert "of Clamp by" in form.angles.item(0, 0).text() + form.angles.item(0, 1).text()
+    assert "of Clamp by" in form.pointer.text(), form.pointer.text()
+    desk.shot("74-clamp-met")
+    red, there = seen_red(desk, document, tmp_path), form.pointer.text()
+    form.slide.setValue(500)
+    desk.pump(0.2)
+    assert form.pointer.text() != there and "Clamp" not in form.pointer.text(), form.pointer.text()
+    desk.shot("75-clamp-free")
+    assert seen_red(desk, document, tmp_path) < 0.2 * red
+
+
+def seen_red(desk, document, folder):
+    """How many points of a picture of the 3D view are red, as things that meet are."""
+    from PySide import QtGui
+
+    path = str(folder / "view.png")
+    desk.gui.getDocument(document.Name).ActiveView.saveImage(path, 700, 450, "White")
+    image = QtGui.QImage(path)
+    points = [image.pixelColor(x, y) for x in range(image.width()) for y in range(image.height())]
+    return sum(one.red() > 90 and one.red() > 2.5 * max(one.green(), one.blue()) for one in points)
+
+
 @pytest.fixture
 def recorded(monkeypatch, desk):
     """What goes to FreeCAD's recorder of macros, line by line; FreeCAD still gets it."""

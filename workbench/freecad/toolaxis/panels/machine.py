@@ -2,14 +2,14 @@
 
 import FreeCAD
 import FreeCADGui
-import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from .. import RESOURCES
-from ..machines import available, in_order, mounting, text_of, texts_of
+from .. import RESOURCES, meetings
+from ..machines import available, text_of, texts_of
 from ..objects.machine import machine_of, place_machine
 from ..tasks import Work, sentence
 from .fields import load_form, tell
+from .machinelook import looked_at, met_by, middle_of, names_of, things_of, tip_of
 from .machinemotion import Journey, meeting
 from .machinescene import MachineScene
 from .panel import Panel
@@ -38,7 +38,8 @@ class MachinePanel(Panel):
         self.operations = list(operations)
         self.scene = MachineScene(document)
         self.found = self.journey = None
-        self.stations = []
+        self.stations, self.tools = [], []
+        self.met, self.held = [], {}
         self.timer = QtCore.QTimer(self.form)
         self.timer.setInterval(_FRAME)
         self._fill()
@@ -131,15 +132,17 @@ class MachinePanel(Panel):
         self._leave()
         self.timer.stop()
         self.found = self.journey = None
+        self.met, self.held = [], {}
         self.scene.clear()
         try:
             stands = [Standing.of(operation) for operation in self.operations]
             tools = [inputs_of(operation).assembled() for operation in self.operations]
+            self.copies = meetings.copies(self.operations)
         except Exception as reason:
             self._not_found(sentence(reason))
             return
         text = text_of(self.machine, self.offset)
-        self.work = Work(lambda progress: _looked_at(text, stands, tools))
+        self.work = Work(lambda progress: looked_at(text, stands, tools))
         self.work.done.connect(lambda found: self._looked(found, stands))
         self.work.failed.connect(self._not_found)
         tell(self.form.message, translate("ToolAxis", "Looking at all operations"))
@@ -167,19 +170,62 @@ class MachinePanel(Panel):
             self.scene.show(mounted, tools[self.stations[0][0]])
             self._travel(stands)
         if lost:
-            tell(self.form.message, translate("ToolAxis", "Not held by this machine: {}").format(", ".join(lost)), True)
+            self.told = translate("ToolAxis", "Not held by this machine: {}").format(", ".join(lost)), True
         elif not mounted.judges_travel:
-            tell(self.form.message, translate("ToolAxis", "Every axis can be held. Travels are not looked at: the tool "
-                                                          "has no holder."))
+            self.told = translate("ToolAxis", "Every axis can be held. Travels are not looked at: the tool has no "
+                                              "holder."), False
         else:
-            tell(self.form.message, translate("ToolAxis", "Every axis can be held. OK puts the machine into the "
-                                                          "document."))
+            self.told = translate("ToolAxis", "Every axis can be held. OK puts the machine into the document."), False
+        tell(self.form.message, *self.told)
+        if self.stations:
+            self._look_out()
         self._show()
+
+    def _look_out(self):
+        """Look for what the tool and the machine meet of parts and clamps, off the GUI thread."""
+        mounted, rows, tools = self.found
+        paths, copies, stations = [stand.path for stand in self.stands], self.copies, list(self.stations)
+        self.work = Work(lambda progress: met_by(mounted, (rows, tools, paths), copies, stations, progress))
+        self.work.done.connect(self._looked_out)
+        self.work.failed.connect(lambda text: self._not_looked_out(text))
+        self.work.start()
+
+    def _looked_out(self, found):
+        """Stop where something meets, and say so."""
+        self.work = None
+        self.held, journey, self.met = found
+        at = self.form.slide.value()
+        self.journey = journey
+        for (row, column), one in self.held.items():
+            item = self.form.angles.item(row, column)
+            if one is not None and not self.found[1][row][0][column].reason:
+                item.setText(f"{item.text()}\n{one.text}")
+                item.setToolTip(one.text)
+        self.form.angles.resizeRowsToContents()
+        tell(self.form.message, *self._verdict())
+        self._slide(at)
+
+    def _not_looked_out(self, text):
+        self.work = None
+        tell(self.form.message, translate("ToolAxis", "{} Collisions with the part could not be looked for: {}").format(
+            self.told[0], text), True)
+
+    def _verdict(self):
+        """What is told above the table: where an operation, or a way between two, meets something."""
+        for row, column in self.stations:
+            if self.held.get((row, column)) is not None:
+                return f"{self.operations[row].Label}: {self.held[row, column].text}", True
+        k = next((k for k, one in enumerate(self.met) if one is not None), None)
+        if k is None:
+            return self.told
+        row, other = (self.stations[min(k // meetings.STEPS + j, len(self.stations) - 1)][0] for j in (0, 1))
+        return translate("ToolAxis", "On the way from {} to {}: {}").format(
+            self.operations[row].Label, self.operations[other].Label, self.met[k].text), True
 
     def _travel(self, stands):
         """Show the machine on its way through the operations."""
         mounted, rows, _ = self.found
-        self.journey = Journey.through(mounted, [(_middle(stands[k].path), rows[k][0][way].rotary)
+        self.journey = Journey.through(mounted, [(middle_of(stands[k].path), rows[k][0][way].rotary)
                                                  for k, way in self.stations])
         self.stands = stands
         self.form.slide.setMaximum(max(1000 * (len(self.stations) - 1), 1))
@@ -229,16 +275,25 @@ class MachinePanel(Panel):
     def _slide(self, value):
         if self.journey is None:
             return
-        mounted = self.found[0]
+        mounted, near = self.found[0], self._near(value / 1000)
         joints = self.journey.at(value / 1000)
         red, depth = meeting(mounted, joints)
-        self.scene.stand(joints, red, self.form.still.isChecked())
+        self.scene.stand(joints, red | names_of(near), self.form.still.isChecked())
+        self.scene.redden(things_of(near, self.document))
         at = mounted.at(joints[3:]).removeprefix(" at ")
         linear = "  ".join(f"{axis.name} {x:.1f}" for axis, x in zip(mounted.machine.linear, joints[:3], strict=True))
         text = f"{linear}  {at}"
         if red:
             text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(", ".join(sorted(red)), f"{depth:.1f}")
-        tell(self.form.pointer, text, bool(red))
+        if near is not None:
+            text += f"\n{near.text}"
+        tell(self.form.pointer, text, bool(red) or near is not None)
+
+    def _near(self, way):
+        """What meets there, or at the next place beside it that was looked at; None where nothing does."""
+        low = int(way * meetings.STEPS)
+        some = self.met[low:low + (1 if way * meetings.STEPS == low else 2)]
+        return next((one for one in some if one is not None), None)
 
     def _clicked(self, row, column):
         """Show one solution of one operation, also one that cannot be held."""
@@ -249,11 +304,13 @@ class MachinePanel(Panel):
             self.form.slide.setValue(1000 * self.stations.index((row, column)))
             return
         mounted, rows, _ = self.found
-        joints = Journey.through(mounted, [(_middle(self.stands[row].path), rows[row][0][column].rotary)]).joints[0]
+        way, path, one = rows[row][0][column], self.stands[row].path, self.held.get((row, column))
+        joints = Journey.through(mounted, [(tip_of(path, one), way.rotary)]).joints[0]
         red, _ = meeting(mounted, joints)
-        self.scene.stand(joints, red, self.form.still.isChecked())
-        tell(self.form.pointer, f"{rows[row][0][column].text(mounted.machine)}: {rows[row][0][column].reason}",
-             bool(rows[row][0][column].reason))
+        self.scene.stand(joints, red | names_of(one), self.form.still.isChecked())
+        self.scene.redden(things_of(one, self.document))
+        reasons = [text for text in (way.reason, one.text if one is not None else "") if text]
+        tell(self.form.pointer, f"{way.text(mounted.machine)}: {'; '.join(reasons)}", bool(reasons))
 
     def _play(self):
         if self.timer.isActive():
@@ -285,17 +342,3 @@ class MachinePanel(Panel):
     def _let_go(self):
         self.timer.stop()
         self.scene.leave()
-
-
-def _looked_at(text, stands, tools):
-    """The machine, the solutions of all operations, and their tools; runs off the GUI thread."""
-    mounted = mounting(text, tools[0])
-    return mounted, in_order(mounted, [(stand.matrix[:3, 2], stand.path.cl) for stand in stands]), tools
-
-
-def _middle(path):
-    """A tip in the middle of the cuts."""
-    from toolaxis.cldata.toolpath import Motion
-
-    cuts = path.cl[np.asarray(path.kind) == Motion.CUT]
-    return cuts[len(cuts) // 2] if len(cuts) else path.cl[0]

@@ -1,15 +1,21 @@
-"""A machine around the part in the 3D view: table, trunnion, head and tool as they stand, what meets in red."""
+"""A machine around the part in the 3D view: table, trunnion, head and tool as they stand, what meets in red.
+
+Parts and clamps that something meets are drawn once more over themselves, in red: they keep their own colours.
+"""
 
 from contextlib import suppress
 
 import numpy as np
 from pivy import coin
 
+from ..places import carried, chain_of, matrix_of
 from .machinemotion import corners, places
-from .preview import _coloured, _revolved, solids, view_of
+from .preview import _COLOURS, _coloured, _revolved, solids, view_of
 
 _TABLE, _HEAD, _RED = (0.45, 0.55, 0.68), (0.72, 0.62, 0.42), (0.90, 0.05, 0.05)
 _CLEAR = {True: 0.45, False: 0.6}
+#: What is drawn over an object is nearer to the viewer by so many steps of the depth buffer.
+_NEARER = -2000.0
 
 
 class MachineScene:
@@ -23,7 +29,7 @@ class MachineScene:
     def __init__(self, document):
         self.name = document.Name
         self.root = self.view = self.mounted = self.seen = None
-        self.bed = np.eye(4)
+        self.bed, self.reddened = np.eye(4), []
 
     def show(self, mounted, tool):
         """Put a machine and a tool into the view.
@@ -57,9 +63,14 @@ class MachineScene:
         self.tool = coin.SoMatrixTransform()
         node = coin.SoSeparator()
         node.addChild(self.tool)
+        self.members = []
         for solid in solids(tool):
-            node.addChild(_revolved(*solid))
+            member = _revolved(*solid)
+            node.addChild(member)
+            self.members.append((solid[0], member.getChild(1), _COLOURS.get(solid[0], _COLOURS["shank"])))
         self.root.addChild(node)
+        self.over = coin.SoSeparator()
+        self.root.addChild(self.over)
         self.view.getSceneGraph().addChild(self.root)
 
     def stand(self, joints, red, still):
@@ -69,7 +80,7 @@ class MachineScene:
         ----------
         joints : (3 + m,) array
         red : set of str
-            Names of bodies that meet something.
+            Names of bodies, and of members of the tool, that meet something.
         still : bool
             Whether the camera stays with the machine's bed; else with the part.
         """
@@ -81,12 +92,28 @@ class MachineScene:
         for body, transform, material, colour in self.bodies:
             transform.matrix.setValue(*_matrix(found[body.carried]))
             material.diffuseColor.setValue(*(_RED if body.name in red else colour))
+        for name, material, colour in self.members:
+            material.diffuseColor.setValue(*(_RED if name in red else colour))
         tip, axis = forward(self.mounted.machine, joints[None], float(self.mounted.tool_length or 0.0),
                             self.mounted.table_from_part)
         self.tool.matrix.setValue(*_matrix(_upright(tip[0], axis[0])))
         if still:
             self._follow(found["bed"] @ np.linalg.inv(self.bed))
         self.bed = found["bed"]
+
+    def redden(self, things):
+        """Show objects in red, and all others as they are.
+
+        Parameters
+        ----------
+        things : sequence of App.DocumentObject
+        """
+        if self.root is None or [thing.Name for thing in things] == self.reddened:
+            return
+        self.over.removeAllChildren()
+        self.reddened = [thing.Name for thing in things]
+        for thing in things:
+            self.over.addChild(_red_over(thing))
 
     def _follow(self, motion):
         """Carry the camera along with a rigid motion."""
@@ -125,7 +152,25 @@ class MachineScene:
     def forget(self):
         """Let go without touching the view."""
         self.root = self.view = self.mounted = None
-        self.bed = np.eye(4)
+        self.bed, self.reddened = np.eye(4), []
+
+
+def _red_over(thing):
+    """An object's own picture once more, in red and a little nearer to the viewer."""
+    node, place, material, offset = (coin.SoSeparator(), coin.SoMatrixTransform(), coin.SoMaterial(),
+                                     coin.SoPolygonOffset())
+    chain = chain_of(thing)
+    place.matrix.setValue(*_matrix(matrix_of(carried(chain).multiply(thing.Placement.inverse()))))
+    material.diffuseColor.setValue(*_RED)
+    offset.factor, offset.units = -2.0, _NEARER
+    offset.styles = coin.SoPolygonOffset.FILLED | coin.SoPolygonOffset.LINES
+    binding = coin.SoMaterialBinding()
+    binding.value = coin.SoMaterialBinding.OVERALL
+    for one in (material, binding, offset):
+        one.setOverride(True)
+    for one in (place, material, binding, offset, thing.ViewObject.RootNode):
+        node.addChild(one)
+    return node
 
 
 def _matrix(matrix):

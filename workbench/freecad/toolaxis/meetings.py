@@ -1,0 +1,205 @@
+"""What tool, head and table meet of the parts and of what stands beside them, at each operation and between two."""
+
+from dataclasses import dataclass, replace
+
+#: Looks between two operations, and how deep two things lie in one another before they meet, mm: the cutter touches
+#: what it cuts, and faces are known to a few hundredths.
+STEPS, DEPTH = 20, 0.1
+
+
+@dataclass(frozen=True)
+class Copy:
+    """An object of a document as a shape that other threads may read.
+
+    Attributes
+    ----------
+    name, label : str
+        Of the object.
+    shape : Part.Shape
+        In the document's space.
+    """
+
+    name: str
+    label: str
+    shape: object
+
+
+@dataclass(frozen=True)
+class Met:
+    """What meets, where a machine stands.
+
+    Attributes
+    ----------
+    text : str
+        The sentence.
+    member : str
+        The body of the machine, or "cutter", "shank" or "holder".
+    thing : str
+        Name of the object that it meets; empty for another body of the machine.
+    body : str
+        That body; empty for an object.
+    motion : int
+        Number of the motion of the passes.
+    """
+
+    text: str
+    member: str
+    thing: str
+    body: str
+    motion: int
+
+
+@dataclass(frozen=True)
+class Around:
+    """Parts and bodies, as the library knows them, on a machine with the tool of each operation.
+
+    Attributes
+    ----------
+    mounted : toolaxis.machine.mounting.Mounting
+    surroundings : tuple of toolaxis.contact.machinery.Surroundings
+        One for each operation.
+    names : dict of str to str
+        Names of objects by what their faces are called after their numbers.
+    """
+
+    mounted: object
+    surroundings: tuple
+    names: dict
+
+    def on_passes(self, row, rotary, tips):
+        """Where an operation meets something at all, at rotary angles; None where it does not.
+
+        Parameters
+        ----------
+        row : int
+            Number of the operation, from 0.
+        rotary : (m,) array
+            rad
+        tips : (n, 3) array
+            mm, document's space.
+
+        Returns
+        -------
+        Met or None
+        """
+        from toolaxis.contact.machinery import nearest_meeting
+
+        found = nearest_meeting(self.mounted, rotary, tips, self.surroundings[row], with_tool=True)
+        return self._told(found, rotary)
+
+    def at(self, row, joints):
+        """What meets where a machine stands, with the tool of an operation; None where nothing does.
+
+        Parameters
+        ----------
+        row : int
+        joints : (3 + m,) array
+            mm, rad
+
+        Returns
+        -------
+        Met or None
+        """
+        from toolaxis.contact.machinery import meeting_on
+        from toolaxis.numeric.convex import places
+
+        found = meeting_on(self.mounted, joints[3:], places(joints[None, :3]), self.surroundings[row])
+        return self._told(found, joints[3:])
+
+    def _told(self, found, rotary):
+        from toolaxis.contact.machinery import words
+
+        if found is None:
+            return None
+        _, _, label = found.other.partition(" of ")
+        name = self.names.get(label, "")
+        known = {body.name for body in self.mounted.machine.bodies}
+        if not name and found.other not in known:  # something lies wholly inside; of which object is not told
+            name = next(iter(self.names.values()), "")
+        text = words(self.mounted, rotary, found, 0.0).removesuffix(self.mounted.at(rotary))
+        return Met(text.replace("the face", "face", 1), found.one, name, found.other if not name else "", found.motion)
+
+
+def copies(operations):
+    """What operations machine, what they avoid, and what else is in sight, each once.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+        Of one document; those whose part was deleted have none.
+
+    Returns
+    -------
+    list of Copy
+    """
+    from toolaxis.cad.freecad import name_of, shape_of
+
+    from .bodies import bodies_in
+    from .inputs import inputs_of
+
+    jobs = [inputs_of(operation) for operation in operations]
+    parts = list({thing.Name: thing for job in jobs for thing in job.things}.values())
+    avoided = [thing for job in jobs for thing in job.obstacles]
+    seen = [body for body in bodies_in(operations[0].Document, parts) if body.Visibility] if operations else []
+    found = {thing.Name: thing for thing in (*parts, *avoided, *seen)}
+    return [Copy(thing.Name, name_of(thing), shape_of(thing).copy()) for thing in found.values()]
+
+
+def around(mounted, tools, found, progress):
+    """Read copies for a machine; runs in any thread.
+
+    Parameters
+    ----------
+    mounted : toolaxis.machine.mounting.Mounting
+        With a place of the part on the table.
+    tools : sequence of toolaxis.tools.assembly.Tool
+        One for each operation.
+    found : sequence of Copy
+    progress : toolaxis.progress.Progress
+
+    Returns
+    -------
+    Around
+    """
+    from toolaxis.cad.freecad import part_from
+    from toolaxis.contact.machinery import Surroundings
+    from toolaxis.progress import heard
+    from toolaxis.shape.cells import forest
+
+    names, cells = {}, []
+    for k, copy in enumerate(found):
+        progress.report("reading the bodies", k, len(found))
+        label = copy.label if copy.label not in names else f"{copy.label} ({copy.name})"
+        names[label] = copy.name
+        with heard(progress):
+            faces = [replace(face, label=f"{face.number} of {label}") for face in part_from(copy.shape).faces]
+            if faces:
+                cells.append(forest(tuple(faces)))
+    return Around(mounted, tuple(Surroundings(tool, tuple(cells), -DEPTH) for tool in tools), names)
+
+
+def along(known, journey, rows, progress):
+    """What meets on the way through stations, at each and `STEPS` times on the way to the next one.
+
+    Parameters
+    ----------
+    known : Around
+    journey : object
+        With `at(way)` and `joints`, the stations.
+    rows : sequence of int
+        The operation of each station.
+    progress : toolaxis.progress.Progress
+
+    Returns
+    -------
+    list of Met or None
+        `STEPS` for each way, and one at the end.
+    """
+    from toolaxis.progress import heard
+
+    count, found = STEPS * (len(journey.joints) - 1) + 1, []
+    with heard(progress):
+        for k in range(count):
+            progress.report("looking for collisions", k, count)
+            found.append(known.at(rows[k // STEPS], journey.at(k / STEPS)))
+    return found

@@ -1,0 +1,54 @@
+"""What the panel of Machine looks at off the GUI thread, and what of it is shown in red."""
+
+import numpy as np
+
+from .. import meetings
+from ..machines import in_order, mounting
+from .machinemotion import Journey
+
+
+def looked_at(text, stands, tools):
+    """The machine, the solutions of all operations, and their tools; runs off the GUI thread."""
+    mounted = mounting(text, tools[0])
+    return mounted, in_order(mounted, [(stand.matrix[:3, 2], stand.path.cl) for stand in stands]), tools
+
+
+def met_by(mounted, planned, copies, stations, progress):
+    """What each solution of each operation meets, the way through stations, and what meets on it; off the GUI thread.
+
+    The machine stands where an operation meets something, else in the middle of its cuts.
+    """
+    rows, tools, paths = planned
+    known = meetings.around(mounted, tools, copies, progress)
+    held = {}
+    for row, (ways, _) in enumerate(rows):
+        for column, way in enumerate(ways):
+            progress.report("looking for collisions", row, len(rows))
+            held[row, column] = known.on_passes(row, way.rotary, paths[row].cl)
+    journey = Journey.through(mounted, [(tip_of(paths[row], held[row, column]), rows[row][0][column].rotary)
+                                        for row, column in stations])
+    return held, journey, meetings.along(known, journey, [row for row, _ in stations], progress)
+
+
+def names_of(one):
+    """Bodies and members of the tool that are red."""
+    return set() if one is None else {one.member, one.body} - {""}
+
+
+def things_of(one, document):
+    """Objects of the document that are red."""
+    thing = None if one is None or not one.thing else document.getObject(one.thing)
+    return [] if thing is None else [thing]
+
+
+def tip_of(path, one):
+    """The tip where an operation meets something, else one in the middle of its cuts."""
+    return middle_of(path) if one is None else path.cl[min(one.motion + 1, len(path.cl) - 1)]
+
+
+def middle_of(path):
+    """A tip in the middle of the cuts."""
+    from toolaxis.cldata.toolpath import Motion
+
+    cuts = path.cl[np.asarray(path.kind) == Motion.CUT]
+    return cuts[len(cuts) // 2] if len(cuts) else path.cl[0]
