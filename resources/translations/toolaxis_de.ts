@@ -83,6 +83,10 @@
    <translation>Jede Achse kann gehalten werden. Verfahrwege werden nicht geprüft: das Werkzeug hat keinen Halter.</translation>
   </message>
   <message>
+   <source>Every face has an axis, but two-point contact has one contact everywhere; the reasons are on the tab Axis. OK puts them into the document.</source>
+   <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf der Karte Achse. OK stellt sie ins Dokument.</translation>
+  </message>
+  <message>
    <source>Every face has an axis. OK puts them into the document.</source>
    <translation>Jede Fläche hat eine Achse. OK stellt sie ins Dokument.</translation>
   </message>
@@ -371,8 +375,8 @@
    <translation>Die Achse bewegt sich längs der Bahnen: Linien in der 3D-Ansicht zeigen sie.</translation>
   </message>
   <message>
-   <source>The cutter touches the face at two points. Needs a flat end or bull nose, and a hollow face.</source>
-   <translation>Der Fräser berührt die Fläche an zwei Punkten. Braucht einen Schaft- oder Torusfräser und eine hohle Fläche.</translation>
+   <source>The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose.</source>
+   <translation>Der Fräser berührt die Fläche an zwei Punkten, wo sie hohl ist. Braucht einen Schaft- oder Torusfräser.</translation>
   </message>
   <message>
    <source>The map could not be drawn.</source>

@@ -14,6 +14,7 @@ from freecad.toolaxis.cam_jobs import make_jobs
 from freecad.toolaxis.exporting import plan_task
 from freecad.toolaxis.objects.axislines import MOST, is_lines
 from freecad.toolaxis.objects.belongings import child
+from freecad.toolaxis.panels.outcome import touched_once
 from freecad.toolaxis.standing import Standing
 
 from toolaxis.errors import InvalidInput, ToolAxisError
@@ -151,12 +152,14 @@ def split_blade(document):
     return thing, f"Face{len(shell.Faces)}"
 
 
-def test_faces_around_a_blade_are_one_in_the_tree_too(document):
+@pytest.mark.parametrize("strategy", [pytest.param("blade", marks=pytest.mark.long), "blade-keys"])
+def test_faces_around_a_blade_are_one_in_the_tree_too(document, strategy):
     thing, name = split_blade(document)
-    made, = bridge.plan(document, (thing, name), "ball:8", 1.0, strategy="blade", limits="machine:four-axis-a",
+    made, = bridge.plan(document, (thing, name), "ball:8", 1.0, strategy=strategy, limits="machine:four-axis-a",
                         stickout=100.0, holder=((12.5, 0.0), (12.5, 60.0)), shank=None, direction="climb")
     label = json.loads(made.Details)["label"]
-    assert made.AxisMoves and label.startswith(f"{name[4:]}+") and made.Label.endswith(label)
+    assert made.AxisMoves and made.Strategy == strategy
+    assert label.startswith(f"{name[4:]}+") and made.Label.endswith(label)
     op, = plan_task([made])(NO_PROGRESS).operations
     assert op.face.label == label and op.path.passes == made.Passes
     assert op.face.area == pytest.approx(sum(thing.Shape.Faces[k - 1].Area for k in op.face.numbers), rel=1e-3)
@@ -164,17 +167,21 @@ def test_faces_around_a_blade_are_one_in_the_tree_too(document):
 
 
 @pytest.mark.long
-def test_two_point_contact_is_refused_on_a_convex_face(document, parts):
+def test_two_point_contact_on_a_convex_face_is_planned_with_one_as_by_the_command(document, parts):
+    import toolaxis as ta
+
     surface = Part.BSplineSurface()
     surface.interpolate([[Vector(x, y, 10 - 0.02 * (x - 10) ** 2 - 0.02 * (y - 8) ** 2) for y in range(0, 17, 4)]
                          for x in range(0, 21, 5)])
     thing = document.addObject("Part::Feature", "Convex")
     thing.Shape = surface.toShape()
     document.recompute()
-    with pytest.raises(ToolAxisError, match=r"touched at two points nowhere .*choose another strategy"):
-        bridge.plan(document, (thing, "Face1"), parts.TOOL, parts.SCALLOP, shank=None, holder=parts.HOLDER,
-                    stickout=25.0, strategy="two-point")
-    assert [one.Name for one in document.Objects] == ["Convex"]
+    made, = bridge.plan(document, (thing, "Face1"), parts.TOOL, 0.3, shank=None, holder=parts.HOLDER, stickout=25.0,
+                        strategy="two-point")
+    theirs = ta.plan(thing, ta.Tool.parse(parts.TOOL, stickout=25.0, holder=parts.HOLDER), 0.3, strategy="two-point")
+    assert made.AxisMoves and made.Passes == theirs.operations[0].orientation.passes
+    assert list(made.Reasons) == list(theirs.operations[0].orientation.reasons)
+    assert any(why.startswith("one contact") for why in made.Reasons) and touched_once(theirs)
 
 
 def test_a_strategy_that_comes_to_nothing_leaves_the_tree_as_it_is(document, parts):

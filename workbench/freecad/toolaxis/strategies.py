@@ -16,7 +16,7 @@ _ON_MACHINES = {"four-plus-one": "clamps one rotary axis of a machine and turns 
                 ROUGH: "has the rotary axes of a machine turn least"}
 
 #: How the reason begins that tells how much of the passes has two contacts.
-_TWICE = "two contacts on"
+TWICE = "two contacts on"
 
 
 def check_strategy(inputs):
@@ -83,7 +83,7 @@ def refuse_in_vain(plan):
     Raises
     ------
     UnsupportedGeometry
-        When no sub-surface has passes, or two-point contact touches none at two points.
+        When no sub-surface has passes.
     """
     from toolaxis.errors import UnsupportedGeometry
 
@@ -94,10 +94,6 @@ def refuse_in_vain(plan):
     if not done:
         why = (one.orientation.reasons or (f"outcome {one.orientation.outcome}",))[0]
         raise UnsupportedGeometry(f"strategy {method!r} does not serve face {one.face.label}: {why}")
-    if method == "two-point" and not any(why.startswith(_TWICE) for op in done for why in op.orientation.reasons):
-        why = next((why for why in done[0].orientation.reasons if why.startswith("one contact")), "one contact")
-        raise UnsupportedGeometry(f"face {done[0].face.label} is touched at two points nowhere ({why}): choose another "
-                                  "strategy")
 
 
 def needs(strategy):
@@ -113,8 +109,8 @@ def needs(strategy):
     return {
         "four-plus-one": translate("ToolAxis", "One rotary axis is clamped, the other turns along the passes. Needs a "
                                                "machine on the tab Limits."),
-        "two-point": translate("ToolAxis", "The cutter touches the face at two points. Needs a flat end or bull nose, "
-                                           "and a hollow face."),
+        "two-point": translate("ToolAxis", "The cutter touches the face at two points where that is hollow. "
+                                           "Needs a flat end or bull nose."),
         "sturz": translate("ToolAxis", "The axis leans by one angle from the normal, along the feed."),
         ROUGH: translate("ToolAxis", "Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose "
                                      "and a machine on the tab Limits."),

@@ -2,6 +2,8 @@
 
 import FreeCAD
 
+from ..strategies import TWICE
+
 translate = FreeCAD.Qt.translate
 
 
@@ -25,6 +27,9 @@ def outcome_sentence(plan):
         return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
             count), True
     done, left = sum(op.done for op in plan.operations), len(left_to_clean_up(plan))
+    if done == count and touched_once(plan):
+        return translate("ToolAxis", "Every face has an axis, but two-point contact has one contact everywhere; the "
+                                     "reasons are on the tab Axis. OK puts them into the document."), True
     if done == count:
         return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
     if done and done + left == count:
@@ -36,6 +41,17 @@ def outcome_sentence(plan):
                                                                             count - done - left), True
     return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(
         done, count), True
+
+
+def touched_once(plan):
+    """Whether two-point contact was asked for and no sub-surface has any.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+    """
+    return plan.inputs.method == "two-point" and not any(
+        why.startswith(TWICE) for op in plan.operations for why in op.orientation.reasons)
 
 
 def left_to_clean_up(plan):
