@@ -84,7 +84,7 @@
   </message>
   <message>
    <source>Every face has an axis, but two-point contact has one contact everywhere; the reasons are on the tab Axis. OK puts them into the document.</source>
-   <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf der Karte Achse. OK stellt sie ins Dokument.</translation>
+   <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf dem Reiter Achse. OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>Every face has an axis. OK puts them into the document.</source>
@@ -895,6 +895,10 @@
    <source>Verify</source>
    <translation>Prüfen</translation>
   </message>
+  <message>
+   <source>What the axis of the operation comes to.</source>
+   <translation>Was die Achse der Operation ergibt.</translation>
+  </message>
  </context>
  <context>
   <name>ToolAxisPlan</name>
@@ -925,6 +929,10 @@
   <message>
    <source>Add the faces selected in the 3D view; a body stands for all its sculptured faces.</source>
    <translation>Fügt die in der 3D-Ansicht ausgewählten Flächen hinzu; ein Körper steht für alle seine Freiformflächen.</translation>
+  </message>
+  <message>
+   <source>Adds a row to the outline.</source>
+   <translation>Fügt dem Umriss eine Zeile hinzu.</translation>
   </message>
   <message>
    <source>Allowance</source>
@@ -1015,6 +1023,10 @@
    <translation>Vorschub</translation>
   </message>
   <message>
+   <source>Feed rate of the cutting motion.</source>
+   <translation>Vorschub der Schnittbewegung.</translation>
+  </message>
+  <message>
    <source>Flat end mill</source>
    <translation>Schaftfräser</translation>
   </message>
@@ -1031,12 +1043,20 @@
    <translation>Größter Winkel</translation>
   </message>
   <message>
+   <source>Greatest angle between the tool axis and the middle.</source>
+   <translation>Größter Winkel zwischen Werkzeugachse und Mitte.</translation>
+  </message>
+  <message>
    <source>Greatest height left between neighbouring passes.</source>
    <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
   </message>
   <message>
    <source>Greatest roughness across the feed.</source>
    <translation>Größte Rauheit quer zum Vorschub.</translation>
+  </message>
+  <message>
+   <source>Greatest turn of the tool axis about the middle.</source>
+   <translation>Größte Drehung der Werkzeugachse um die Mitte.</translation>
   </message>
   <message>
    <source>Half angle</source>
@@ -1079,12 +1099,24 @@
    <translation>Kleinste</translation>
   </message>
   <message>
+   <source>Least angle between the tool axis and the middle.</source>
+   <translation>Kleinster Winkel zwischen Werkzeugachse und Mitte.</translation>
+  </message>
+  <message>
+   <source>Least turn of the tool axis about the middle.</source>
+   <translation>Kleinste Drehung der Werkzeugachse um die Mitte.</translation>
+  </message>
+  <message>
    <source>Limits</source>
    <translation>Grenzen</translation>
   </message>
   <message>
    <source>Limits of the tool axis</source>
    <translation>Grenzen der Werkzeugachse</translation>
+  </message>
+  <message>
+   <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>
+   <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
   </message>
   <message>
    <source>Method</source>
@@ -1095,8 +1127,28 @@
    <translation>Mitte</translation>
   </message>
   <message>
+   <source>Middle of the allowed axes, x.</source>
+   <translation>Mitte der erlaubten Achsen, x.</translation>
+  </message>
+  <message>
+   <source>Middle of the allowed axes, y.</source>
+   <translation>Mitte der erlaubten Achsen, y.</translation>
+  </message>
+  <message>
+   <source>Middle of the allowed axes, z.</source>
+   <translation>Mitte der erlaubten Achsen, z.</translation>
+  </message>
+  <message>
    <source>Moves tool and holder along the passes.</source>
    <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
+  </message>
+  <message>
+   <source>Number of different tool axes at most.</source>
+   <translation>Höchste Zahl verschiedener Werkzeugachsen.</translation>
+  </message>
+  <message>
+   <source>Number of sub-surfaces of each face.</source>
+   <translation>Zahl der Teilflächen jeder Fläche.</translation>
   </message>
   <message>
    <source>Other feed</source>
@@ -1127,6 +1179,10 @@
    <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
   </message>
   <message>
+   <source>Radius of the rounded corner.</source>
+   <translation>Radius der gerundeten Ecke.</translation>
+  </message>
+  <message>
    <source>Remove</source>
    <translation>Entfernen</translation>
   </message>
@@ -1137,6 +1193,14 @@
   <message>
    <source>Remove the marked faces from the list.</source>
    <translation>Entfernt die markierten Flächen aus der Liste.</translation>
+  </message>
+  <message>
+   <source>Removes the marked rows, or the last one.</source>
+   <translation>Entfernt die markierten Zeilen, sonst die letzte.</translation>
+  </message>
+  <message>
+   <source>Revolutions of the spindle per minute.</source>
+   <translation>Umdrehungen der Spindel in der Minute.</translation>
   </message>
   <message>
    <source>Roman's rule</source>
@@ -1159,6 +1223,10 @@
    <translation>Form</translation>
   </message>
   <message>
+   <source>Shape of the cutter's end.</source>
+   <translation>Form des Fräserendes.</translation>
+  </message>
+  <message>
    <source>Spindle</source>
    <translation>Spindel</translation>
   </message>
@@ -1173,6 +1241,10 @@
   <message>
    <source>Stop</source>
    <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Stops the computation; what is found of whole faces by then stays.</source>
+   <translation>Hält die Berechnung an; was bis dahin für ganze Flächen gefunden ist, bleibt.</translation>
   </message>
   <message>
    <source>Strategy</source>
@@ -1203,6 +1275,10 @@
    <translation>Neigung</translation>
   </message>
   <message>
+   <source>To and fro, or all passes one way so that the cutter climbs or cuts conventionally.</source>
+   <translation>Hin und her, oder alle Bahnen in einer Richtung, im Gleichlauf oder im Gegenlauf.</translation>
+  </message>
+  <message>
    <source>Tool</source>
    <translation>Werkzeug</translation>
   </message>
@@ -1223,6 +1299,14 @@
    <translation>Diese Achse verwenden</translation>
   </message>
   <message>
+   <source>What other methods need for the same faces.</source>
+   <translation>Was andere Verfahren für dieselben Flächen brauchen.</translation>
+  </message>
+  <message>
+   <source>What the axis comes to, and beside it what the one comes to that is tried.</source>
+   <translation>Was die Achse ergibt, und daneben, was die versuchte ergibt.</translation>
+  </message>
+  <message>
    <source>What the tool axis is chosen by.</source>
    <translation>Wonach die Werkzeugachse gewählt wird.</translation>
   </message>
@@ -1237,6 +1321,10 @@
   <message>
    <source>Whether the tool axis stands still while it cuts, or how it moves.</source>
    <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
+  </message>
+  <message>
+   <source>Which tool axes are allowed: all, those in a cone, those in ranges of two angles, or those of a machine.</source>
+   <translation>Welche Werkzeugachsen erlaubt sind: alle, die in einem Kegel, die in Bereichen zweier Winkel oder die einer Maschine.</translation>
   </message>
   <message>
    <source>any axis</source>
@@ -1453,8 +1541,16 @@
    <translation>Gezeigt</translation>
   </message>
   <message>
+   <source>Removes material along the passes and measures what is left.</source>
+   <translation>Trägt Material entlang der Bahnen ab und misst, was bleibt.</translation>
+  </message>
+  <message>
    <source>Stop</source>
    <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>Stops the judge.</source>
+   <translation>Hält die Prüfung an.</translation>
   </message>
   <message>
    <source>Verify</source>
@@ -1463,6 +1559,14 @@
   <message>
    <source>What the colours on the face show.</source>
    <translation>Was die Farben auf der Fläche zeigen.</translation>
+  </message>
+  <message>
+   <source>What the judge measured, and what is allowed.</source>
+   <translation>Was die Prüfung gemessen hat, und was erlaubt ist.</translation>
+  </message>
+  <message>
+   <source>Which operation is shown.</source>
+   <translation>Welche Operation gezeigt wird.</translation>
   </message>
   <message>
    <source>Worst points; a click zooms to one</source>

@@ -58,3 +58,42 @@ def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
     for name in ("plan", "operation", "verify"):
         fields.load_form(name)
     assert len(loaded) == 3
+
+
+#: Classes of widgets that show or hold others, and what is done by mouse or keys goes to those.
+PASSIVE = ("QWidget", "QLabel", "QGroupBox", "QProgressBar", "QTabWidget", "QFrame", "QScrollArea")
+
+
+def layouts():
+    """Each layout with its own widgets but for passive ones, (name, class, element)."""
+    from pathlib import Path
+    from xml.etree import ElementTree
+
+    for path in sorted((Path(__file__).resolve().parents[3] / "resources" / "ui").glob("*.ui")):
+        yield path.stem, [(widget.get("name"), widget.get("class"), widget)
+                          for widget in ElementTree.parse(path).iter("widget") if widget.get("class") not in PASSIVE]
+
+
+def test_every_widget_tells_what_it_is_for(desk):
+    """Tooltips, and the same or more for "What's this?"; the preferences' page is loaded by FreeCAD itself."""
+    from freecad.toolaxis.panels.fields import load_form
+
+    for layout, widgets in layouts():
+        form = None if layout == "preferences" else load_form(layout)
+        for name, _, element in widgets:
+            if form is None:
+                texts = [element.findtext(f"property[@name='{one}']/string", "") for one in ("toolTip", "whatsThis")]
+            else:
+                widget = getattr(form, name)
+                texts = [widget.toolTip(), widget.whatsThis()]
+            assert all(len(text) > 10 and text.endswith(".") for text in texts), (layout, name, texts)
+
+
+def test_numbers_have_ends_that_they_may_have(desk):
+    """Spin boxes of the layouts name both ends; fields of quantities take all, and what is wrong is told below."""
+    for layout, widgets in layouts():
+        for name, kind, element in widgets:
+            if kind.endswith("SpinBox") and "Quantity" not in kind:
+                low, high = (float(element.findtext(f"property[@name='{end}']/*")) for end in ("minimum", "maximum"))
+                assert low < high and abs(low) <= 1e5 and high <= 2e5, (layout, name)
+                assert low >= 0 or name.startswith(("offset", "limit")), (layout, name)

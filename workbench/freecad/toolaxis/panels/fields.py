@@ -42,6 +42,10 @@ def load_form(name):
         if _sound(form, widgets[0].get("name"), expected):
             break
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
+    for name in expected:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
+        widget = getattr(form, name, None)
+        if isinstance(widget, QtWidgets.QWidget) and not widget.whatsThis():
+            widget.setWhatsThis(widget.toolTip())
     form.layout().setSizeConstraint(QtWidgets.QLayout.SetMinimumSize)  # else FreeCAD squeezes widgets over one another
     return form
 
