@@ -28,6 +28,7 @@ from toolaxis.orient.lane import (
     windows,
 )
 from toolaxis.orient.multiscale import smoothed
+from toolaxis.orient.multiscale_pace import left
 from toolaxis.orient.multiscale_pins import pinned
 from toolaxis.orient.multiscale_plan import racing
 from toolaxis.shape.face import Face
@@ -189,3 +190,41 @@ def test_wishes_that_make_no_sense() -> None:
         Wish(H, WIDTHS, 0.0)
     with pytest.raises(InvalidInput, match="the radius of the cutter"):
         _ = replace(lane(), tool=Tool.ball(10)).bench
+
+
+def _no_faster(one: Lane, most: tuple[float, float]) -> Lane:
+    """The same on a machine whose axes turn no faster, which binds."""
+    table = tuple(replace(axis, drive=replace(axis.drive, velocity=velocity))
+                  for axis, velocity in zip(one.machine.table, most, strict=True))
+    return replace(one, machine=replace(one.machine, table=table, bodies=()), paced=True)
+
+
+@pytest.mark.parametrize("seed, size, widths", [(5, 6.0, (2.3, 3.1)), (5, 2.0, (2.6, 3.0)), (6, 6.0, (2.3, 3.1))])
+def test_velocities_bind_and_no_neighbour_that_keeps_them_too_turns_less(seed: int, size: float, widths) -> None:
+    one = lane(patch(size * np.random.default_rng(seed).normal(size=(5, 5)), size=25.0), roughness=2e-3, step=0.5,
+               count=50, widths=widths)
+    free = smoothed(one, beginnings(one)[0])
+    most = np.abs(free.spline.velocities(one.places, one.durations)).max(axis=0)
+    slow = _no_faster(one, (0.8 * most[0], 0.9 * most[1]))
+    assert free.kept and not smoothed(replace(slow, paced=False), free.spline).follows
+    found = smoothed(slow, free.spline)
+    assert found.kept and found.follows and found.cost >= free.cost * (1 - 1e-4)
+    fine = np.linspace(0, 1, 49 * 3 + 1)  # gaps in thirds, as long as each other in time
+    speeds = np.abs(found.spline.velocities(fine, np.repeat(one.durations / 3, 3))).max(axis=0)
+    assert (speeds <= np.array([0.8, 0.9]) * most * (1 + 1e-9)).all() and (speeds > 0.85 * 0.8 * most).any()
+    rng, less = np.random.default_rng(0), 0
+    for size_ in 10.0 ** rng.uniform(-5, -1, 200):
+        other = replace(found.spline, control=found.spline.control + size_ * rng.normal(size=(len(one.knots) - 4, 2)))
+        if slow.margins(slow.axes(other.control)).min() >= 0 and left(slow, other.control).min() >= 0:
+            less += other.cost(one.places, one.durations) < found.cost * (1 - 1e-4) - 1e-6
+    assert less == 0
+
+
+def test_velocities_that_no_spline_keeps_are_told_with_place_and_amount() -> None:
+    one = lane(patch(6.0 * np.random.default_rng(5).normal(size=(5, 5)), size=25.0), roughness=2e-3, step=0.5, count=50,
+               widths=(2.3, 3.1))
+    start = beginnings(one)[0]
+    most = np.abs(smoothed(one, start).spline.velocities(one.places, one.durations)).max(axis=0)
+    found = smoothed(_no_faster(one, (0.05 * most[0], 0.05 * most[1])), start)
+    assert not found.kept and not found.follows
+    assert found.sentence.startswith("near [") and float(found.sentence.split("turns ")[1].split(" times")[0]) > 1.2

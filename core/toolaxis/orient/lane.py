@@ -99,6 +99,8 @@ class Lane:
     knots : (c + 4,) array
     allowance : float
         mm
+    paced : bool
+        Whether rotary axes must keep their velocities at the feed rate too.
     """
 
     face: Face
@@ -115,6 +117,7 @@ class Lane:
     speed: float
     knots: Array
     allowance: float = 0.0
+    paced: bool = False
 
     @cached_property
     def forms(self) -> Array:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import nearest_turn, rotary_angles
+from toolaxis.orient import multiscale_pace as pace
 from toolaxis.orient.lane import Lane, knots_of, leaning, windows
 from toolaxis.orient.multiscale import Smoothed
 from toolaxis.orient.rotary_spline import smoothest
@@ -58,7 +59,8 @@ def pinned(lane: Lane, lead: float) -> Smoothed:
         margins = lane.margins(lane.axes(spline.control))
         bad = margins.min(axis=1) < 0
         if not bad.any():
-            return Smoothed(lane, spline, spline.cost(lane.places, lane.durations), margins, rounds)
+            return Smoothed(lane, spline, spline.cost(lane.places, lane.durations), margins,
+                            pace.left(lane, spline.control), rounds)
         current, angles = lane.leans(lane.axes(spline.control)), spline.angles(lane.places)
         for k in _worst(margins.min(axis=1), bad):
             if k in fixed:

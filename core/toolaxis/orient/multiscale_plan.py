@@ -10,6 +10,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.laying import CHECKED, laid
+from toolaxis.orient.multiscale_pace import PARTS, fastest, turning
 from toolaxis.orient.multiscale_path import evaluation_length, roughness_at, spots
 from toolaxis.orient.multiscale_search import ROUGHNESS, Found, Multiscale
 from toolaxis.orient.reasons import sentence
@@ -98,17 +99,19 @@ def words(search: Multiscale, one: Found) -> tuple[str, ...]:
     """
     wide, (low, high) = one.widths, search.wish.widths
     lean = np.concatenate([lane.lane.leans(lane.axes) for lane in one.lanes])
-    rates = np.abs(np.concatenate([lane.spline.velocities(lane.lane.places, lane.lane.durations)
-                                   for lane in one.lanes]))
-    most = np.array([axis.drive.velocity if axis.drive else np.inf for axis in search.mounting.machine.rotary])
-    points = np.concatenate([search.face.evaluate(lane.lane.uv[1:]).point for lane in one.lanes])
+    rates = np.abs(np.concatenate([turning(lane.lane) @ lane.spline.control for lane in one.lanes]))
+    points = np.concatenate([np.repeat(search.face.evaluate(lane.lane.uv[1:]).point, PARTS, axis=0)
+                             for lane in one.lanes])
+    paced = sum(lane.lane.paced for lane in one.lanes)
+    bound = (f"the velocity of the rotary axes binds on {paced} of {len(one.lanes)} passes, which keep it",)
     return (f"Ra {1000 * one.roughness.mean():.3f} um in the mean and {1000 * one.roughness.max():.3f} um at most of "
             f"{len(one.uv)} places, {1000 * search.roughness:g} um allowed",
             f"section strip width {wide.min():.3f} to {wide.max():.3f} mm at a height of {search.wish.scallop:g} mm, "
             f"{low:.4f} to {high:.4f} mm expected",
             f"lean {degrees(lean.min()):.2f} to {degrees(lean.max()):.2f} deg; rotary axes turn by "
             f"{degrees(float(rates.max())):.2f} deg/s at most at {60 * search.speed:g} mm/min, their squares "
-            f"sum to {one.cost:.4g} (rad/s)^2", *racing(rates, most, search.speed, points), CHECKED)
+            f"sum to {one.cost:.4g} (rad/s)^2", *(bound if paced else ()),
+            *racing(rates, fastest(search.mounting.machine), search.speed, points), CHECKED)
 
 
 def racing(rates: Array, most: Array, speed: float, points: Array) -> tuple[str, ...]:
@@ -130,7 +133,8 @@ def racing(rates: Array, most: Array, speed: float, points: Array) -> tuple[str,
         return ()
     place = np.round(points[int(share.argmax())], 1).tolist()
     return (f"rotary axes would pass their velocity on {100 * float((share > 1).mean()):.1f} % of the passes: the "
-            f"control feeds slower there, down to {60 * speed / float(share.max()):.0f} mm/min at {place}",)
+            f"control feeds slower there, down to {60 * speed / float(share.max()):.0f} mm/min at {place}; "
+            "no way was found that keeps it there at the programmed feed",)
 
 
 def constant_lead(search: Multiscale, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:

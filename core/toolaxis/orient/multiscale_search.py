@@ -5,6 +5,7 @@ passes are laid for the roughness.  Then the rotary axes along each pass are mad
 let them, Ra is evaluated at places all over the face, and passes around those that miss it are made again.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import radians
 
@@ -325,7 +326,15 @@ class Multiscale:
             self.job.progress.report("rotary axes", k, len(lanes))
             if lanes[k] is None:
                 lane = self.lane(piece, feed, (placed.steps, a0, a1), replace(wish, roughness=float(limits[k])))
-                lanes[k] = self._smooth(lane, lanes[k - 1] if k else None, free)
+                one = self._smooth(lane, lanes[k - 1] if k else None, free)
+                lanes[k] = one if one.follows else self._paced(one, free)
+
+    def _paced(self, one: Smoothed, free: bool) -> Smoothed:
+        """Rotary axes of a pass that keep their velocities at the feed rate too; as they are where none do."""
+        try:
+            return self._smooth(replace(one.lane, paced=True), one, free)
+        except InvalidInput:
+            return one
 
     def _smooth(self, lane: Lane, last: Smoothed | None, free: bool) -> Smoothed:
         """Smooth rotary axes of a pass; from those of the one before where they serve."""
@@ -348,15 +357,18 @@ class Multiscale:
 
     def _from(self, lane: Lane, last: Smoothed | None) -> Smoothed:
         """Smooth rotary axes of a pass, from those of the one before where they serve about as well there."""
+        known = list[Smoothed]()
         if last is not None and len(last.lane.knots) == len(lane.knots):
             one = smoothed(lane, replace(last.spline, knots=lane.knots))
             if one.kept and one.cost <= _WORSE * last.cost + _STANDS:
                 return one
-        return self._best(lane, beginnings(lane), None)
+            known.append(one)
+        return self._best(lane, beginnings(lane), None, known)
 
-    def _best(self, lane: Lane, starts: list[RotarySpline], ends: Array | None) -> Smoothed:
-        """The one that turns least of those that keep all conditions."""
-        found, kept = list[Smoothed](), list[Smoothed]()
+    def _best(self, lane: Lane, starts: list[RotarySpline], ends: Array | None,
+              known: Sequence[Smoothed] = ()) -> Smoothed:
+        """The one that turns least of those that keep all conditions, those already known among them."""
+        found, kept = list(known), [one for one in known if one.kept]
         for number, start in enumerate(starts):
             if kept and (number >= _STARTS or kept[-1].cost < _STANDS):
                 break
