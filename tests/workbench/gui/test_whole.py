@@ -231,7 +231,14 @@ def test_sub_surfaces_are_merged_by_the_command(desk, roof, form, remembered):
     assert len(operations(document)) == 2
 
 
-def test_other_blades_are_shown_as_turned_links(desk, whole_parts):
+def shown_by(link):
+    """Kinds of what a link shows."""
+    return sorted(thing.TypeId for thing in link.LinkedObject.Group if link.isElementVisible(thing.Name))
+
+
+def test_other_blades_are_shown_as_turned_links(desk, whole_parts, tmp_path):
+    import FreeCAD
+
     wheel = shown(desk, lambda document: (whole_parts.wheel(document),))[0]
     form = desk.start(wheel)
     form.tabs.setCurrentWidget(form.toolTab)
@@ -250,11 +257,14 @@ def test_other_blades_are_shown_as_turned_links(desk, whole_parts):
     links = [thing for thing in document.Objects if thing.TypeId == "App::Link"]
     assert len(links) == 4 and len(operations(document)) == 2
     for link in links:
-        seen = [thing.TypeId for thing in link.LinkedObject.Group if link.isElementVisible(thing.Name)]
-        assert sorted(seen) == ["Mesh::Feature", "Path::Feature"], "neither tools nor frames of all blades"
+        assert shown_by(link) == ["Mesh::Feature", "Path::Feature"], "neither tools nor frames of all blades"
     assert [group.Label for group in plan_in(document).Group] == ["Blade 1", "Blade 2", "Blade 3"]
     desk.gui.getDocument(document.Name).ActiveView.fitAll()
     desk.shot("67-blades")
+    document.saveCopy(str(tmp_path / "Wheel.FCStd"))
+    again = FreeCAD.openDocument(str(tmp_path / "Wheel.FCStd"))
+    link = again.getObject(links[0].Name)
+    desk.wait(lambda: shown_by(link) == ["Mesh::Feature", "Path::Feature"], "links hide tools and frames again", 10.0)
     document.undo()
     desk.pump(0.2)
     assert names(document) == [wheel.Name]

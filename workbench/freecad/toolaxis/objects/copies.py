@@ -18,6 +18,8 @@ _LINK = (
     Property("String", "Clearance", "Result", "Lower bounds of distances, proven on this blade", True))
 #: Greatest distance of the points of a turned copy from the turned points, mm.
 _EXACT = 1e-6
+#: Links of which more do not show their passes at first.
+_MANY = 24
 
 
 def turned_copies(operation):
@@ -57,16 +59,19 @@ def turn_between(source, copy):
 def quiet(things):
     """Let links show passes and sub-surfaces alone: tools and work coordinate systems of all blades hide the part.
 
+    Of very many, only the sub-surfaces are shown at first: their ways in rapid traverse hide the part too.
+
     Parameters
     ----------
     things : sequence of App.DocumentObject
         Links of blades, up to date; others are left as they are.
     """
-    for link in things:
-        if link.TypeId == "App::Link" and "Turn" in link.PropertiesList and link.LinkedObject is not None:
-            for thing in link.LinkedObject.Group:
-                if not is_shown(thing) and thing.TypeId != "Path::Feature":
-                    link.setElementVisible(thing.Name, False)
+    links = [one for one in things if one.TypeId == "App::Link" and "Turn" in one.PropertiesList]
+    kind = "Path::Feature" if len(links) <= _MANY else ""
+    for link in links:
+        for thing in () if link.LinkedObject is None else link.LinkedObject.Group:
+            if not is_shown(thing) and thing.TypeId != kind:
+                link.setElementVisible(thing.Name, False)
 
 
 class Tree:

@@ -6,12 +6,17 @@ from PySide import QtCore
 
 from . import icon
 
+#: Time between looks whether a document is open as a whole, ms: before, links still forget what they are told to hide.
+_PAUSE = 100
+
 
 def _quiet(name):
     from ..objects.copies import quiet
 
     document = FreeCAD.listDocuments().get(name)
-    if document is not None:
+    if document is not None and document.Restoring:
+        QtCore.QTimer.singleShot(_PAUSE, lambda: _quiet(name))
+    elif document is not None:
         quiet(document.Objects)
 
 
