@@ -8,7 +8,7 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge, results
+from freecad.toolaxis import bridge, results, staleness
 from freecad.toolaxis.objects import is_operation
 from freecad.toolaxis.objects.frames import kind_of_frame
 from freecad.toolaxis.objects.passes import moves
@@ -119,6 +119,20 @@ def test_one_pole_a_hundredth_of_a_millimetre_off_is_a_change(document, parts):
     surface.setPole(3, 3, surface.getPole(3, 3) + Vector(0, 0, 0.01))
     thing.Shape = surface.toShape()
     assert not same(first, bridge_signature(thing)) and same(first, first)
+
+
+def test_a_shape_is_looked_at_once_and_anew_where_it_stands_elsewhere(clamp, monkeypatch):
+    looks, points = [], staleness._points
+    monkeypatch.setattr(staleness, "_points", lambda shape: looks.append(shape) or points(shape))
+    monkeypatch.setattr(staleness, "_SEEN", [])
+    assert bridge_signature(clamp) == bridge_signature(clamp) and len(looks) == 1
+    clamp.Placement.Base = Vector(10, 0, 0)
+    bridge_signature(clamp)
+    assert len(looks) == 2
+    clamp.Height = 20
+    clamp.Document.recompute()
+    bridge_signature(clamp)
+    assert len(looks) == 3
 
 
 def bridge_signature(thing):
