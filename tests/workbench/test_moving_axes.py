@@ -191,3 +191,21 @@ def test_a_strategy_that_comes_to_nothing_leaves_the_tree_as_it_is(document, par
         bridge.plan(document, (block, parts.sculptured_name(block)), parts.TOOL, parts.SCALLOP, shank=None,
                     holder=parts.HOLDER, stickout=25.0, strategy="multiscale", limits="machine:bc-table-table")
     assert [one.Name for one in document.Objects] == names
+
+
+def test_passes_that_keep_a_roughness_stand_in_the_tree_with_what_they_leave(document):
+    surface = Part.BSplineSurface()
+    surface.interpolate([[Vector(x, y, 2 - 0.02 * (x - 1) ** 2 - 0.01 * y**2) for y in (0, 1.5, 3, 4.5)]
+                         for x in (0, 0.8, 1.6, 2.4)])
+    thing = document.addObject("Part::Feature", "Hill")
+    thing.Shape = surface.toShape()
+    document.recompute()
+    made, = bridge.plan(document, (thing, "Face1"), "torus:10x3", 0.1, shank=None, holder=None, feedrate=800.0,
+                        strategy="multiscale", roughness=1.6, limits="machine:bc-table-table")
+    assert made.AxisMoves and made.Strategy == "multiscale" and made.Roughness == 1.6 and made.Passes >= 5
+    ra, wide = (why.split() for why in made.Reasons[:2])
+    assert ra[0] == "Ra" and float(ra[1]) < float(ra[7]) <= 1.6
+    assert 2.15 < float(wide[3]) < float(wide[5]) < 3.154, "section strips as wide as expected"
+    op, = plan_task([made])(NO_PROGRESS).operations
+    assert op.path.passes == made.Passes and np.ptp(op.path.axis, axis=0).max() > 1e-4 and not made.Stale
+    assert any(map(is_lines, made.Group)) and [text[:2] for text in made.RotaryAngles] == ["C:", "B:"]
