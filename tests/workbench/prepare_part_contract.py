@@ -1,8 +1,8 @@
 """Run outside FreeCAD before test_part_contract.py: what Open CASCADE's adapter says of each part, and the parts.
 
-``python prepare_part_contract.py FOLDER`` leaves in FOLDER, for each part, its geometry (.step or .brep) and the record
-(.pickle), and in kernel.txt the kernel's release.  Real parts by others come from the folder that TOOLAXIS_SHARED
-names, where it is there.
+``python prepare_part_contract.py FOLDER [--long]`` leaves in FOLDER, for each part, its geometry (.step or .brep) and
+the record (.pickle), and in kernel.txt the kernel's release.  Real parts by others come from the folder that
+TOOLAXIS_SHARED names, where it is there: a few of different origin, with --long all of them.
 """
 
 import importlib.util
@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+SOME = ("axom_revolved_sphere", "axom_sliced_cylinder", "kj66_impeller", "mousecover", "nacelle", "wing_inv")
 
 
 def made_faces():
@@ -67,7 +68,7 @@ def mesh_face():
     return face
 
 
-def write(folder):
+def write(folder, everything):
     import OCP
     from OCP.BRepTools import BRepTools
 
@@ -76,7 +77,8 @@ def write(folder):
 
     (folder / "kernel.txt").write_text(OCP.__version__)
     shared = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
-    for path in [*sorted((ROOT / "examples").glob("*.step")), *sorted(shared.glob("*.st*p"))]:
+    others = [path for path in sorted(shared.glob("*.st*p")) if everything or path.stem in SOME]
+    for path in [*sorted((ROOT / "examples").glob("*.step")), *others]:
         done, record, *_ = convert(str(path))
         if done == "done":
             shutil.copy(path, folder / f"{path.stem}.step")
@@ -92,4 +94,4 @@ if __name__ == "__main__":
     sys.path.insert(0, str(ROOT / "core"))
     target = Path(sys.argv[1])
     target.mkdir(parents=True, exist_ok=True)
-    write(target)
+    write(target, everything="--long" in sys.argv)
