@@ -89,7 +89,7 @@ def test_things_move_as_the_tool_does() -> None:
         on_part = (part.T @ (seen - aside) - one.place[:3, 3]) @ one.place[:3, :3]
         tips, axes = forward(one.machine, joints[None], one.tool_length, one.place)
         assert on_part == pytest.approx(tips[0], abs=1e-9)
-        assert one.joints(tips, axes, joints[3:])[0] == pytest.approx(joints, abs=1e-7)
+        assert one.joints(tips, axes, joints[3:])[0][0] == pytest.approx(joints, abs=1e-7)
 
 
 @pytest.mark.parametrize("head", [HEAD, ROUND], ids=["cylinder", "hull"])

@@ -173,6 +173,18 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
     return ""
 
 
+def arms(mounting: Mounting, around: Surroundings) -> Array:
+    """How far anything reaches at most from each rotary axis that turns it, in any position of the others, (m,) mm.
+
+    Parameters
+    ----------
+    mounting : Mounting
+    around : Surroundings
+    """
+    solids = [solid for pair in _pairs(mounting, around, np.zeros(3)) for solid in pair]
+    return np.asarray(np.max([_reaches(mounting.machine, solid) for solid in solids], axis=0, initial=0.0))
+
+
 def _pairs(mounting: Mounting, around: Surroundings, at: Array) -> list[tuple[_Solid, _Solid]]:
     """What may meet while rotary axes turn."""
     machine = mounting.machine

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from toolaxis.contact.indexing import RETRACT, Stop, trouble_at_the_ends, trouble_between
 from toolaxis.contact.machinery import Surroundings, free_solutions
 from toolaxis.feed.profile import travel_time
+from toolaxis.job.in_motion import kept_clear, refused
 from toolaxis.machine.axes import RotaryAxis
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.tours import EXACT, Steps, Tour, in_order, shortest
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
 from toolaxis.plan.timing import Order
 from toolaxis.shape.cells import forest
@@ -54,20 +54,24 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     Returns
     -------
     Plan
-        As it is without a machine; an operation that the machine cannot carry out at any angles has no axis any more.
+        As it is without a machine; an operation that the machine cannot carry out at any angles, or along its path
+        where its axis moves, has no axis any more.
     """
     if plan.machine is None:
         return plan
     mounting = replace(plan.machine, tool_length=plan.tool.gauge_length)
     around = _around(plan)
     found = [_states(mounting, op, around) if _fixed(op) else ([], "") for op in plan.operations]
-    kept = tuple(_refused(op, why) if why and not states else op
+    kept = tuple(refused(op, why) if why and not states else op
                  for op, (states, why) in zip(plan.operations, found, strict=True))
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(kept, plan.blades)
     plan = replace(plan, operations=kept, outcome=outcome)
     rows = [states for states, _ in found if states]
-    if not rows:
-        return plan
+    return kept_clear(_in_order(plan, mounting, rows, around, reorder) if rows else plan, mounting, around)
+
+
+def _in_order(plan: Plan, mounting: Mounting, rows: list[list[_State]], around: Surroundings, reorder: bool) -> Plan:
+    """The plan at those of the operations' states, and in that order, that cost least."""
     steps = _steps(mounting, rows)
     listed = np.arange(len(rows))
     before = _without_trouble(steps, rows, (mounting, around), listed)
@@ -132,13 +136,6 @@ def _states(mounting: Mounting, op: Operation, around: Surroundings) -> tuple[li
         turns = np.array(np.meshgrid(*every, indexing="ij")).reshape(len(every), -1).T if every else row[None]
         found += [_State(op, turn, ends) for turn in turns]
     return found, why
-
-
-def _refused(op: Operation, why: str) -> Operation:
-    """An operation that the machine cannot carry out."""
-    none = Orientation(None, op.orientation.feed, outcome="infeasible",
-                       reasons=(f"infeasible: {why}", *op.orientation.reasons), map=op.orientation.map)
-    return replace(op, path=None, frame=None, time=None, rotary=(), orientation=none)
 
 
 def _steps(mounting: Mounting, rows: Sequence[list[_State]]) -> Steps:

@@ -54,11 +54,6 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
     found = dialect_named(dialect)
     if mounting is None:
         raise InvalidInput(f"dialect {dialect} writes rotary angles and the plan names no machine: give --machine")
-    if moves(plan):
-        control, file = tip_control_of(found), f"program-{dialect}{found.suffix}"
-        text = moving_text(plan, mounting, control, options, name)
-        sheet = moving_sheet_text(bare_program(plan, mounting, found, options, name), control, file, verdict)
-        return {file: text, f"setup-{dialect}.md": sheet}
     arranged_for = _arranged(plan, mounting)
     for op, stood in zip(plan.operations, arranged_for.operations, strict=True):
         if op.done and not stood.done:
@@ -68,6 +63,11 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
         raise InvalidInput(f"the machine meets something between operations: {arranged_for.in_the_way[0]}; move the "
                            "part on the table, or plan again")
     angles = {op.number: op.rotary for op in arranged_for.operations if op.rotary}
+    if moves(plan):
+        control, file = tip_control_of(found), f"program-{dialect}{found.suffix}"
+        text = moving_text(plan, mounting, control, options, name)
+        sheet = moving_sheet_text(bare_program(plan, mounting, found, options, name), control, file, verdict)
+        return {file: text, f"setup-{dialect}.md": sheet}
     chosen = Options() if options is None else options
     program = program_of(arranged_for, mounting, found, replace(chosen, angles={**angles, **chosen.angles}), name)
     file = f"program-{dialect}{found.suffix}"
@@ -79,7 +79,7 @@ def _arranged(plan: Plan, mounting: Mounting) -> Plan:
     own = plan.machine
     same = own is not None and machine_to_toml(own.machine) == machine_to_toml(mounting.machine) and np.array_equal(
         placement(own.table_from_part), placement(mounting.table_from_part))
-    if same and all(op.rotary for op in plan.operations if op.done):
+    if same and all(op.rotary or op.orientation.lead is not None for op in plan.operations if op.done):
         return plan
     return arranged(replace(plan, machine=mounting))
 

@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.machinery import Surroundings, words
+from toolaxis.contact.turning_machinery import meeting_in_motion, motions
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
-from toolaxis.machine.limits import ROUNDING, AxisLimits
+from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import CROSSING, Task
 from toolaxis.orient.mounted import mounting_of
@@ -96,7 +98,7 @@ def laid(job: Task, chart: LeadChart, cut: LeadCut,
     if limits is not None and not limits.allowed(path.axis).all():
         return Laid(witness=Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes, where they run "
                                                             "out"))
-    witness = beyond(limits, path)
+    witness = beyond(job, path)
     if witness is not None:
         return Laid(witness=witness)
     proof = prove_moving(path, cut.tool, job.groups, job.worth.allowance, progress=job.progress)
@@ -150,20 +152,32 @@ def _back(one: MovingStroke) -> MovingStroke:
     return MovingStroke(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
 
 
-def beyond(limits: AxisLimits | None, path: ToolPath) -> Witness | None:
-    """Why the machine among limits cannot follow a path with one solution, without jumps and inside its travel.
+def beyond(job: Task, path: ToolPath) -> Witness | None:
+    """Why the task's machine cannot follow a path with one solution, without jumps, inside its travel, and with its
+    bodies clear of each other, of part and tool.
 
     Parameters
     ----------
-    limits : AxisLimits or None
+    job : Task
     path : ToolPath
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
     """
-    mounting = mounting_of(limits)
+    mounting = mounting_of(job.feasibility.limits)
     if mounting is None:
         return None
     try:
-        following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
-                  travel=mounting.judges_travel)
+        along = following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
+                          travel=mounting.judges_travel)
     except InvalidInput as reason:
         return Witness(LIMITS, ROUNDING, words=str(reason))
-    return None
+    if not mounting.judges_bodies:
+        return None
+    around = Surroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
+                          job.feasibility.tolerance.holder_clearance)
+    found = meeting_in_motion(mounting, motions(along.linear, along.rotary, along.arrival), around, job.progress)
+    return None if found is None else Witness(LIMITS, ROUNDING, distance=found[0].distance,
+                                              words=words(mounting, found[1], found[0], around.required))

@@ -219,9 +219,8 @@ class Plan:
             return (*missing, "machine")
         if self.machine.table_from_part is None or self.tool.gauge_length is None:
             missing.append("travel of the machine's linear axes")
-        moving = any(op.orientation.lead is not None for op in self.operations)
         mounting = replace(self.machine, tool_length=self.tool.gauge_length)
-        if moving or not mounting.judges_bodies:
+        if not mounting.judges_bodies:
             missing.append("collision with the machine itself")
         elif not mounting.judges_index_moves and self.orientations > 1:
             missing.append("collision with the machine on index moves")

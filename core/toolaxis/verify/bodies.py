@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 
 #: The least motion between two looks, mm.
 _STEP = 1.0
+#: Turn of a rotary axis between two looks that is divided, and the tool axis' own turn that is not any more, rad; how
+#: often.
+_WIDE, _FINE, _HALVINGS = 0.1, 1e-4, 16
 #: How far the linear axes may be from X, Y and Z.
 _UPRIGHT = 1e-9
 #: Sine of the angle between spindle and Z above which programs approach along one straight line.
@@ -143,15 +146,40 @@ class Rig:
         rows[2, 3:] = after[3:]
         return rows[[0, 1, 2, 4]] if tilted else rows
 
-    def joints(self, tips: Array, axes: Array, rotary: Sequence[float]) -> Array:
-        """Joint coordinates along cutter locations, from the solution that is nearest to rotary angles, (n, 3 + m).
+    def joints(self, tips: Array, axes: Array, rotary: Sequence[float]) -> tuple[Array, NDArray[np.int64]]:
+        """Joint coordinates along cutter locations, from the solution that is nearest to rotary angles.
+
+        Tip and tool axis go straight from one location to the next.  Where the rotary axes turn far on the way, as near
+        the singular directions, they are taken at places between too.
 
         Parameters
         ----------
         tips, axes : (n, 3) array
         rotary : sequence of float
             Where the rotary axes stand at the first location, rad.
+
+        Returns
+        -------
+        joints : (k, 3 + m) array
+        arrival : (k,) array of int
+            The location at which the motion arrives that ends there.
         """
+        arrival = np.arange(len(tips))
+        for _ in range(_HALVINGS):
+            rows = self._nearest(tips, axes, rotary)
+            far = np.abs(np.diff(rows[:, 3:], axis=0)).max(axis=1, initial=0.0) > _WIDE
+            far &= np.linalg.norm(np.diff(axes, axis=0), axis=1) > _FINE
+            if not far.any():
+                break
+            at = np.flatnonzero(far) + 1
+            tips = np.insert(tips, at, (tips[at - 1] + tips[at]) / 2, axis=0)
+            middle = axes[at - 1] + axes[at]
+            axes = np.insert(axes, at, middle / np.linalg.norm(middle, axis=1)[:, None], axis=0)
+            arrival = np.insert(arrival, at, arrival[at])
+        return rows, arrival
+
+    def _nearest(self, tips: Array, axes: Array, rotary: Sequence[float]) -> Array:
+        """Joint coordinates at locations, at each of them the solution that is nearest to the one before."""
         found = inverse(self.machine, tips, axes, self.tool_length, self.place, near=np.asarray(rotary, dtype=float))
         rows = np.empty((len(tips), found.joints.shape[2]))
         stand = np.asarray(rotary, dtype=float)

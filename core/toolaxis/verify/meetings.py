@@ -1,5 +1,7 @@
 """Whether bodies of the machine come too near on an operation and on the index move before it."""
 
+from dataclasses import replace
+
 from toolaxis.progress import Progress
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.bodies import Rig, least_room
@@ -32,12 +34,14 @@ def machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
               (*task.targets, *task.skin, *task.touching, *task.surroundings))
     if not rig.judged:
         return {}
-    needed, joints = task.tolerance.holder_clearance, rig.joints(task.tips, task.axes, task.rotary)
-    found = {"machine": least_room(rig, joints, needed, rig.pairs, progress)}
+    needed = task.tolerance.holder_clearance
+    joints, arrival = rig.joints(task.tips, task.axes, task.rotary)
+    room = least_room(rig, joints, needed, rig.pairs, progress)
+    found = {"machine": replace(room, motion=int(arrival[room.motion])) if room.motion >= 0 else room}
     last = None
     if task.before is not None:
         tip, axis, rotary = task.before
-        last = rig.joints(tip[None], axis[None], rotary)[0]
+        last = rig.joints(tip[None], axis[None], rotary)[0][0]
     ways = rig.between(last, joints[0])
     if ways is not None:
         found["index move"] = least_room(rig, ways, needed, rig.pairs, progress)
