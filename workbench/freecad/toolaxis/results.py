@@ -288,7 +288,7 @@ def _standing_tool(operation, plan, title):
     standing.Proxy.execute(standing)
 
 
-def keep_verdict(operation, verdicts):
+def keep_verdict(operation, verdicts, maps=None):
     """Keep the judge's verdict on an operation: figures, worst places, and maps as a coloured mesh.
 
     It holds for what stood in the document when `bridge.verification` was asked.
@@ -298,6 +298,8 @@ def keep_verdict(operation, verdicts):
     operation : App.DocumentObject
     verdicts : sequence of toolaxis.verify.verdict.OperationVerdict
         On this operation; the first one counts.
+    maps : list of freecad.toolaxis.objects.maps.Drawn, optional
+        Its maps, where they were drawn already.
 
     Returns
     -------
@@ -308,4 +310,4 @@ def keep_verdict(operation, verdicts):
 
     with one_step(operation.Document, translate("ToolAxis", "Verify")):
         operation.JudgedWith, operation.JudgedShapes = operation.Proxy.judging
-        return keep(operation, verdicts[0], child(operation, "Path::Feature").Placement)
+        return keep(operation, verdicts[0], child(operation, "Path::Feature").Placement, maps)

@@ -1,5 +1,7 @@
 """The judge's verdict in the document: figures, worst places, and maps as coloured meshes that need no add-on."""
 
+from typing import NamedTuple
+
 import FreeCAD
 
 from .properties import Property, assign, ensure
@@ -18,7 +20,46 @@ _RAISED = 2e-3
 _MAPS = (("Scallops", "remaining", "Height left above the face"), ("Gouges", "gouge", "Depth of gouge"))
 
 
-def keep(operation, verdict, frame):
+class Drawn(NamedTuple):
+    """A map as it enters a document: the mesh, and value, mm, and colour at each of its points."""
+
+    mesh: object
+    values: list
+    colours: list
+
+
+def drawn(verdict, frame):
+    """The maps of a verdict, in any thread: nothing of a document is touched.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    frame : FreeCAD.Placement
+        Of the passes.
+
+    Returns
+    -------
+    list of Drawn
+        Of the scallops, of the gouges.
+    """
+    import Mesh
+
+    from ..colours import judged
+    from ..places import matrix_of
+
+    points, triangles = _joined(verdict.maps)
+    matrix = matrix_of(frame.inverse())
+    points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
+    rows, made = _rows_of(mesh, points), []
+    for _, name, _ in _MAPS:
+        values = _values(verdict.maps, name)[rows]
+        colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, _limit(verdict, name)).tolist()]
+        made.append(Drawn(mesh.copy(), values.tolist(), colours))
+    return made
+
+
+def keep(operation, verdict, frame, maps=None):
     """Write a verdict into an operation, and its maps into meshes beside the passes.
 
     Parameters
@@ -27,6 +68,8 @@ def keep(operation, verdict, frame):
     verdict : toolaxis.verify.verdict.OperationVerdict
     frame : FreeCAD.Placement
         Of the passes.
+    maps : list of Drawn, optional
+        From `drawn`, where they were drawn already.
 
     Returns
     -------
@@ -37,10 +80,9 @@ def keep(operation, verdict, frame):
 
     back = frame.inverse()
     _figures(operation, verdict, back)
-    limits = {"remaining": verdict.scallop_limit, "gouge": verdict.gouge_allowed}
     meshes = [_mesh(operation, name) for name, _, _ in _MAPS]
-    for thing, (name, what, text) in zip(meshes, _MAPS, strict=True):
-        _paint(thing, verdict.maps, (what, limits[what]), back)
+    for thing, one, (name, what, text) in zip(meshes, maps or drawn(verdict, frame), _MAPS, strict=True):
+        _paint(thing, one, _limit(verdict, what))
         thing.Label = f"{name} {operation.Label}"
         thing.Shows = text
         passes = next(one for one in operation.Group if one.isDerivedFrom("Path::Feature"))
@@ -86,21 +128,14 @@ def _mesh(operation, name):
     return thing
 
 
-def _paint(thing, maps, what, back):
-    """Triangles over the rays, coloured by one of their values."""
-    import Mesh
+def _limit(verdict, name):
+    return verdict.scallop_limit if name == "remaining" else verdict.gouge_allowed
 
-    from ..colours import judged
-    from ..places import matrix_of
 
-    name, limit = what
-    points, triangles, values = _joined(maps, name)
-    matrix = matrix_of(back)
-    points = points @ matrix[:3, :3].T + matrix[:3, 3]
-    thing.Mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
-    values = values[_rows_of(thing.Mesh, points)]
-    thing.Deviation = values.tolist()
-    thing.VertexColors = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, limit).tolist()]
+def _paint(thing, one, limit):
+    """Put a map into its mesh."""
+    thing.Mesh = one.mesh
+    thing.Deviation, thing.VertexColors = one.values, one.colours
     assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
         "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached"])
 
@@ -110,21 +145,26 @@ def _rows_of(mesh, points):
     import numpy as np
     from scipy.spatial import cKDTree
 
-    corners = np.array([tuple(point.Vector) for point in mesh.Points]).reshape(-1, 3)
+    corners = np.array([tuple(point) for point in mesh.Topology[0]]).reshape(-1, 3)
     return cKDTree(points).query(corners)[1]
 
 
-def _joined(maps, name):
-    """Points a little above the faces, triangles and values of all maps together."""
+def _joined(maps):
+    """Points a little above the faces, and triangles of all maps together."""
     import numpy as np
 
     from ..triangles import triangles_of
 
-    points, triangles, values, before = [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [np.empty(0)], 0
+    points, triangles, before = [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], 0
     for one in maps:
         normal = np.nan_to_num(one.face.normal(one.uv))
         points.append(one.point + _RAISED * one.face.diagonal * normal)
         triangles.append(triangles_of(one) + before)
-        values.append(getattr(one, name))
         before += len(one.point)
-    return np.concatenate(points), np.concatenate(triangles), np.concatenate(values)
+    return np.concatenate(points), np.concatenate(triangles)
+
+
+def _values(maps, name):
+    import numpy as np
+
+    return np.concatenate([np.empty(0), *(getattr(one, name) for one in maps)])

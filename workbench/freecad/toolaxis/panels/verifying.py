@@ -9,6 +9,8 @@ from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES, bridge
 from ..macros import record, thing_of
+from ..objects.belongings import child
+from ..objects.maps import drawn
 from ..tasks import Work, sentence
 from .fields import fine_text, length_text, load_form, tell
 from .figures import fill
@@ -61,10 +63,12 @@ class VerifyPanel(Panel):
             return
         try:
             judges = [bridge.verification(operation) for operation in self.operations]
+            frames = [child(operation, "Path::Feature").Placement for operation in self.operations]
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             return
-        self.work = Work(lambda progress: [_judged(judge, progress) for judge in judges])
+        self.work = Work(lambda progress: [_judged(judge, frame, progress)
+                                           for judge, frame in zip(judges, frames, strict=True)])
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(self._done)
         self.work.failed.connect(lambda text: self._ended(text))
@@ -85,7 +89,7 @@ class VerifyPanel(Panel):
 
     def _done(self, found):
         self.work = None
-        self.found = [one for verdict in found for one in verdict]
+        self.found = [one for verdicts, _ in found for one in verdicts]
         combo = self.form.operation
         blocked = combo.blockSignals(True)
         combo.clear()
@@ -96,14 +100,14 @@ class VerifyPanel(Panel):
             self._tell(translate("ToolAxis", "Not inside tolerance: {}").format(", ".join(failed)), bad=True)
         else:
             self._tell(translate("ToolAxis", "Inside tolerance"))
-        self._keep(found)
         self._show()
+        self._keep(found)
 
     def _keep(self, found):
         """Put verdicts and maps into the document; the meshes come to sight when the panel closes."""
         try:
-            for operation, verdicts in zip(self.operations, found, strict=True):
-                scallops, *_ = bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts])
+            for operation, (verdicts, maps) in zip(self.operations, found, strict=True):
+                scallops, *_ = bridge.keep_verdict(operation, [verdict for verdict, _ in verdicts], maps)
                 scallops.Visibility = False
                 self.meshes.append(scallops)
                 record(f"freecad.toolaxis.verify({thing_of(operation)})")
@@ -187,10 +191,11 @@ class VerifyPanel(Panel):
                 mesh.Visibility = True
 
 
-def _judged(judge, progress):
-    """Verdicts of one operation with the skins to paint; runs off the GUI thread."""
+def _judged(judge, frame, progress):
+    """Verdicts of one operation with the skins to paint, and the maps to keep; runs off the GUI thread."""
     verdicts = judge(progress).operations
-    return [(verdict, [skin for one in verdict.maps for skin in skins_of(one)]) for verdict in verdicts]
+    return ([(verdict, [skin for one in verdict.maps for skin in skins_of(one)]) for verdict in verdicts],
+            drawn(verdicts[0], frame))
 
 
 def _measures(verdict):
