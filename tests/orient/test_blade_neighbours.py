@@ -32,7 +32,7 @@ def cloud(faces, gap):
         net = face.evaluate(np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1).reshape(-1, 2)).point
         net = net.reshape(9, 9, 3)
         sizes = [np.linalg.norm(np.diff(net, axis=k), axis=2).sum(axis=k).max() for k in (0, 1)]
-        fine = [np.linspace(a, b, int(size / gap) + 2) for (a, b), size in zip(((u0, u1), (v0, v1)), sizes, strict=True)]
+        fine = [np.linspace(ends[0], ends[-1], int(size / gap) + 2) for ends, size in zip(coarse, sizes, strict=True)]
         uv = np.stack(np.meshgrid(*fine, indexing="ij"), axis=-1).reshape(-1, 2)
         rows.append(face.evaluate(uv[face.contains(uv)]).point)
     return np.concatenate(rows)

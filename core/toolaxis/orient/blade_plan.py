@@ -212,7 +212,8 @@ class BladeSearch:
                            f"{wide.lengths[i]:.1f} mm, at {np.round(at, 2).tolist()}: "
                            f"{degrees(2 * CLEARANCE - wide.width):.1f} deg are missing for a rotary axis that does "
                            "not turn back; take a slimmer or longer tool, or a machine on which it leans away from the "
-                           "root")
+                           "root; where a neighbouring blade bars the way no tool goes around that reaches to it: "
+                           "plan the sides with strategy 'indexed'")
 
     def links(self, axes: Array) -> Swivelling:
         """How the path is entered and left.
