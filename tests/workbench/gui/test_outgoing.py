@@ -263,6 +263,38 @@ def test_a_plan_made_by_the_panel_is_made_again_by_the_macro(desk, wavy, recorde
     assert len(document.Objects) == len(names)
 
 
+def test_freecads_own_recorder_keeps_what_the_panel_did(desk, wavy, remembered, tmp_path):
+    part, face = wavy
+
+    def answer():
+        """Fill in the dialog that the command opens, and start recording."""
+        box = desk.app.activeModalWidget()
+        box.findChild(desk.widgets.QLineEdit, "lineEditPath").setText("Recorded")
+        box.findChild(desk.widgets.QPushButton, "buttonStart").click()
+
+    preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Macro")
+    preferences.SetString("MacroPath", str(tmp_path))
+    desk.qt.QTimer.singleShot(500, answer)
+    desk.gui.runCommand("Std_DlgMacroRecord")
+    form = desk.start(part, face)
+    desk.type(form.scallop, "0.2 mm")
+    desk.computed(form)
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    desk.shot("85-recording")
+    desk.gui.runCommand("Std_DlgMacroRecord")
+    preferences.RemString("MacroPath")
+    text = (tmp_path / "Recorded.FCMacro").read_text()
+    lines = [line.strip() for line in text.splitlines()]
+    assert any(line.startswith("freecad.toolaxis.plan(") for line in lines), text
+    document, passes = part.Document, desk.operation_in(part.Document).Passes
+    document.undo()
+    assert desk.operation_in(document) is None
+    FreeCAD.setActiveDocument(document.Name)
+    exec(compile(text, "Recorded.FCMacro", "exec"), {})
+    assert desk.operation_in(document).Passes == passes
+
+
 @pytest.mark.long
 def test_the_pictures_of_the_tour_are_made_again_and_its_program_is_posted(desk, tmp_path):
     import importlib.util
