@@ -28,10 +28,10 @@ lint: setup
 	$(BIN)/lint-imports
 
 test: lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile --durations 30
+	$(BIN)/python -m pytest -n 3 --dist loadfile --durations 40
 
 test-all: lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile --long
+	$(BIN)/python -m pytest -n 3 --dist loadfile --long
 
 bench: setup
 	$(BIN)/python -m benchmarks

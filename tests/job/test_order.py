@@ -1,5 +1,6 @@
 """The order of operations and their rotary angles, against all orders and all angles; what is in the way on it."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise, permutations, product
 from pathlib import Path
@@ -230,6 +231,10 @@ def test_a_lower_retract_than_the_one_that_was_looked_at_is_told_on_the_setup_sh
     sheets = [posted(made, "linuxcnc", mounting, options)["setup-linuxcnc.md"]
               for options in (None, Options(retract=400.0))]
     assert ["with Z at 500.000, not at 400.000" in sheet for sheet in sheets] == [False, True]
+    first = made.operations[0].rotary
+    stood = re.search(r"bring the rotary axes to C(\S+) B(\S+) with the spindle retracted", sheets[0])
+    assert [float(angle) for angle in stood.groups()] == pytest.approx(np.degrees(first), abs=1e-3)
+    assert "were not looked at" in sheets[0]
 
 
 def test_more_operations_than_are_ordered_exactly_get_a_bound() -> None:

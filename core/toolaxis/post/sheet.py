@@ -62,6 +62,7 @@ def moving_sheet_text(program: Program, control: TipControl, file: str, verdict:
     """
     dialect, notes = control.dialect, [*control.notes, f"Points are rounded to {0.5 * 10 ** -control.dialect.digits:g} "
                                        "mm in each coordinate."]
+    notes += _start(program, dialect, courses(program.plan, program.mounting)[0].along.rotary[0])
     if program.machine.assumed:
         notes.append(f"Assumed in the machine's file: {', '.join(program.machine.assumed)}.")
     general = _general(program, dialect, file, verdict).replace(dialect.title, control.title)
@@ -223,6 +224,15 @@ def gouge_of(program: Program, dialect: Dialect, station: Station) -> float:
     return station.operation.orientation.gouge + rounding + 2 * program.plan.tool.radius * station.lean
 
 
+def _start(program: Program, dialect: Dialect, angles: Array) -> list[str]:
+    """What nobody knows: where the axes stand before the program."""
+    if not len(angles):
+        return []
+    return [f"Where the axes stand before the start is not known: bring the rotary axes to "
+            f"{_angles(program, dialect, angles)} with the spindle retracted and clear of everything. The turn to "
+            "there and the way over to the first point were not looked at."]
+
+
 def _notes(program: Program, dialect: Dialect) -> list[str]:
     notes, allowed = list(dialect.notes), program.inputs.tolerance.gouge
     over = [station.operation.name for station in program.stations if gouge_of(program, dialect, station) > allowed]
@@ -242,4 +252,4 @@ def _notes(program: Program, dialect: Dialect) -> list[str]:
     if program.machine.assumed:
         notes.append(f"Assumed in the machine's file: {', '.join(program.machine.assumed)}.")
     notes.append(f"Points are rounded to {0.5 * 10 ** -dialect.digits:g} mm in each coordinate.")
-    return notes
+    return notes + (_start(program, dialect, program.stations[0].angles) if program.stations else [])
