@@ -330,11 +330,11 @@ class Multiscale:
                 lanes[k] = one if one.follows else self._paced(one, free)
 
     def _paced(self, one: Smoothed, free: bool) -> Smoothed:
-        """Rotary axes of a pass that keep their velocities at the feed rate too; as they are where none do."""
-        try:
-            return self._smooth(replace(one.lane, paced=True), one, free)
-        except InvalidInput:
-            return one
+        """Rotary axes of a pass that keep their velocities at the feed rate too, begun from those that do not; as they
+        are where none are found."""
+        ends = None if free else one.spline.angles(one.lane.places[[0, -1]])
+        found = smoothed(replace(one.lane, paced=True), one.spline, ends)
+        return found if found.kept and not self.blocked(found.lane, found.axes).any() else one
 
     def _smooth(self, lane: Lane, last: Smoothed | None, free: bool) -> Smoothed:
         """Smooth rotary axes of a pass; from those of the one before where they serve."""
