@@ -82,3 +82,15 @@ def test_the_judge_turns_the_axes_near_the_pole_as_programs_do(plan: Plan) -> No
     last, there = (np.searchsorted(some, points, side="right") - 1 for some in (along.arrival, arrival))
     assert np.abs(np.diff(along.rotary[last], axis=0)).max() > 2.0
     assert joints[there, 3:] == pytest.approx(along.rotary[last], abs=1e-6)
+
+
+def test_what_is_in_the_way_down_to_the_path_is_told_once(plan: Plan) -> None:
+    """A roof that the head's upper end meets when Z is up, however often the plan is arranged."""
+    machine = plan.machine.machine
+    top = float(machine.linear[2].high)
+    roof = Body("roof", "bed", "box", np.array([[-900.0, -900, top + 150], [900, 900, top + 160]]))
+    table = Body("table", "C", "box", np.array([[-50.0, -50, -30], [50, 50, 0]]))
+    made = arranged(with_bodies(plan, roof, SPINDLE, table))
+    assert made.operations[0].done and made.outcome == "incomplete" and len(made.in_the_way) == 2
+    assert "on the approach" in made.in_the_way[0] and made.in_the_way[1].startswith("at the end: on the retract")
+    assert arranged(made).in_the_way == made.in_the_way

@@ -65,7 +65,7 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     kept = tuple(refused(op, why) if why and not states else op
                  for op, (states, why) in zip(plan.operations, found, strict=True))
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(kept, plan.blades)
-    plan = replace(plan, operations=kept, outcome=outcome)
+    plan = replace(plan, operations=kept, outcome=outcome, in_the_way=())
     rows = [states for states, _ in found if states]
     return kept_clear(_in_order(plan, mounting, rows, around, reorder) if rows else plan, mounting, around)
 
