@@ -160,7 +160,7 @@ def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, arou
 
 
 def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surroundings, *, with_tool: bool = True,
-               most: float | None = None) -> Meeting | None:
+               most: float | None = None, over_table: bool = True) -> Meeting | None:
     """The same where linear axes move inside some bodies, such as the rectangle that two of them may take any way in.
 
     Parameters
@@ -169,13 +169,17 @@ def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surr
         As for `nearest_meeting`.
     ways : Convex
         In linear coordinates, one after the other, mm.
+    over_table : bool
+        Whether the tool is held against bodies that go along with the part too.
     """
     machine, enough = mounting.machine, around.required if most is None else most
     stand = standing(machine, rotary, mounting.table_from_part)
-    still = [(one.body.name, one.body.carried, _single(one.shape)) for one in stand if beside_part(machine, one.body)]
+    still = [(one.body.name, one.body.carried, single(one.shape)) for one in stand if beside_part(machine, one.body)]
     faces = [tree_of(cells) for cells in around.faces]
     best: Meeting | None = None
-    pairs = [*_between(machine, list(_movers(mounting, rotary, ways, stand, around.tool)), still, faces, with_tool),
+    besides = "" if over_table else carrier_of(machine)
+    movers = list(_movers(mounting, rotary, ways, stand, around.tool))
+    pairs = [*_between(machine, movers, still, faces, with_tool, besides),
              *_with_part(machine, stand, faces)]
     for mover, name, tree in pairs:
         least = enough if best is None else min(best.distance, enough)
@@ -188,6 +192,16 @@ def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surr
     if best is not None and best.distance < enough:
         return best
     return _swallowed(machine, stand, around, ways.centre[0, 0])
+
+
+def carrier_of(machine: Machine) -> str:
+    """What carries the part: the name of an axis, or "bed".
+
+    Parameters
+    ----------
+    machine : Machine
+    """
+    return machine.table[0].name if machine.table else BED
 
 
 _PairRow = tuple[_Mover, str, Tree]
@@ -204,14 +218,14 @@ def _movers(mounting: Mounting, rotary: ArrayLike, ways: Convex, stand: list[Sta
     rows = solid_pieces(tool.profile, tool.outlines)
     pieces = convex_pieces(rows).moved(frame)
     carrier = part_from_bed(machine, rotary, mounting.table_from_part)[:3, :3] @ machine.directions
-    trails = {carrier.tobytes(): _tree(_carried(ways, carrier))}
+    trails = {carrier.tobytes(): tree_over(_carried(ways, carrier))}
     for k, row in enumerate(rows):
         yield _Mover(COMPONENTS[int(row[7])], "", pieces.rows(np.array([k])), trails[carrier.tobytes()])
     for one in stand:
         if not beside_part(machine, one.body):
             key = one.carrier.tobytes()
             if key not in trails:
-                trails[key] = _tree(_carried(ways, one.carrier))
+                trails[key] = tree_over(_carried(ways, one.carrier))
             yield _Mover(one.body.name, one.body.carried, one.shape, trails[key])
 
 
@@ -221,11 +235,13 @@ def _carried(ways: Convex, carrier: Array) -> Convex:
 
 
 def _between(machine: Machine, movers: list[_Mover], still: list[tuple[str, str, Tree]], faces: list[Tree],
-             with_tool: bool) -> Iterator[_PairRow]:
-    """The spindle's side against the table's; what the first linear axis carries slides on the bed."""
+             with_tool: bool, besides: str) -> Iterator[_PairRow]:
+    """The spindle's side against the table's; what the first linear axis carries slides on the bed.  The tool is not
+    held against what an axis carries that is named."""
     for mover in movers:
         for name, carried, tree in still:
-            if not (carried == BED and mover.carried == machine.linear[0].name):
+            sliding = carried == BED and mover.carried == machine.linear[0].name
+            if not sliding and (mover.carried or carried != besides):
                 yield mover, name, tree
         for tree in faces:
             if mover.carried or with_tool:
@@ -234,11 +250,11 @@ def _between(machine: Machine, movers: list[_Mover], still: list[tuple[str, str,
 
 def _with_part(machine: Machine, stand: list[Standing], faces: list[Tree]) -> Iterator[_PairRow]:
     """Bodies on the table's side that the part turns against."""
-    carrier = machine.table[0].name if machine.table else BED
+    carrier = carrier_of(machine)
     for one in stand:
         if beside_part(machine, one.body) and one.body.carried != carrier:
             for tree in faces:
-                yield _Mover(one.body.name, one.body.carried, one.shape, _tree(places(np.zeros((1, 3))))), "", tree
+                yield _Mover(one.body.name, one.body.carried, one.shape, tree_over(places(np.zeros((1, 3))))), "", tree
 
 
 def _label(cells: Sequence[Cells], trees: list[Tree], tree: Tree, node: int) -> str:
@@ -249,7 +265,7 @@ def _label(cells: Sequence[Cells], trees: list[Tree], tree: Tree, node: int) -> 
 
 def _swallowed(machine: Machine, stand: list[Standing], around: Surroundings, at: Array) -> Meeting | None:
     """A body that lies wholly inside the box around the part, where the distance from its faces would not tell."""
-    carrier = machine.table[0].name if machine.table else BED
+    carrier = carrier_of(machine)
     for cells in around.faces:
         box = np.array([face.box for face in cells.faces])
         low, high = box[:, 0].min(axis=0), box[:, 1].max(axis=0)
@@ -263,12 +279,23 @@ def _swallowed(machine: Machine, stand: list[Standing], around: Surroundings, at
     return None
 
 
-def _single(shape: Convex) -> Tree:
+def single(shape: Convex) -> Tree:
+    """One body as a tree.
+
+    Parameters
+    ----------
+    shape : Convex
+    """
     return Tree(shape, np.full((1, 2), -1), np.zeros(1))
 
 
-def _tree(nodes: Convex) -> Tree:
-    """Motions as a tree: two by two in boxes, the root last."""
+def tree_over(nodes: Convex) -> Tree:
+    """Motions as a tree: two by two in boxes, the root last.
+
+    Parameters
+    ----------
+    nodes : Convex
+    """
     count = len(nodes.centre)
     ends = np.abs(nodes.spread).sum(axis=1)
     low, high = [nodes.centre[:, 0] - ends], [nodes.centre[:, 0] + ends]

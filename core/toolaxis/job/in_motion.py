@@ -69,7 +69,8 @@ def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple
                                   float(mounting.tool_length or 0.0), near=stand, travel=True)
             except InvalidInput as reason:
                 return _but(plan, k, str(reason)), []
-            found = meeting_in_motion(mounting, motions(along.linear, along.rotary, along.arrival), around)
+            way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)
+            found = meeting_in_motion(mounting, way, around)
             if found is not None:
                 return _but(plan, k, f"{words(mounting, found[1], found[0], around.required)}, at point "
                                      f"{found[0].motion} of the path"), []

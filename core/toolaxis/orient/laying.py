@@ -178,6 +178,7 @@ def beyond(job: Task, path: ToolPath) -> Witness | None:
         return None
     around = Surroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
                           job.feasibility.tolerance.holder_clearance)
-    found = meeting_in_motion(mounting, motions(along.linear, along.rotary, along.arrival), around, job.progress)
+    way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)
+    found = meeting_in_motion(mounting, way, around, job.progress)
     return None if found is None else Witness(LIMITS, ROUNDING, distance=found[0].distance,
                                               words=words(mounting, found[1], found[0], around.required))
