@@ -299,7 +299,7 @@ def deviations(rows: list[Row]) -> Figure:
         ax.set_visible(False)
     if image is not None:
         bar = made.colorbar(image, ax=list(axes), extend="both", shrink=0.6)
-        bar.set_label("left, µm; red: gouged by more than 2 µm")
+        bar.set_label("left, µm; orange: gouged by more than 2 µm")
     return made
 
 
