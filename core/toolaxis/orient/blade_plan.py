@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.orient.blade import CLEARANCE, Layer, Plane, Scheduled, Swing, plane_of, scheduled, swing_of
 from toolaxis.orient.blade_layers import Ring, along_blade, closed_parameter
 from toolaxis.orient.blade_room import Room, with_room
 from toolaxis.orient.blade_section import base_of, section
 from toolaxis.orient.indexed import CROSSING, Task
-from toolaxis.orient.mounted import mounting_of
+from toolaxis.orient.laying import beyond
+from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
 from toolaxis.orient.reasons import sentence
 from toolaxis.path.linking import Linking
@@ -291,16 +291,12 @@ def blade(job: Task, curve: str = "least") -> tuple[Orientation, ToolPath | None
 
 def _refused(job: Task, path: ToolPath) -> str | None:
     """Why a path may not be used."""
-    limits = job.feasibility.limits
+    limits = while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
         return "the axis leaves its limits on the path"
-    mounting = mounting_of(limits)
-    if mounting is not None:
-        try:
-            following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
-                      travel=mounting.judges_travel)
-        except InvalidInput as reason:
-            return str(reason)
+    stopped = beyond(job, path)
+    if stopped is not None:
+        return sentence(stopped, job.feasibility)
     proof = prove_moving(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
     return None if proof.witness is None else sentence(proof.witness, job.feasibility)
 

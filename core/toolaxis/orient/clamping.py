@@ -14,6 +14,7 @@ from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.free_angle import Gates, bands, narrowest, smoothest, widest
 from toolaxis.orient.indexed import Task
+from toolaxis.orient.mounted import while_moving
 from toolaxis.orient.nodes import NODES, Nodes
 from toolaxis.path.chart import Cut
 from toolaxis.path.clamped import AngleField, Clamp, ClampedChart, ClampedCut
@@ -192,7 +193,7 @@ class Clamping:
         feed : str
         """
         self.job.progress.check()
-        angles, limits = self.angles(clamp.which), self.job.feasibility.limits
+        angles, limits = self.angles(clamp.which), while_moving(self.job.feasibility.limits)
         widths = self._widths(clamp, feed, angles)
         if limits is not None:
             widths[~limits.allowed(clamp.axes(angles))] = 0.0

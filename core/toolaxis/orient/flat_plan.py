@@ -20,6 +20,8 @@ from toolaxis.orient.flat_strips import Lane, Strip, lay_strips, left_out, place
 from toolaxis.orient.flat_tilt import REASONS, TIGHT, TWO
 from toolaxis.orient.flat_work import Work
 from toolaxis.orient.indexed import CROSSING, Task
+from toolaxis.orient.laying import beyond
+from toolaxis.orient.mounted import while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.setting import OTHER, SKIN
@@ -193,9 +195,12 @@ def gouging(job: Task, path: ToolPath) -> NDArray[np.intp]:
 
 def _judged(job: Task, choice: Choice, strips: tuple[Strip, ...], path: ToolPath) -> tuple[Orientation, Witness | None]:
     """What a path comes to, and why it may not be used."""
-    work, limits = choice.work, job.feasibility.limits
+    work, limits = choice.work, while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
         return Orientation(None), Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes")
+    stopped = beyond(job, path)
+    if stopped is not None:
+        return Orientation(None), stopped
     proof = prove_moving(path, work.tool, job.groups, work.allowance, progress=job.progress)
     if proof.witness is not None:
         return Orientation(None), proof.witness

@@ -14,7 +14,7 @@ from toolaxis.feed.turning import following
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import CROSSING, Task
-from toolaxis.orient.mounted import mounting_of
+from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
 from toolaxis.orient.proof import Proof
 from toolaxis.orient.setting import OTHER, SKIN
@@ -94,7 +94,7 @@ def laid(job: Task, chart: LeadChart, cut: LeadCut,
         placed, path = made(job, chart, cut)
     except InvalidInput as reason:  # a place between the screened ones leaves no strip
         return Laid(witness=Witness(BACK, 0.0, words=str(reason)))
-    path, limits = finish(path), job.feasibility.limits
+    path, limits = finish(path), while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
         return Laid(witness=Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes, where they run "
                                                             "out"))

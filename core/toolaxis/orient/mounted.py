@@ -76,6 +76,19 @@ def at_face(limits: AxisLimits | None, face: Face, tool: Tool) -> AxisLimits | N
     return limits.reaching(points, 2 * tool.radius)  # a tip is no farther than that from its contact
 
 
+def while_moving(limits: AxisLimits | None) -> AxisLimits | None:
+    """Limits of an axis that moves while it cuts: each need not bring the whole face inside the machine's travel, only
+    its own place, which is asked of the path.
+
+    Parameters
+    ----------
+    limits : AxisLimits or None
+    """
+    if isinstance(limits, AllOf):
+        return AllOf(tuple(part for part in map(while_moving, limits.parts) if part is not None))
+    return replace(limits, reached=np.empty((0, 3))) if isinstance(limits, Mounting) else limits
+
+
 def held_axis(limits: AxisLimits | None, axis: Array) -> Array:
     """The axis nearest to one that the machine among limits holds in its steps; itself where there is none.
 

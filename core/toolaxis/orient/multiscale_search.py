@@ -35,7 +35,7 @@ from toolaxis.orient.lane import (
     knots_of,
     leaning,
 )
-from toolaxis.orient.mounted import mounting_of
+from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.multiscale import Smoothed, smoothed
 from toolaxis.orient.multiscale_path import (
     FieldChart,
@@ -196,7 +196,7 @@ class Multiscale:
         for group in self.job.feasibility.groups:
             table = np.tile(group.required, (len(group.faces), 1))
             bad |= judged(group.cells, self.tool, moves, table).blocked >= 0
-        limits = self.job.feasibility.limits
+        limits = while_moving(self.job.feasibility.limits)
         return bad if limits is None else bad | ~limits.allowed(axes)
 
     def field(self, feed: str) -> FieldCut:

@@ -19,6 +19,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.orient.contacts import around
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.laying import CHECKED, laid
+from toolaxis.orient.mounted import while_moving
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.verdicts import Witness
 from toolaxis.orient.worth import FEEDS
@@ -93,7 +94,7 @@ class Sturz:
         """
         self.job.progress.check()
         self.tried += 1
-        axes, limits = self._axes(lead, feed), self.job.feasibility.limits
+        axes, limits = self._axes(lead, feed), while_moving(self.job.feasibility.limits)
         if limits is not None and not limits.allowed(axes).all():
             return False
         moves = motions(place(self.face, self.tool, self.uv, axes, self.job.worth.allowance), axes)
