@@ -162,14 +162,17 @@ class _Turning:
         self.mounting, self.around, self.reach = mounting, around, arms(mounting, around)
 
     def play(self, some: Motions) -> float:
+        """By the reach of what each axis turns."""
         return float(np.ptp(some.rotary, axis=(0, 1)) @ self.reach) / 2
 
     def nearest(self, some: Motions, most: float) -> Meeting | None:
+        """With the rotary axes in the middle."""
         middle = (some.rotary.min(axis=(0, 1)) + some.rotary.max(axis=(0, 1))) / 2
         return meeting_on(self.mounting, middle, _ways(some.linear), self.around, with_tool=False, most=most,
                           over_table=False)
 
     def split(self, some: Motions) -> list[Motions]:
+        """By rotary angles."""
         return _split(some, lambda one: one.rotary * self.reach)
 
 
@@ -191,10 +194,12 @@ class _Leaning:
         return np.asarray(unit(way)) if np.linalg.norm(way) > 0 else some.axes[0, 0]
 
     def play(self, some: Motions) -> float:
+        """By how far the tool reaches from its tip."""
         angle = float(angle_between(some.axes.reshape(-1, 3), self._middle(some)).max())
         return 2 * self.arm * float(np.sin(min(angle + _OFF, np.pi) / 2))
 
     def nearest(self, some: Motions, most: float) -> Meeting | None:
+        """With the tool along the middle axis."""
         axis, frame, best = self._middle(some), np.eye(4), None
         frame[:3, :3] = np.stack([*perpendicular(axis), axis], axis=1)
         trail, pieces, least = tree_over(_ways(some.tips)), self.pieces.moved(frame), most
@@ -206,6 +211,7 @@ class _Leaning:
         return best
 
     def split(self, some: Motions) -> list[Motions]:
+        """By tool axes."""
         return _split(some, lambda one: one.axes)
 
 

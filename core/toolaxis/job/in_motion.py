@@ -6,10 +6,10 @@ import numpy as np
 
 from toolaxis.contact.indexing import Stop, trouble_at_the_ends, trouble_between
 from toolaxis.contact.machinery import Surroundings, words
-from toolaxis.contact.turning_machinery import meeting_in_motion, motions
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
 from toolaxis.machine.mounting import Mounting
+from toolaxis.orient.laying import met
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -69,8 +69,7 @@ def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple
                                   float(mounting.tool_length or 0.0), near=stand, travel=True)
             except InvalidInput as reason:
                 return _but(plan, k, str(reason)), []
-            way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)
-            found = meeting_in_motion(mounting, way, around)
+            found = met(mounting, along, around)
             if found is not None:
                 return _but(plan, k, f"{words(mounting, found[1], found[0], around.required)}, at point "
                                      f"{found[0].motion} of the path"), []

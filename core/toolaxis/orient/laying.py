@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.machinery import Surroundings, words
+from toolaxis.contact.machinery import Meeting, Surroundings, words
 from toolaxis.contact.turning_machinery import meeting_in_motion, motions
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
+from toolaxis.feed.turning import Following, following
 from toolaxis.machine.limits import ROUNDING
+from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.indexed import CROSSING, Task
 from toolaxis.orient.mounted import mounting_of, while_moving
@@ -27,6 +28,7 @@ from toolaxis.path.linking import Linking
 from toolaxis.path.swivelling import MovingStroke, Swivelling, joined
 from toolaxis.path.tracing import climbing
 from toolaxis.plan.orientation import Orientation
+from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 
@@ -178,7 +180,21 @@ def beyond(job: Task, path: ToolPath) -> Witness | None:
         return None
     around = Surroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
                           job.feasibility.tolerance.holder_clearance)
-    way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)
-    found = meeting_in_motion(mounting, way, around, job.progress)
+    found = met(mounting, along, around, job.progress)
     return None if found is None else Witness(LIMITS, ROUNDING, distance=found[0].distance,
                                               words=words(mounting, found[1], found[0], around.required))
+
+
+def met(mounting: Mounting, along: Following, around: Surroundings,
+        progress: Progress = NO_PROGRESS) -> tuple[Meeting, Array] | None:
+    """Where anything of a machine comes too near to anything else while it follows a path; see `meeting_in_motion`.
+
+    Parameters
+    ----------
+    mounting : Mounting
+    along : Following
+    around : Surroundings
+    progress : Progress
+    """
+    way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)
+    return meeting_in_motion(mounting, way, around, progress)
