@@ -211,6 +211,24 @@ def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member
     assert found.text.startswith(f"the {member} meets face ") and f" of the {thing} by 1.0 mm" in found.text
 
 
+def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
+    """A tool 20 mm longer lifts the spindle by that, and its holder clears the post that the short one's meets."""
+    long = ta.Tool.ball(diameter=8, stickout=55, holder=[(10, 0), (10, 30), (20, 30), (20, 50)])
+    tools, tip = [TOOL, long], np.array([3.0, 0.0, 12.0])
+    journey = Journey.through(mounted, [(tip, np.zeros(2))] * 2, [tool.gauge_length for tool in tools])
+    rise = journey.joints[1, 2] - journey.joints[0, 2]
+    assert rise == pytest.approx(long.gauge_length - TOOL.gauge_length) and rise > 0
+    assert [journey.station(way) for way in (0.0, 0.2, 0.21, 0.5, 1.0)] == [0, 0, 1, 1, 1]
+    known = meetings.around(mounted, tools, clamped, NO_PROGRESS)
+    found = meetings.along(known, journey, [0, 1], NO_PROGRESS)
+    assert found[0].member == "holder" and found[-1] is None
+    first, second = machines.in_order(mounted, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
+    assert not first[0][0].reason and not second[0][0].reason
+    deep = machines.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    short, far = machines.in_order(deep, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
+    assert "the spindle meets the table" in short[0][0].reason and not far[0][0].reason
+
+
 def test_what_meets_on_the_way_is_found_between_stations(mounted, clamped):
     """With little room above it the tool goes from one side of the post to the other through it."""
     axes = tuple(replace(axis, high=130.0) if axis.name == "Z" else axis for axis in mounted.machine.linear)

@@ -50,7 +50,9 @@ def offered(document):
 def folders():
     """The user's own folders of machines that exist: that of the preferences, and FreeCAD's."""
     named = machines_folder()
-    found = [Path(named).expanduser()] if named else []
+    found = []
+    with suppress(RuntimeError):  # the home of somebody who has none
+        found += [Path(named).expanduser()] if named else []
     with suppress(Exception):  # a FreeCAD that keeps no machines
         import Path.Preferences as CamPreferences
 
@@ -221,18 +223,21 @@ def in_order(mounted, operations):
     Parameters
     ----------
     mounted : toolaxis.machine.mounting.Mounting
-    operations : sequence of (axis, tips)
+    operations : sequence of (axis, tips) or (axis, tips, tool length)
+        The length, mm, where it is not that of the mounting; None where it is not known.
 
     Returns
     -------
     list of (list of Held, int)
         The number is -1 where none can be held.
     """
+    from dataclasses import replace
+
     import numpy as np
 
     stand, found = np.zeros(len(mounted.machine.rotary)), []
-    for axis, tips in operations:
-        ways = ways_to_hold(mounted, axis, tips)
+    for axis, tips, *length in operations:
+        ways = ways_to_hold(replace(mounted, tool_length=length[0]) if length else mounted, axis, tips)
         good = [k for k, way in enumerate(ways) if not way.reason]
         taken = min(good, key=lambda k: float(np.abs(ways[k].rotary - stand).max(initial=0.0)), default=-1)
         stand = ways[taken].rotary if taken >= 0 else stand

@@ -56,8 +56,9 @@ class Around:
     Attributes
     ----------
     mounted : toolaxis.machine.mounting.Mounting
+        Its tool's length does not count.
     surroundings : tuple of toolaxis.contact.machinery.Surroundings
-        One for each operation.
+        One for each operation, with its tool.
     names : dict of str to str
         Names of objects by what their faces are called after their numbers.
     """
@@ -84,7 +85,7 @@ class Around:
         """
         from toolaxis.contact.machinery import nearest_meeting
 
-        found = nearest_meeting(self.mounted, rotary, tips, self.surroundings[row], with_tool=True)
+        found = nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row], with_tool=True)
         return self._told(found, rotary)
 
     def at(self, row, joints):
@@ -103,8 +104,12 @@ class Around:
         from toolaxis.contact.machinery import meeting_on
         from toolaxis.numeric.convex import places
 
-        found = meeting_on(self.mounted, joints[3:], places(joints[None, :3]), self.surroundings[row])
+        found = meeting_on(self._holding(row), joints[3:], places(joints[None, :3]), self.surroundings[row])
         return self._told(found, joints[3:])
+
+    def _holding(self, row):
+        """The machine with the tool of an operation in its spindle."""
+        return replace(self.mounted, tool_length=self.surroundings[row].tool.gauge_length)
 
     def _told(self, found, rotary):
         from toolaxis.contact.machinery import words
@@ -145,6 +150,48 @@ def copies(operations):
     return [Copy(thing.Name, name_of(thing), shape_of(thing).copy()) for thing in found.values()]
 
 
+def tool_of(operation):
+    """The whole tool of an operation.
+
+    Parameters
+    ----------
+    operation : App.DocumentObject
+
+    Returns
+    -------
+    toolaxis.tools.assembly.Tool
+    """
+    from .inputs import inputs_of
+
+    return inputs_of(operation).assembled()
+
+
+def read(found, progress):
+    """Read copies one after the other; runs in any thread.
+
+    Parameters
+    ----------
+    found : sequence of Copy
+    progress : toolaxis.progress.Progress
+
+    Yields
+    ------
+    (str, str, tuple of toolaxis.shape.face.Face)
+        What it is called, each otherwise; the object's name; and its faces.
+    """
+    from toolaxis.cad.freecad import part_from
+    from toolaxis.progress import heard
+
+    called = set()
+    for k, copy in enumerate(found):
+        progress.report("reading the bodies", k, len(found))
+        label = copy.label if copy.label not in called else f"{copy.label} ({copy.name})"
+        called.add(label)
+        with heard(progress):
+            faces = tuple(part_from(copy.shape).faces)
+        yield label, copy.name, faces
+
+
 def around(mounted, tools, found, progress):
     """Read copies for a machine; runs in any thread.
 
@@ -161,20 +208,16 @@ def around(mounted, tools, found, progress):
     -------
     Around
     """
-    from toolaxis.cad.freecad import part_from
     from toolaxis.contact.machinery import Surroundings
     from toolaxis.progress import heard
     from toolaxis.shape.cells import forest
 
     names, cells = {}, []
-    for k, copy in enumerate(found):
-        progress.report("reading the bodies", k, len(found))
-        label = copy.label if copy.label not in names else f"{copy.label} ({copy.name})"
-        names[label] = copy.name
+    for label, name, faces in read(found, progress):
+        names[label] = name
         with heard(progress):
-            faces = [replace(face, label=f"{face.number} of {label}") for face in part_from(copy.shape).faces]
             if faces:
-                cells.append(forest(tuple(faces)))
+                cells.append(forest(tuple(replace(face, label=f"{face.number} of {label}") for face in faces)))
     return Around(mounted, tuple(Surroundings(tool, tuple(cells), -DEPTH) for tool in tools), names)
 
 
@@ -185,7 +228,7 @@ def along(known, journey, rows, progress):
     ----------
     known : Around
     journey : object
-        With `at(way)` and `joints`, the stations.
+        With `at(way)`, `station(way)` and `joints`, the stations.
     rows : sequence of int
         The operation of each station.
     progress : toolaxis.progress.Progress
@@ -201,5 +244,5 @@ def along(known, journey, rows, progress):
     with heard(progress):
         for k in range(count):
             progress.report("looking for collisions", k, count)
-            found.append(known.at(rows[k // STEPS], journey.at(k / STEPS)))
+            found.append(known.at(rows[journey.station(k / STEPS)], journey.at(k / STEPS)))
     return found

@@ -1,5 +1,7 @@
 """The task panel of Machine: pick one, see its angles for every operation, and watch it go from one to the next."""
 
+from dataclasses import replace
+
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
@@ -9,7 +11,7 @@ from ..machines import available, text_of, texts_of
 from ..objects.machine import machine_of, place_machine
 from ..tasks import Work, sentence
 from .fields import load_form, tell
-from .machinelook import looked_at, met_by, middle_of, names_of, things_of, tip_of
+from .machinelook import lengths_at, looked_at, met_by, middle_of, names_of, things_of, tip_of
 from .machinemotion import Journey, meeting
 from .machinescene import MachineScene
 from .panel import Panel
@@ -38,7 +40,7 @@ class MachinePanel(Panel):
         self.operations = list(operations)
         self.scene = MachineScene(document)
         self.found = self.journey = None
-        self.stations, self.tools = [], []
+        self.stations = []
         self.met, self.held = [], {}
         self.timer = QtCore.QTimer(self.form)
         self.timer.setInterval(_FRAME)
@@ -134,6 +136,9 @@ class MachinePanel(Panel):
         self.found = self.journey = None
         self.met, self.held = [], {}
         self.scene.clear()
+        if not self.operations:
+            self._not_found(translate("ToolAxis", "The operations were deleted: there is no axis to hold"))
+            return
         try:
             stands = [Standing.of(operation) for operation in self.operations]
             tools = [inputs_of(operation).assembled() for operation in self.operations]
@@ -167,11 +172,11 @@ class MachinePanel(Panel):
         lost = [self.operations[k].Label for k, (_, taken) in enumerate(rows) if taken < 0]
         self.stations = [(k, max(taken, 0)) for k, (ways, taken) in enumerate(rows) if ways]
         if self.stations:
-            self.scene.show(mounted, tools[self.stations[0][0]])
+            self.scene.show(mounted, tools)
             self._travel(stands)
         if lost:
             self.told = translate("ToolAxis", "Not held by this machine: {}").format(", ".join(lost)), True
-        elif not mounted.judges_travel:
+        elif any(tool.gauge_length is None for tool in tools):
             self.told = translate("ToolAxis", "Every axis can be held. Travels are not looked at: the tool has no "
                                               "holder."), False
         else:
@@ -224,9 +229,9 @@ class MachinePanel(Panel):
 
     def _travel(self, stands):
         """Show the machine on its way through the operations."""
-        mounted, rows, _ = self.found
+        mounted, rows, tools = self.found
         self.journey = Journey.through(mounted, [(middle_of(stands[k].path), rows[k][0][way].rotary)
-                                                 for k, way in self.stations])
+                                                 for k, way in self.stations], lengths_at(self.stations, tools))
         self.stands = stands
         self.form.slide.setMaximum(max(1000 * (len(self.stations) - 1), 1))
         blocked = self.form.slide.blockSignals(True)
@@ -275,10 +280,10 @@ class MachinePanel(Panel):
     def _slide(self, value):
         if self.journey is None:
             return
-        mounted, near = self.found[0], self._near(value / 1000)
-        joints = self.journey.at(value / 1000)
+        near, row = self._near(value / 1000), self.stations[self.journey.station(value / 1000)][0]
+        mounted, joints = self._holding(row), self.journey.at(value / 1000)
         red, depth = meeting(mounted, joints)
-        self.scene.stand(joints, red | names_of(near), self.form.still.isChecked())
+        self.scene.stand(joints, red | names_of(near), self.form.still.isChecked(), row)
         self.scene.redden(things_of(near, self.document))
         at = mounted.at(joints[3:]).removeprefix(" at ")
         linear = "  ".join(f"{axis.name} {x:.1f}" for axis, x in zip(mounted.machine.linear, joints[:3], strict=True))
@@ -288,6 +293,11 @@ class MachinePanel(Panel):
         if near is not None:
             text += f"\n{near.text}"
         tell(self.form.pointer, text, bool(red) or near is not None)
+
+    def _holding(self, row):
+        """The machine with the tool of an operation in its spindle."""
+        mounted, _, tools = self.found
+        return replace(mounted, tool_length=tools[row].gauge_length)
 
     def _near(self, way):
         """What meets there, or at the next place beside it that was looked at; None where nothing does."""
@@ -303,11 +313,11 @@ class MachinePanel(Panel):
         if (row, column) in self.stations:
             self.form.slide.setValue(1000 * self.stations.index((row, column)))
             return
-        mounted, rows, _ = self.found
+        mounted, rows = self._holding(row), self.found[1]
         way, path, one = rows[row][0][column], self.stands[row].path, self.held.get((row, column))
         joints = Journey.through(mounted, [(tip_of(path, one), way.rotary)]).joints[0]
         red, _ = meeting(mounted, joints)
-        self.scene.stand(joints, red | names_of(one), self.form.still.isChecked())
+        self.scene.stand(joints, red | names_of(one), self.form.still.isChecked(), row)
         self.scene.redden(things_of(one, self.document))
         reasons = [text for text in (way.reason, one.text if one is not None else "") if text]
         tell(self.form.pointer, f"{way.text(mounted.machine)}: {'; '.join(reasons)}", bool(reasons))

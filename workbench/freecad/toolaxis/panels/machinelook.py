@@ -8,9 +8,10 @@ from .machinemotion import Journey
 
 
 def looked_at(text, stands, tools):
-    """The machine, the solutions of all operations, and their tools; runs off the GUI thread."""
+    """The machine, the solutions of all operations, each with its tool, and the tools; runs off the GUI thread."""
     mounted = mounting(text, tools[0])
-    return mounted, in_order(mounted, [(stand.matrix[:3, 2], stand.path.cl) for stand in stands]), tools
+    asked = [(stand.matrix[:3, 2], stand.path.cl, tool.gauge_length) for stand, tool in zip(stands, tools, strict=True)]
+    return mounted, in_order(mounted, asked), tools
 
 
 def met_by(mounted, planned, copies, stations, progress):
@@ -26,8 +27,13 @@ def met_by(mounted, planned, copies, stations, progress):
             progress.report("looking for collisions", row, len(rows))
             held[row, column] = known.on_passes(row, way.rotary, paths[row].cl)
     journey = Journey.through(mounted, [(tip_of(paths[row], held[row, column]), rows[row][0][column].rotary)
-                                        for row, column in stations])
+                                        for row, column in stations], lengths_at(stations, tools))
     return held, journey, meetings.along(known, journey, [row for row, _ in stations], progress)
+
+
+def lengths_at(stations, tools):
+    """The length of the tool at each station, mm; None where it has no holder."""
+    return [tools[row].gauge_length for row, _ in stations]
 
 
 def names_of(one):

@@ -1,4 +1,4 @@
-"""How a machine goes from operation to operation, as joint coordinates: up, turn, over, down."""
+"""How a machine goes from operation to operation, as joint coordinates: up, change the tool, turn, over, down."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class Journey:
     joints: np.ndarray
 
     @classmethod
-    def through(cls, mounted, stations):
+    def through(cls, mounted, stations, lengths=None):
         """A journey through stations.
 
         Parameters
@@ -33,12 +33,15 @@ class Journey:
         mounted : toolaxis.machine.mounting.Mounting
         stations : sequence of ((3,) array, (m,) array)
             Tips in the document's space, mm, and rotary angles, rad.
+        lengths : sequence of float or None, optional
+            Of the tool at each station, mm; that of the mounting unless given.
         """
         from toolaxis.machine.kinematics import linear_coordinates
 
-        rows = [np.concatenate([linear_coordinates(mounted.machine, tip[None], rotary, float(mounted.tool_length or 0),
+        lengths = [mounted.tool_length] * len(stations) if lengths is None else lengths
+        rows = [np.concatenate([linear_coordinates(mounted.machine, tip[None], rotary, float(length or 0),
                                                    mounted.table_from_part)[0], rotary])
-                for tip, rotary in stations]
+                for (tip, rotary), length in zip(stations, lengths, strict=True)]
         return cls(mounted.machine, np.array(rows))
 
     @property
@@ -46,6 +49,17 @@ class Journey:
         """Where Z is up, mm."""
         high = self.machine.linear[2].high
         return float(high) if np.isfinite(high) else float(self.joints[:, 2].max()) + _ABOVE
+
+    def station(self, way):
+        """The station whose tool is in the spindle: from up there on the next one's.
+
+        Parameters
+        ----------
+        way : float
+            As for `at`.
+        """
+        way = min(max(float(way), 0.0), len(self.joints) - 1.0)
+        return int(way) + int(way - int(way) > _UP + 1e-9)
 
     def at(self, way):
         """Joint coordinates on the way, (3 + m,).

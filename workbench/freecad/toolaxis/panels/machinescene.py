@@ -31,13 +31,13 @@ class MachineScene:
         self.root = self.view = self.mounted = self.seen = None
         self.bed, self.reddened = np.eye(4), []
 
-    def show(self, mounted, tool):
-        """Put a machine and a tool into the view.
+    def show(self, mounted, tools):
+        """Put a machine and the tools of its operations into the view.
 
         Parameters
         ----------
         mounted : toolaxis.machine.mounting.Mounting
-        tool : toolaxis.tools.assembly.Tool
+        tools : sequence of toolaxis.tools.assembly.Tool
         """
         from toolaxis.machine.standing import beside_part
 
@@ -61,19 +61,32 @@ class MachineScene:
             self.root.addChild(node)
             self.bodies.append((body, transform, node.getChild(2), _TABLE if beside else _HEAD))
         self.tool = coin.SoMatrixTransform()
-        node = coin.SoSeparator()
+        node, self.spindle, self.members, self.kinds = coin.SoSeparator(), coin.SoSwitch(), [], []
         node.addChild(self.tool)
-        self.members = []
-        for solid in solids(tool):
-            member = _revolved(*solid)
-            node.addChild(member)
-            self.members.append((solid[0], member.getChild(1), _COLOURS.get(solid[0], _COLOURS["shank"])))
+        node.addChild(self.spindle)
+        self.lengths = [float(tool.gauge_length or 0.0) for tool in tools]
+        known = {}
+        for tool in tools:
+            key = tool.profile, *((name, line.tobytes()) for name, line in tool.outlines.items())
+            if key not in known:
+                known[key] = len(known)
+                self.spindle.addChild(self._whole(tool))
+            self.kinds.append(known[key])
         self.root.addChild(node)
         self.over = coin.SoSeparator()
         self.root.addChild(self.over)
         self.view.getSceneGraph().addChild(self.root)
 
-    def stand(self, joints, red, still):
+    def _whole(self, tool):
+        """Cutter, shank and holder; their materials join those that turn red."""
+        node = coin.SoSeparator()
+        for solid in solids(tool):
+            member = _revolved(*solid)
+            node.addChild(member)
+            self.members.append((solid[0], member.getChild(1), _COLOURS.get(solid[0], _COLOURS["shank"])))
+        return node
+
+    def stand(self, joints, red, still, row=0):
         """Move everything to joint coordinates.
 
         Parameters
@@ -83,6 +96,8 @@ class MachineScene:
             Names of bodies, and of members of the tool, that meet something.
         still : bool
             Whether the camera stays with the machine's bed; else with the part.
+        row : int
+            Number of the operation whose tool is in the spindle.
         """
         from toolaxis.machine.kinematics import forward
 
@@ -94,8 +109,8 @@ class MachineScene:
             material.diffuseColor.setValue(*(_RED if body.name in red else colour))
         for name, material, colour in self.members:
             material.diffuseColor.setValue(*(_RED if name in red else colour))
-        tip, axis = forward(self.mounted.machine, joints[None], float(self.mounted.tool_length or 0.0),
-                            self.mounted.table_from_part)
+        self.spindle.whichChild = self.kinds[row]
+        tip, axis = forward(self.mounted.machine, joints[None], self.lengths[row], self.mounted.table_from_part)
         self.tool.matrix.setValue(*_matrix(_upright(tip[0], axis[0])))
         if still:
             self._follow(found["bed"] @ np.linalg.inv(self.bed))
@@ -113,7 +128,7 @@ class MachineScene:
         self.over.removeAllChildren()
         self.reddened = [thing.Name for thing in things]
         for thing in things:
-            self.over.addChild(_red_over(thing))
+            self.over.addChild(red_over(thing))
 
     def _follow(self, motion):
         """Carry the camera along with a rigid motion."""
@@ -155,8 +170,13 @@ class MachineScene:
         self.bed, self.reddened = np.eye(4), []
 
 
-def _red_over(thing):
-    """An object's own picture once more, in red and a little nearer to the viewer."""
+def red_over(thing):
+    """An object's own picture once more, in red and a little nearer to the viewer.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
     node, place, material, offset = (coin.SoSeparator(), coin.SoMatrixTransform(), coin.SoMaterial(),
                                      coin.SoPolygonOffset())
     chain = chain_of(thing)
