@@ -11,12 +11,24 @@
  <context>
   <name>ToolAxis</name>
   <message>
+   <source> and {} more</source>
+   <translation> und {} weitere</translation>
+  </message>
+  <message>
+   <source>, about {} s left</source>
+   <translation>, noch etwa {} s</translation>
+  </message>
+  <message>
    <source>, missed by {}</source>
    <translation>, verfehlt um {}</translation>
   </message>
   <message>
    <source>A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end; of the faces around a blade one is enough.</source>
    <translation>Ein Kugelfräser läuft in Schichten um eine Schaufel, eine Drehachse schwenkt. Braucht einen Kugelfräser; von den Flächen um eine Schaufel genügt eine.</translation>
+  </message>
+  <message>
+   <source>A body to avoid was deleted: compute again without it</source>
+   <translation type="unfinished" />
   </message>
   <message>
    <source>Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip width.</source>
@@ -31,8 +43,16 @@
    <translation>Achse, die dreht</translation>
   </message>
   <message>
+   <source>Between the passes {}</source>
+   <translation>Zwischen den Bahnen: {}</translation>
+  </message>
+  <message>
    <source>Blade {}</source>
    <translation>Schaufel {}</translation>
+  </message>
+  <message>
+   <source>Cancel</source>
+   <translation>Abbrechen</translation>
   </message>
   <message>
    <source>Clean-up {}</source>
@@ -45,6 +65,10 @@
   <message>
    <source>Click on the map to try an axis.</source>
    <translation>Ein Klick in die Karte probiert eine Achse aus.</translation>
+  </message>
+  <message>
+   <source>Collisions could not be looked for: {}</source>
+   <translation>Nach Kollisionen konnte nicht gesucht werden: {}</translation>
   </message>
   <message>
    <source>Copy of {}</source>
@@ -69,6 +93,10 @@
   <message>
    <source>Drawing</source>
    <translation>Bilder werden gezeichnet</translation>
+  </message>
+  <message>
+   <source>Elsewhere on the passes {}: {}</source>
+   <translation>An anderer Stelle der Bahnen: {} ({})</translation>
   </message>
   <message>
    <source>Estimate and count</source>
@@ -167,6 +195,10 @@
    <translation>Alle Operationen werden betrachtet</translation>
   </message>
   <message>
+   <source>Looking for collisions</source>
+   <translation>Kollisionen werden gesucht</translation>
+  </message>
+  <message>
    <source>Machine</source>
    <translation>Maschine</translation>
   </message>
@@ -181,6 +213,10 @@
   <message>
    <source>Make CAM jobs</source>
    <translation>CAM-Aufträge anlegen</translation>
+  </message>
+  <message>
+   <source>Making CAM jobs</source>
+   <translation>CAM-Aufträge werden angelegt</translation>
   </message>
   <message>
    <source>Map of the tool axes</source>
@@ -209,6 +245,10 @@
   <message>
    <source>Nothing is selected: select faces or a body in the 3D view first</source>
    <translation>Nichts ist ausgewählt: bitte zuerst Flächen oder einen Körper in der 3D-Ansicht auswählen</translation>
+  </message>
+  <message>
+   <source>Nothing meets along the passes; looked at: {}</source>
+   <translation>Entlang der Bahnen stößt nichts zusammen; betrachtet: {}</translation>
   </message>
   <message>
    <source>On the machine</source>
@@ -395,6 +435,14 @@
    <translation>Die Operation wurde gelöscht</translation>
   </message>
   <message>
+   <source>The operations were deleted: there is no axis to hold</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
+   <source>The operations were deleted: there is nothing to write</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
    <source>The part was deleted: select other faces</source>
    <translation>Das Teil wurde gelöscht: bitte andere Flächen auswählen</translation>
   </message>
@@ -429,6 +477,10 @@
   <message>
    <source>There is no planned operation to write: select faces and run Plan Orientations first.</source>
    <translation>Es gibt keine geplante Operation, die zu schreiben wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>These operations have {0} orientations, and each becomes a job. Controls know {1} work offsets, so that several jobs will have the same one. Make {0} jobs?</source>
+   <translation>Diese Operationen haben {0} Orientierungen, und jede wird ein Auftrag. Steuerungen kennen {1} Nullpunktverschiebungen, sodass mehrere Aufträge dieselbe haben werden. {0} Aufträge anlegen?</translation>
   </message>
   <message>
    <source>This axis can be used.</source>
@@ -595,6 +647,10 @@
    <translation>Vorauswahl</translation>
   </message>
   <message>
+   <source>show it</source>
+   <translation>zeigen</translation>
+  </message>
+  <message>
    <source>strip width</source>
    <translation>Streifenbreite</translation>
   </message>
@@ -643,6 +699,10 @@
    <translation>{} Dateien in {}</translation>
   </message>
   <message>
+   <source>{} is also the work offset of {}: set it for this orientation before the program runs</source>
+   <translation>{} ist auch die Nullpunktverschiebung von {}: vor dem Programm für diese Orientierung einstellen</translation>
+  </message>
+  <message>
    <source>{} is stale: {}. Recompute it.</source>
    <translation>{} ist überholt: {}. Bitte neu berechnen.</translation>
   </message>
@@ -661,6 +721,10 @@
   <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse; die Gründe stehen auf dem Reiter Achse.</translation>
+  </message>
+  <message>
+   <source>{} of {} jobs have a work offset that other jobs have too: set it for the orientation before such a program runs. The jobs and their programs say so.</source>
+   <translation>{} von {} Aufträgen haben eine Nullpunktverschiebung, die auch andere haben: vor einem solchen Programm für die Orientierung einstellen. Aufträge und Programme sagen es.</translation>
   </message>
   <message>
    <source>{} of {} sub-surfaces</source>
@@ -894,6 +958,10 @@
   <message>
    <source>Verify</source>
    <translation>Prüfen</translation>
+  </message>
+  <message>
+   <source>What cutter, shank and holder meet of the part, of what is avoided, and of what else is in sight, and where.</source>
+   <translation>Woran Schneide, Schaft und Halter stoßen: am Teil, an dem, was gemieden wird, und an allem, was sonst sichtbar ist; und wo.</translation>
   </message>
   <message>
    <source>What the axis of the operation comes to.</source>

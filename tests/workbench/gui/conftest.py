@@ -188,6 +188,16 @@ class Desk:
         except (OSError, subprocess.SubprocessError):  # no tool for the whole screen here: the window without its view
             self.window.grab().save(str(path))
 
+    def red_points(self, document, folder):
+        """How many points of a picture of the 3D view are red, as things that meet are."""
+        from PySide import QtGui
+
+        path = str(folder / "view.png")
+        self.gui.getDocument(document.Name).ActiveView.saveImage(path, 700, 450, "White")
+        image = QtGui.QImage(path)
+        points = [image.pixelColor(x, y) for x in range(image.width()) for y in range(image.height())]
+        return sum(one.red() > 90 and one.red() > 2.5 * max(one.green(), one.blue()) for one in points)
+
     def open(self, path):
         """Open a STEP file in a document of its own; its part."""
         import FreeCAD

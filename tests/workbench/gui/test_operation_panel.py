@@ -1,5 +1,6 @@
 """The panel of an operation in the document: a double click opens it; it moves the tool and leads to planning again."""
 
+import FreeCAD
 import pytest
 
 
@@ -62,6 +63,44 @@ def test_a_changed_part_makes_it_stale_and_recompute_mends_it(desk, operation):
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
     assert not operation.Stale
+
+
+def test_a_clamp_that_the_tool_meets_is_told_and_red(desk, operation, tmp_path):
+    """A post that nobody ticked stands at one side of the part, as high as the holder."""
+    document = operation.Document
+    form = opened(desk, operation)
+    desk.wait(lambda: "Nothing meets" in form.met.text(), "collisions were looked for")
+    assert "cutter, shank" in form.met.text()
+    clamp = document.addObject("Part::Box", "Clamp")
+    clamp.Length, clamp.Width, clamp.Height = 6, 6, 90
+    clamp.Placement.Base = FreeCAD.Vector(26, 4, 0)
+    document.recompute()
+    desk.wait(lambda: "Clamp" in form.met.text(), "the clamp is noticed")
+    for thing in document.Objects:  # axes and rapid moves are red too
+        if thing.TypeId.endswith("CoordinateSystem") or thing.TypeId == "Path::Feature":
+            thing.ViewObject.Visibility = False
+    form.slide.setValue(0)
+    free = [value for value in range(0, 1001, 50) if moved(desk, form, value).startswith("Elsewhere on the passes")]
+    assert free, form.met.text()
+    form.slide.setValue(free[0])
+    assert "of Clamp by" in form.met.text() and "show it" in form.met.text()
+    desk.gui.ActiveDocument.ActiveView.fitAll()
+    desk.shot("42-met-elsewhere")
+    before = desk.red_points(document, tmp_path)
+    form.met.linkActivated.emit("there")
+    desk.pump(0.2)
+    assert "meets face" in form.met.text() and "of Clamp by" in form.met.text() and "Elsewhere" not in form.met.text()
+    desk.shot("43-met-here")
+    assert desk.red_points(document, tmp_path) > before + 500
+    desk.press(desk.standard_button("Close"))
+    desk.pump(0.2)
+    assert desk.red_points(document, tmp_path) <= before, "the red goes with the panel"
+
+
+def moved(desk, form, value):
+    form.slide.setValue(value)
+    desk.pump(0.02)
+    return form.met.text()
 
 
 def test_the_operation_deleted_under_its_panel(desk, operation):

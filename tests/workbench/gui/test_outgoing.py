@@ -208,23 +208,12 @@ def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
     assert "of Clamp by" in form.angles.item(0, 0).text() + form.angles.item(0, 1).text()
     assert "of Clamp by" in form.pointer.text(), form.pointer.text()
     desk.shot("74-clamp-met")
-    red, there = seen_red(desk, document, tmp_path), form.pointer.text()
+    red, there = desk.red_points(document, tmp_path), form.pointer.text()
     form.slide.setValue(500)
     desk.pump(0.2)
     assert form.pointer.text() != there and "Clamp" not in form.pointer.text(), form.pointer.text()
     desk.shot("75-clamp-free")
-    assert seen_red(desk, document, tmp_path) < 0.2 * red
-
-
-def seen_red(desk, document, folder):
-    """How many points of a picture of the 3D view are red, as things that meet are."""
-    from PySide import QtGui
-
-    path = str(folder / "view.png")
-    desk.gui.getDocument(document.Name).ActiveView.saveImage(path, 700, 450, "White")
-    image = QtGui.QImage(path)
-    points = [image.pixelColor(x, y) for x in range(image.width()) for y in range(image.height())]
-    return sum(one.red() > 90 and one.red() > 2.5 * max(one.green(), one.blue()) for one in points)
+    assert desk.red_points(document, tmp_path) < 0.2 * red
 
 
 @pytest.fixture

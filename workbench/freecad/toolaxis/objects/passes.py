@@ -175,6 +175,35 @@ class Stations:
         steps[rapid[1:]] = 0.0
         self.along = np.concatenate([[0.0], np.cumsum(steps)])
 
+    def _within(self, share):
+        """Number of the move, and the share of it that is done."""
+        import numpy as np
+
+        length = min(max(share, 0.0), 1.0) * self.along[-1]
+        if length >= self.along[-1]:
+            return int(np.searchsorted(self.along, self.along[-1], side="left")), 1.0
+        k = int(np.searchsorted(self.along, length, side="right"))
+        return k, (length - self.along[k - 1]) / (self.along[k] - self.along[k - 1])
+
+    def motion(self, share):
+        """Number of the move on which the tool stands, which ends at the point of that number.
+
+        Parameters
+        ----------
+        share : float
+            As for `at`.
+        """
+        return self._within(share)[0] if len(self.points) else 0
+
+    def share(self, motion):
+        """The share of the way at the end of a move.
+
+        Parameters
+        ----------
+        motion : int
+        """
+        return float(self.along[min(motion, len(self.along) - 1)] / max(self.along[-1], 1e-12))
+
     def at(self, share):
         """Where the tool stands in the plane's frame, a FreeCAD.Placement.
 
@@ -183,18 +212,10 @@ class Stations:
         share : float
             0 at the start of the first pass, 1 at the end of the last.
         """
-        import numpy as np
-
         if not len(self.points):
             return FreeCAD.Placement()
-        length = min(max(share, 0.0), 1.0) * self.along[-1]
-        if length >= self.along[-1]:
-            k = int(np.searchsorted(self.along, self.along[-1], side="left"))
-            tip = self.points[k]
-        else:
-            k = int(np.searchsorted(self.along, length, side="right"))
-            part = (length - self.along[k - 1]) / (self.along[k] - self.along[k - 1])
-            tip = self.points[k - 1] + part * (self.points[k] - self.points[k - 1])
+        k, part = self._within(share)
+        tip = self.points[k - 1] + part * (self.points[k] - self.points[k - 1]) if part < 1 else self.points[k]
         turn = FreeCAD.Rotation()
         if self.axes is not None and len(self.axes) == len(self.points):
             turn = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), FreeCAD.Vector(*self.axes[k].tolist()))

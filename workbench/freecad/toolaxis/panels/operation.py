@@ -10,6 +10,7 @@ from .. import RESOURCES, bridge
 from ..objects.belongings import child
 from ..pictures import drawn
 from ..tasks import Work, sentence
+from .collisions import Collisions
 from .fields import load_form, tell
 from .figures import fill, measures
 from .hemisphere import HemisphereMap
@@ -18,6 +19,9 @@ from .panel import Panel
 from .pictures import show_pictures
 
 translate = FreeCAD.Qt.translate
+
+#: How long nothing has changed before collisions are looked for again, ms.
+_AGAIN = 300
 
 
 class OperationPanel(Panel):
@@ -33,7 +37,11 @@ class OperationPanel(Panel):
         from toolaxis.plan.document import orientation_from
 
         super().__init__(document, load_form("operation"))
-        self.operation, self.drawing = operation, None
+        self.operation, self.drawing, self.collisions = operation, None, None
+        self.again = QtCore.QTimer(self.form)
+        self.again.setSingleShot(True)
+        self.again.setInterval(_AGAIN)
+        self.again.timeout.connect(self._look_again)
         self.form.setWindowTitle(operation.Label)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
@@ -49,6 +57,7 @@ class OperationPanel(Panel):
         self._fill()
         self._connect()
         self._draw_map()
+        self._look_out()
 
     def getStandardButtons(self):
         """Close."""
@@ -76,6 +85,7 @@ class OperationPanel(Panel):
         form.again.clicked.connect(self._plan_again)
         form.verify.clicked.connect(self._verify)
         form.pictures.clicked.connect(self.draw)
+        form.met.linkActivated.connect(self._show_collision)
         self.map.hovered.connect(form.pointer.setText)
         self._follow()
 
@@ -84,6 +94,22 @@ class OperationPanel(Panel):
             if not self.tool.ViewObject.Visibility:
                 self.tool.ViewObject.Visibility = True
             self.tool.Position = value / self.form.slide.maximum()
+        if self.collisions is not None:
+            self.collisions.stand(self.tool.Position)
+
+    def _look_out(self):
+        """Look for what the tool meets, where there is one on passes."""
+        if self.form.slide.isEnabled():
+            self.collisions = Collisions(self.operation, self.tool, self.form.met)
+            self.collisions.look()
+
+    def _show_collision(self, _):
+        """Move the tool to a collision."""
+        share = self.collisions.somewhere()
+        if share is not None:
+            self.form.slide.setValue(round(share * self.form.slide.maximum()))
+            self.tool.Position = share  # a slider knows places between its steps as little as short collisions
+            self.collisions.stand(share)
 
     def _draw_map(self):
         """The map, off the GUI thread: its centre is the mean normal of the face, which has to be read."""
@@ -141,7 +167,13 @@ class OperationPanel(Panel):
         self._fill()
         tell(self.form.message, message, bad=True)
 
+    def _forget_view(self):
+        if self.collisions is not None:
+            self.collisions.forget()
+
     def _let_go(self):
+        if self.collisions is not None:
+            self.collisions.leave()
         if self.drawing is not None:
             self.drawing.leave()
             self.drawing = None
@@ -174,6 +206,9 @@ class OperationPanel(Panel):
 
     def object_deleted(self, name):
         """The operation or its tool is about to be deleted: close the panel."""
+        if self.collisions is not None and name in (self.operation.Name, self.tool.Name):
+            self.collisions.leave()
+            self.collisions = None
         if name == self.operation.Name:
             self.document_closed()
         elif self.tool is not None and name == self.tool.Name:
@@ -185,6 +220,12 @@ class OperationPanel(Panel):
         """The part has changed: the marks may have."""
         if not self.over:
             QtCore.QTimer.singleShot(0, self._refresh)
+            if self.collisions is not None and name != self.tool.Name:
+                self.again.start()
+
+    def _look_again(self):
+        if not self.over and self.collisions is not None:
+            self.collisions.look()
 
     def _refresh(self):
         if not self.over:
