@@ -4,6 +4,7 @@ import FreeCAD
 
 from ..places import carried, follow, matrix_of
 from .properties import Property, assign, ensure
+from .raised import bulge
 
 translate = FreeCAD.Qt.translate
 
@@ -14,7 +15,8 @@ _PROPERTIES = (
 #: What the objects show, and how their names begin.
 SURFACE, CLEAN_UP = "sub-surface", "clean-up"
 _NAMES = {SURFACE: "SubSurface", CLEAN_UP: "CleanUp"}
-#: Height over the face and greatest distance of triangles from it, and pitch of hatch lines, shares of the diagonal.
+#: Height over FreeCAD's picture of the face, greatest distance of triangles, and pitch of hatch lines, shares of the
+#: diagonal.
 _RAISED, _OFF, _PITCH = 1.2e-3, 1e-3, 1 / 60
 _HATCH = (0.835, 0.369, 0.0)
 
@@ -52,8 +54,9 @@ def show_surface(operation, op, chain, colour):
         From 0 to 1; without one, only what is left is shown.
     """
     back = matrix_of(carried(chain).inverse())
-    shape = _hatched(op, back) if op.zones else None
-    mesh = None if colour is None else _mesh(op.face, back)
+    height = _RAISED * op.face.diagonal + bulge(op.face, chain[-1])
+    shape = _hatched(op, back, height) if op.zones else None
+    mesh = None if colour is None else _mesh(op.face, back, height)
     for what, made in ((SURFACE, mesh), (CLEAN_UP, shape)):
         thing = next((one for one in operation.Group if is_shown(one) and one.Shows == what), None)
         if made is None:
@@ -111,8 +114,8 @@ def colour_view(thing):
     view.Selectable = False
 
 
-def _mesh(face, back):
-    """Triangles of a face, a little above it."""
+def _mesh(face, back, height):
+    """Triangles of a face, a little above it, mm."""
     import Mesh
     import numpy as np
 
@@ -125,13 +128,13 @@ def _mesh(face, back):
     for k in range(3):
         np.add.at(at, found.corners[:, k], normal)
     size = np.linalg.norm(at, axis=1, keepdims=True)
-    raised = found.points + _RAISED * face.diagonal * at / np.where(size > 0, size, 1.0)
+    raised = found.points + height * at / np.where(size > 0, size, 1.0)
     points = raised @ back[:3, :3].T + back[:3, 3]
     return Mesh.Mesh([tuple(row) for row in points[found.corners.ravel()].tolist()])
 
 
-def _hatched(op, back):
-    """Hatch lines over the clean-up zones of an operation, as a compound of wires."""
+def _hatched(op, back, height):
+    """Hatch lines over the clean-up zones of an operation, a little above its mesh, as a compound of wires."""
     import Part
 
     from toolaxis.report.ruling import hatch_lines
@@ -139,7 +142,7 @@ def _hatched(op, back):
     diagonal = op.face.diagonal
     wires = []
     for zone in op.zones:
-        for line in hatch_lines(op.face.trimmed(zone.loops), _PITCH * diagonal, 2 * _RAISED * diagonal):
+        for line in hatch_lines(op.face.trimmed(zone.loops), _PITCH * diagonal, height + _RAISED * diagonal):
             rows = (line @ back[:3, :3].T + back[:3, 3]).tolist()
             points = [FreeCAD.Vector(*row) for row in rows]
             kept = [point for k, point in enumerate(points) if k == 0 or (point - points[k - 1]).Length > 1e-7]
