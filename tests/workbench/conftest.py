@@ -25,7 +25,7 @@ MARK = "TOOLAXIS-INNER "
 TIME_LIMIT, LONG_TIME_LIMIT = 1200.0, 5400.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
-ONCE = ("test_same_plan.py",)
+ONCE = ("test_same_plan.py", "test_example_parts.py")
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
 STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
@@ -150,6 +150,12 @@ def contract():
 def parts():
     """Small parts for the tests of objects."""
     return _module(ROOT / "tests" / "workbench" / "objects_parts.py")
+
+
+@pytest.fixture(scope="session")
+def posting():
+    """What reads programs of FreeCAD's post-processor back."""
+    return _module(ROOT / "tests" / "workbench" / "posting.py")
 
 
 @pytest.fixture

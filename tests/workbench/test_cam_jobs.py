@@ -1,6 +1,5 @@
 """FreeCAD's own CAM jobs from operations: what its post-processor writes lies on the CL data, and nothing half-made."""
 
-import re
 import sys
 import types
 
@@ -10,61 +9,23 @@ import pytest
 from FreeCAD import Placement, Rotation, Vector
 from freecad.toolaxis import bridge, cam_jobs, cam_setup
 from freecad.toolaxis.cam import tool_from
-from freecad.toolaxis.cam_jobs import jobs_of, make_jobs
+from freecad.toolaxis.cam_jobs import count_jobs, jobs_of, make_jobs
+from freecad.toolaxis.cam_offsets import OFFSETS, shared_of
 from freecad.toolaxis.cam_tools import add_bit
 from freecad.toolaxis.objects.belongings import frame_of
 from freecad.toolaxis.objects.frames import kind_of_frame
 from freecad.toolaxis.places import matrix_of
 
 from toolaxis.cad.freecad import shape_of
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.progress import Progress
 from toolaxis.tools.assembly import Tool
 
 TURNED = Placement(Vector(100, -20, 5), Rotation(Vector(1, 2, 3), 50))
-WORD = re.compile(r"([XYZF])(-?\d+\.\d+)")
-DIGIT = 0.001
 
 
 def names(document):
     return sorted(thing.Name for thing in document.Objects)
-
-
-def posted(job):
-    """What FreeCAD's own post-processor for LinuxCNC writes."""
-    from Path.Post.Processor import PostProcessorFactory
-
-    job.PostProcessor, job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
-    return PostProcessorFactory.get_post_processor(job, "linuxcnc").export()[0][1]
-
-
-def motions(text, label):
-    """Where the motions of one operation of a program end, (n, 3), their codes and feed rates."""
-    lines = text.partition(f"(begin operation: {label})")[2].partition("(finish operation")[0].splitlines()
-    at, rows, codes, rates = {}, [], [], []
-    for line in lines:
-        code = line.split(" ")[0]
-        if code in ("G0", "G1"):
-            at |= {word: float(value) for word, value in WORD.findall(line)}
-            rows.append([at.get(name, np.nan) for name in "XYZ"])
-            codes.append(code)
-            rates.append(at.get("F"))
-    return np.array(rows), codes, rates
-
-
-def check_on_cl(text, made, op, placement, motion):
-    """The program of an operation, turned back by the plane that its job stands in, is the planned path."""
-    matrix = matrix_of(placement)
-    points, codes, rates = motions(text, made.Label)
-    tips = op.path.cl @ motion[:3, :3].T + motion[:3, 3]
-    assert len(points) == len(tips) + 3, "up, across and down before, up after"
-    wanted = (tips - matrix[:3, 3]) @ matrix[:3, :3]
-    assert np.abs(points[2:-1] - wanted).max() <= DIGIT / 2 + 1e-9
-    back = points[2:-1] @ matrix[:3, :3].T + matrix[:3, 3]
-    assert np.linalg.norm(back - tips, axis=1).max() <= DIGIT / 2 * np.sqrt(3) + 1e-9
-    assert np.array_equal([code == "G0" for code in codes[3:-1]], op.path.rapid[1:])
-    assert codes[:3] == ["G0"] * 3 and codes[-1] == "G0"
-    assert points[0, 2] == points[1, 2] == points[-1, 2] > points[2:-1, 2].max()
-    assert np.array_equal(points[1, :2], points[2, :2]) and set(rates[3:]) <= {None, 1000.0, 10000.0}
 
 
 def planned(document, parts, thing, name, lean=(0.15, 0.1, 0.05), **given):
@@ -99,7 +60,7 @@ def linked(document, parts):
 
 
 @pytest.mark.parametrize("stand", [turned, contained, linked], ids=lambda make: make.__name__)
-def test_the_posted_program_lies_on_the_cl_data(stand, document, parts):
+def test_the_posted_program_lies_on_the_cl_data(stand, document, parts, posting):
     thing, mover, prefix = stand(document, parts)
     document.recompute()
     name = prefix + parts.sculptured_name(thing.getLinkedObject(True))[4:]
@@ -110,7 +71,7 @@ def test_the_posted_program_lies_on_the_cl_data(stand, document, parts):
     motion = matrix_of(mover.Placement.multiply(before.inverse()))
     job, = make_jobs(document, operation)
     frame = frame_of(operation).Placement
-    check_on_cl(posted(job), job.Operations.Group[0], op, frame, motion)
+    posting.check_on_cl(posting.posted(job), job.Operations.Group[0], op.path, frame, motion)
     model, shape = job.Model.Group[0], shape_of(thing)
     for own, face in zip(model.Shape.Faces, shape.Faces, strict=True):
         assert frame.multVec(own.CenterOfMass).distanceToPoint(face.CenterOfMass) < 1e-6
@@ -120,7 +81,7 @@ def test_the_posted_program_lies_on_the_cl_data(stand, document, parts):
     assert not [one.Name for one in document.Objects if "Invalid" in one.State]
 
 
-def test_each_orientation_is_a_job_and_shares_it(document, parts):
+def test_each_orientation_is_a_job_and_shares_it(document, parts, posting):
     first, second = parts.block(document, "First"), parts.block(document, "Second")
     second.Placement.Base = Vector(0, 60, 0)
     document.recompute()
@@ -135,25 +96,25 @@ def test_each_orientation_is_a_job_and_shares_it(document, parts):
     shared = jobs[0]
     assert [tc.ToolNumber for tc in shared.Tools.Group] == [1, 2] and len(shared.Model.Group) == 2
     assert [tc.HorizFeed.Value * 60 for tc in shared.Tools.Group] == pytest.approx([1000, 600])
-    text, frame = posted(shared), frame_of(made[0][0]).Placement
+    text, frame = posting.posted(shared), frame_of(made[0][0]).Placement
     assert "M6 T1" in text and "M6 T2" in text and "M3 S10000" in text
     for job_op, (_, op) in zip(shared.Operations.Group, (made[0], made[2]), strict=True):
         matrix = matrix_of(frame)
-        points, _, rates = motions(text, job_op.Label)
-        assert np.abs(points[2:-1] - (op.path.cl - matrix[:3, 3]) @ matrix[:3, :3]).max() <= DIGIT / 2 + 1e-9
+        points, _, rates = posting.motions(text, job_op.Label)
+        assert np.abs(points[2:-1] - (op.path.cl - matrix[:3, 3]) @ matrix[:3, :3]).max() <= posting.DIGIT / 2 + 1e-9
         assert (1000.0 if op is made[0][1] else 600.0) in rates
-    assert "\nG55" in posted(jobs[1])
+    assert "\nG55" in posting.posted(jobs[1])
 
 
-def test_the_safe_height_is_above_what_is_avoided(document, parts):
+def test_the_safe_height_is_above_what_is_avoided(document, parts, posting):
     thing, clamp = parts.block(document), document.addObject("Part::Box", "Clamp")
     clamp.Placement.Base, clamp.Height = Vector(60, 0, 0), 90
     document.recompute()
     operation, _ = planned(document, parts, thing, parts.sculptured_name(thing), obstacles=(clamp,))
     job, = make_jobs(document, [operation])
-    points, *_ = motions(posted(job), job.Operations.Group[0].Label)
+    points, *_ = posting.motions(posting.posted(job), job.Operations.Group[0].Label)
     corners = [frame_of(operation).Placement.inverse().multVec(vertex.Point).z for vertex in clamp.Shape.Vertexes]
-    assert points[0, 2] >= max(corners) + job.SetupSheet.ClearanceHeightOffset.Value - DIGIT
+    assert points[0, 2] >= max(corners) + job.SetupSheet.ClearanceHeightOffset.Value - posting.DIGIT
 
 
 def test_one_undo_step_and_back(document, parts):
@@ -244,7 +205,7 @@ def test_a_cutter_comes_back_from_its_bit(text, document):
         assert (back.kind, back.radius) == ("ball", 3.0), "FreeCAD 1.0 has no tapered cutters"
 
 
-def test_work_planes_are_used_where_jobs_have_them(document, parts, monkeypatch):
+def test_work_planes_are_used_where_jobs_have_them(document, parts, monkeypatch, posting):
     """By the interface of FreeCAD's coming Path.Main.Workplane, which no FreeCAD that can be had yet has."""
     import Path.Op.Custom as Custom
 
@@ -273,10 +234,10 @@ def test_work_planes_are_used_where_jobs_have_them(document, parts, monkeypatch)
     monkeypatch.setattr(Custom, "Create", with_plane)
     job, = make_jobs(document, [operation for operation, _ in made])
     assert len(job.Operations.Group) == 2
-    text = posted(job)
+    text = posting.posted(job)
     for one, (operation, op) in zip(job.Operations.Group, made, strict=True):
         assert one.Workplane.Stands.isSame(frame_of(operation).Placement, 1e-9)
-        check_on_cl(text, one, op, one.Workplane.Stands, np.eye(4))
+        posting.check_on_cl(text, one, op.path, one.Workplane.Stands, np.eye(4))
 
 
 def turned_copy(document, operation, face):
@@ -290,7 +251,7 @@ def turned_copy(document, operation, face):
     return link
 
 
-def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path):
+def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path, posting):
     from freecad.toolaxis.exporting import export
 
     from toolaxis.job.folder import read_plan
@@ -304,10 +265,65 @@ def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path):
     assert [job.Operations.Group[0].MadeFor for job in jobs] == [operation.Label, "Another blade"]
     assert [job.Fixtures for job in jobs] == [["G54"], ["G55"]] and jobs_of(operation) == jobs
     frame = link.Placement.multiply(frame_of(operation).Placement)
-    check_on_cl(posted(jobs[1]), jobs[1].Operations.Group[0], op, frame, matrix_of(link.Placement))
+    posting.check_on_cl(posting.posted(jobs[1]), jobs[1].Operations.Group[0], op.path, frame, matrix_of(link.Placement))
     export(operation, tmp_path / "plan")
     first, second = read_plan(tmp_path / "plan").operations
     turn = matrix_of(link.Placement)[:3, :3]
     assert np.abs(second.path.cl - first.path.cl @ turn.T).max() < 2e-6
     assert np.abs(second.orientation.axis - turn @ first.orientation.axis).max() < 1e-9
     assert np.abs(second.frame.x - turn @ first.frame.x).max() < 1e-9
+
+
+@pytest.fixture
+def crowded(document, parts):
+    """An operation with ten turned copies: eleven orientations."""
+    thing = parts.block(document)
+    name = parts.sculptured_name(thing)
+    operation, _ = planned(document, parts, thing, name)
+    for k in range(1, 11):
+        link = turned_copy(document, operation, name)
+        link.Placement = link.Turn = Placement(Vector(), Rotation(Vector(0, 0, 1), 33 * k))
+        link.Label = f"Blade {k + 1}"
+    document.recompute()
+    return operation
+
+
+def test_where_work_offsets_run_out_jobs_and_programs_say_so(crowded, parts, posting):
+    """Nine offsets for eleven orientations: the first two and the last two jobs have common ones, and tell."""
+    document = crowded.Document
+    assert count_jobs([crowded]) == 11
+    jobs = make_jobs(document, crowded)
+    offsets = [name for job in jobs for name in job.Fixtures]
+    assert tuple(offsets) == (*OFFSETS, *OFFSETS[:2]) and OFFSETS[-1] == "G59.3"
+    assert shared_of(jobs) == [*jobs[:2], *jobs[-2:]]
+    assert jobs[0].SharedOffset.startswith(f"G54 is also the work offset of {jobs[9].Label}: set it for")
+    text = posting.posted(jobs[9])
+    assert text.index("(work offset G54 serves several orientations") < text.index("\nG0 Z")
+    assert "serves several" not in posting.posted(jobs[5])
+    again = make_jobs(document, crowded)
+    assert [name for job in again for name in job.Fixtures] == offsets
+    thing = parts.block(document, "Another")
+    other, = make_jobs(document, planned(document, parts, thing, parts.sculptured_name(thing), (0.3, 0, 0))[0])
+    assert other.Fixtures == [OFFSETS[2]] and other in shared_of([other])
+    assert again[2].SharedOffset.startswith(f"{OFFSETS[2]} is also the work offset of {other.Label}"), "told at both"
+
+
+def test_a_later_call_takes_offsets_that_are_free(document, parts):
+    """Also where one job was made of two operations that have different axes now."""
+    thing = parts.block(document)
+    name = parts.sculptured_name(thing)
+    first, second, third = (planned(document, parts, thing, name, (lean, 0.0, 0.0)) for lean in (0.1, 0.1, 0.3))
+    job, = make_jobs(document, [first[0], second[0]])
+    assert job.Fixtures == ["G54"] and make_jobs(document, third[0])[0].Fixtures == ["G55"]
+    inputs = bridge.inputs_of(second[0])
+    bridge.apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
+    jobs = make_jobs(document, [first[0], second[0]])
+    assert [job.Fixtures for job in jobs] == [["G54"], ["G56"]] and not shared_of(jobs)
+
+
+def test_making_many_jobs_can_be_stopped(crowded):
+    document, told = crowded.Document, []
+    before = names(document)
+    with pytest.raises(Cancelled):
+        make_jobs(document, crowded, Progress(lambda *row: told.append(row), lambda: len(told) > 3))
+    assert names(document) == before and [row[1:] for row in told] == [(k, 11) for k in range(4)]

@@ -9,29 +9,34 @@ from importlib.util import find_spec
 
 import FreeCAD
 
-from .arguments import document_of, operation_of
+from .arguments import document_of, operation_of, progress_of
+from .cam_offsets import offsets_for, tell_shared
 from .cam_setup import Passes, add_passes, bare_job, safe_height, tool_of
+from .objects.belongings import child
 from .objects.copies import turned_copies
 from .objects.transaction import one_step
 from .places import placement_from
 
 translate = FreeCAD.Qt.translate
 
-#: Work offsets in the order in which jobs of one call take them; FreeCAD's own list of fixtures.
-OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", *(f"G59.{k}" for k in range(1, 10)))
 #: Angle below which two axes are one orientation, rad.
 _ONE = 1e-7
-_KEPT = ("PostProcessor", "PostProcessorArgs", "PostProcessorOutputFile", "Fixtures")
+_KEPT = ("PostProcessor", "PostProcessorArgs", "PostProcessorOutputFile")
 
 
-def make_jobs(document, operations):
+def make_jobs(document, operations, progress=None):
     """Make CAM jobs of operations, as one undo step; jobs that were made of the same ones before are replaced.
+
+    Each job has a work offset of its own as long as there are any; from then on jobs tell, in their properties and in
+    their programs, that others have the same one.
 
     Parameters
     ----------
     document : App.Document
     operations : App.DocumentObject or sequence of them
         Those without an axis are left out.
+    progress : toolaxis.progress.Progress, optional
+        Asked after each job.
 
     Returns
     -------
@@ -43,6 +48,8 @@ def make_jobs(document, operations):
     ------
     InvalidInput
         When an operation is stale, or there is none with passes; the document is then as it was.
+    Cancelled
+        When `progress` says so; the document is then as it was.
     """
     from toolaxis.errors import InvalidInput
 
@@ -53,14 +60,17 @@ def make_jobs(document, operations):
     ready = [one for operation in operations if operation.Motions or operation.Stale for one in _ready(operation)]
     if not ready:
         raise InvalidInput("there is no operation with passes: select faces and run Plan Orientations first")
+    progress = progress_of(progress)
     with one_step(document, translate("ToolAxis", "Make CAM jobs")), _active(document):
-        kept = _take_away(document, list({one.operation.Name: one.operation for one in ready}.values()))
+        kept, offsets = _take_away(document, list({one.operation.Name: one.operation for one in ready}.values()))
         groups = _by_axis(ready)
-        jobs = (_on_planes(document, groups) if _has_planes() else None) or [
-            _job(document, group, offset) for group, offset in zip(groups, _offsets(len(groups)), strict=True)]
+        wanted = offsets_for(document, [offsets.get(group[0].label) for group in groups])
+        jobs = _on_planes(document, groups, wanted[0]) if _has_planes() else None
+        jobs = jobs or _turned(document, groups, wanted, progress)
         for job, one in zip(jobs, groups, strict=False):
             for name, value in kept.get(one[0].label, {}).items():
                 setattr(job, name, value)
+        tell_shared(document)
         document.recompute()
     return jobs
 
@@ -73,6 +83,22 @@ def jobs_of(operation):
     operation : App.DocumentObject
     """
     return [job for job, _ in _made(operation.Document, [operation_of(operation)])]
+
+
+def count_jobs(operations):
+    """How many jobs `make_jobs` makes: one for each orientation, or a single one where jobs have work planes.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+    """
+    here = FreeCAD.Placement()
+    passes = [(one, child(one, "Path::Feature")) for one in operations if one.Motions]
+    stands = [turn.multiply(path.Placement) for one, path in passes if path is not None
+              for turn in (here, *(link.Placement for link in turned_copies(one)))]
+    axes = [stand.Rotation.multVec(FreeCAD.Vector(0, 0, 1)) for stand in stands]
+    apart = [axis for k, axis in enumerate(axes) if all((axis - one).Length > _ONE for one in axes[:k])]
+    return min(len(apart), 1) if _has_planes() else len(apart)
 
 
 def _ready(operation):
@@ -112,11 +138,6 @@ def _by_axis(ready):
     return groups
 
 
-def _offsets(count):
-    """A work offset for each job: the ones of FreeCAD's list, the last for what is left over."""
-    return [OFFSETS[min(k, len(OFFSETS) - 1)] for k in range(count)]
-
-
 def _has_planes():
     """Whether jobs of this FreeCAD hold work planes."""
     import Path.Main.Job  # noqa: F401  its package
@@ -124,12 +145,13 @@ def _has_planes():
     return find_spec("Path.Main.Workplane") is not None
 
 
-def _on_planes(document, groups):
+def _on_planes(document, groups, offset):
     """One job with a work plane for each orientation; None where this FreeCAD cannot hold our passes so."""
     import Path.Main.Workplane as Workplanes
 
     everything = [one for group in groups for one in group]
     job, controllers = bare_job(document, everything, FreeCAD.Placement())
+    job.Fixtures = offset
     planes = []
     try:
         for number, group in enumerate(groups, 1):
@@ -151,11 +173,20 @@ def _on_planes(document, groups):
     return [job]
 
 
+def _turned(document, groups, offsets, progress):
+    """A job for each orientation."""
+    jobs = []
+    for group, offset in zip(groups, offsets, strict=True):
+        progress.report(translate("ToolAxis", "Making CAM jobs"), len(jobs), len(groups))
+        jobs.append(_job(document, group, offset))
+    return jobs
+
+
 def _job(document, group, offset):
     """One job for operations with one axis, its model turned so that the axis is +Z."""
     plane = placement_from(group[0].matrix)
     job, controllers = bare_job(document, group, plane)
-    job.Fixtures = [offset]
+    job.Fixtures = offset
     height = safe_height(job, group, plane, plane)
     for one in group:
         add_passes(job, controllers[tool_of(one)], one, (plane, height))
@@ -174,9 +205,13 @@ def _made(document, operations):
 
 
 def _take_away(document, operations):
-    """Remove what was made of some operations before; what is kept of their jobs, by what the passes are for."""
+    """Remove what was made of some operations before; what is kept of their jobs, by what the passes are for.
+
+    The work offsets are kept apart, only for what came first in a job: another axis must not take them too.
+    """
     found = _made(document, operations)
     kept = {made.MadeFor: {name: getattr(job, name) for name in _KEPT} for job, made in found}
+    offsets = {made.MadeFor: list(job.Fixtures) for job, made in reversed(found) if made == job.Operations.Group[0]}
     gone = {made.Name for _, made in found}
     for job in {job.Name: job for job, _ in found}.values():
         own = job.Operations.Group
@@ -185,7 +220,7 @@ def _take_away(document, operations):
         else:
             for made in [made for made in own if made.Name in gone]:
                 document.removeObject(made.Name)
-    return kept
+    return kept, offsets
 
 
 def _remove_job(job):

@@ -45,3 +45,16 @@ def warn(text):
     from PySide import QtWidgets
 
     QtWidgets.QMessageBox.information(FreeCADGui.getMainWindow(), "Tool Axis", text)
+
+
+def confirmed(text):
+    """Ask something in a dialog; whether the answer is yes.
+
+    Parameters
+    ----------
+    text : str
+    """
+    from PySide import QtWidgets
+
+    box = QtWidgets.QMessageBox
+    return box.question(FreeCADGui.getMainWindow(), "Tool Axis", text, box.Yes | box.No, box.No) == box.Yes
