@@ -28,7 +28,7 @@
   </message>
   <message>
    <source>A body to avoid was deleted: compute again without it</source>
-   <translation type="unfinished" />
+   <translation>Ein zu meidender Körper wurde gelöscht: ohne ihn erneut berechnen</translation>
   </message>
   <message>
    <source>Against the best axis: {:+d} passes, {:+.1f} % cutting length, {:+.1f} % strip width.</source>
@@ -229,6 +229,18 @@
   <message>
    <source>No axis is free.</source>
    <translation>Keine Achse ist frei.</translation>
+  </message>
+  <message>
+   <source>No map: no axis was looked at.</source>
+   <translation>Keine Karte: Es wurde keine Achse betrachtet.</translation>
+  </message>
+  <message>
+   <source>No map: the axis moves along the passes.</source>
+   <translation>Keine Karte: Die Achse bewegt sich entlang der Bahnen.</translation>
+  </message>
+  <message>
+   <source>No map: this axis was not looked for by itself. It is shared by sub-surfaces, given, or named by the method.</source>
+   <translation>Keine Karte: Diese Achse wurde nicht für sich gesucht. Teilflächen haben sie gemeinsam, sie ist vorgegeben oder folgt aus dem Verfahren.</translation>
   </message>
   <message>
    <source>Not held by this machine: {}</source>
@@ -436,11 +448,11 @@
   </message>
   <message>
    <source>The operations were deleted: there is no axis to hold</source>
-   <translation type="unfinished" />
+   <translation>Die Operationen wurden gelöscht: es ist keine Achse zu halten</translation>
   </message>
   <message>
    <source>The operations were deleted: there is nothing to write</source>
-   <translation type="unfinished" />
+   <translation>Die Operationen wurden gelöscht: es ist nichts zu schreiben</translation>
   </message>
   <message>
    <source>The part was deleted: select other faces</source>
@@ -711,6 +723,10 @@
    <translation>{} treffen sich um {} mm</translation>
   </message>
   <message>
+   <source>{} min</source>
+   <translation>{} min</translation>
+  </message>
+  <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben einem Nacharbeitswerkzeug, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
@@ -737,6 +753,22 @@
   <message>
    <source>{} row {}: {} '{}' is not a length</source>
    <translation>{} Zeile {}: {} '{}' ist keine Länge</translation>
+  </message>
+  <message>
+   <source>{} s</source>
+   <translation>{} s</translation>
+  </message>
+  <message>
+   <source>{} so far</source>
+   <translation>seit {}</translation>
+  </message>
+  <message>
+   <source>{}, about {} left</source>
+   <translation>{}, noch etwa {}</translation>
+  </message>
+  <message>
+   <source>{}, about {} left of this step</source>
+   <translation>{}, in diesem Schritt noch etwa {}</translation>
   </message>
   <message>
    <source>{}: left to clean-up</source>

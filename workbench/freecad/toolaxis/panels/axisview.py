@@ -7,7 +7,7 @@ from PySide import QtCore
 from ..tasks import Work
 from .curve import OrientationCurve
 from .figures import fill, fill_baselines, measures, sentences
-from .hemisphere import HemisphereMap
+from .hemisphere import HemisphereMap, no_map
 from .legend import Legend
 from .locks import Locks
 from .outcome import left_to_clean_up
@@ -34,8 +34,7 @@ class AxisView(QtCore.QObject):
     def __init__(self, form, preview):
         super().__init__()
         self.form, self.preview = form, preview
-        empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
-        self.map, self.legend = HemisphereMap(form, empty), Legend(form)
+        self.map, self.legend = HemisphereMap(form, ""), Legend(form)
         self.map.setObjectName("axisMap")
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)
@@ -173,6 +172,8 @@ class AxisView(QtCore.QObject):
         picture, text = self.pictures.get(op.number) if op is not None else None, ""
         if self.growing:
             picture, text = self._growth()
+        empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
+        self.map.empty = empty if op is None else no_map(op.orientation)
         self.map.show_picture(picture)
         self.legend.show_picture(picture)
         self.form.pointer.setText("")

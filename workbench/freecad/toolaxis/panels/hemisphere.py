@@ -14,6 +14,21 @@ translate = FreeCAD.Qt.translate
 _MARGIN, _HEIGHT = 12, 300
 
 
+def no_map(found):
+    """Why an orientation has no map, a sentence.
+
+    Parameters
+    ----------
+    found : toolaxis.plan.orientation.Orientation
+    """
+    if found.lead is not None:
+        return translate("ToolAxis", "No map: the axis moves along the passes.")
+    if found.axis is None:
+        return translate("ToolAxis", "No map: no axis was looked at.")
+    return translate("ToolAxis", "No map: this axis was not looked for by itself. It is shared by sub-surfaces, "
+                                 "given, or named by the method.")
+
+
 class HemisphereMap(QtWidgets.QWidget):
     """Draws an `AxisPicture`; without one, a circle with a few words.
 

@@ -13,7 +13,7 @@ from ..tasks import Work, sentence
 from .collisions import Collisions
 from .fields import load_form, tell
 from .figures import fill, measures
-from .hemisphere import HemisphereMap
+from .hemisphere import HemisphereMap, no_map
 from .legend import Legend
 from .panel import Panel
 from .pictures import show_pictures
@@ -45,12 +45,14 @@ class OperationPanel(Panel):
         self.form.setWindowTitle(operation.Label)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
+        self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
+        if self.found is not None:
+            self.map.empty = no_map(self.found)
         self.map.setObjectName("axisMap")
         self.form.mapPlace.layout().addWidget(self.map)
         self.form.legendPlace.layout().addWidget(self.legend)
         self.tool = next((one for one in operation.Group
                           if getattr(getattr(one, "Proxy", None), "Type", "") == "ToolAxisTool"), None)
-        self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
         moves = self.found is not None and self.found.lead is not None
         for widget in (self.form.mapPlace, self.form.legendPlace, self.form.pointer):
             widget.setVisible(not moves)

@@ -19,6 +19,7 @@ from ..tasks import Work, sentence
 from .axisview import AxisView
 from .fields import load_form, tell
 from .locks import Locks
+from .ongoing import Ongoing
 from .outcome import outcome_sentence
 from .panel import Panel
 from .pictures import show_pictures
@@ -52,6 +53,7 @@ class PlanPanel(Panel):
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
+        self.ongoing = Ongoing(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed = self.buttons = None
         self._fill(inputs)
         self._connect()
@@ -210,13 +212,12 @@ class PlanPanel(Panel):
         titles = titles_of(inputs)
         self.work = Work(lambda progress: _planned(task, progress), None, _growing)
         self.work.interim.connect(lambda found: self._growing(*found, titles))
-        self.work.progressed.connect(self._progressed)
+        self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(self._not_computed)
         self.work.cancelled.connect(lambda: self._not_computed(""))
-        self.form.progress.setMaximum(0)
-        self._tell(translate("ToolAxis", "Reading the part"))
         self._show_state()
+        self.ongoing.begin(translate("ToolAxis", "Reading the part"))
         self.work.start()
 
     def draw(self):
@@ -226,12 +227,12 @@ class PlanPanel(Panel):
             return
         self.view.leave()
         self.work = Work(lambda progress: drawn(plan, progress))
-        self.work.progressed.connect(self._progressed)
+        self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(self._drawn)
         self.work.failed.connect(self._not_computed)
         self.work.cancelled.connect(lambda: self._drawn(()))
-        self.form.progress.setMaximum(0)
         self._show_state()
+        self.ongoing.begin(translate("ToolAxis", "Drawing"))
         self.work.start()
 
     def _drawn(self, pictures):
@@ -266,13 +267,6 @@ class PlanPanel(Panel):
             self.form.stop.setEnabled(False)
             self._tell(translate("ToolAxis", "Stopping"))
             self.work.cancel()
-
-    def _progressed(self, stage, share):
-        if self.work is None or not self.form.stop.isEnabled():
-            return
-        self.form.progress.setMaximum(1000 if share >= 0 else 0)
-        self.form.progress.setValue(int(1000 * max(share, 0.0)))
-        self._tell(f"{stage[:1].upper()}{stage[1:]}")
 
     def _growing(self, picture, face, titles):
         """The map of the axes looked at so far for one of the faces."""
