@@ -78,7 +78,7 @@ def staged(target: Path) -> Iterator[Stage]:
     """
     above = target if target.exists() else target.absolute().parent
     if target.exists() and not target.is_dir():
-        raise InvalidInput(f"output folder {target} is a file: give another name with --out")
+        raise InvalidInput(f"output folder {target} is a file: give another folder")
     made: list[Path] = []
     try:
         made = made_folders(above)
@@ -86,8 +86,7 @@ def staged(target: Path) -> Iterator[Stage]:
         folder.chmod(0o755)
     except OSError as reason:
         remove_empty(made)
-        raise InvalidInput(f"output folder {target} cannot be written ({reason.strerror}): give another with "
-                           "--out") from reason
+        raise InvalidInput(f"output folder {target} cannot be written ({reason.strerror}): give another") from reason
     try:
         yield Stage(folder, target)
     finally:

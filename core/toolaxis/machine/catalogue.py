@@ -60,8 +60,10 @@ def load_machine(text: str) -> Machine:
         path = known[text]
     try:
         content = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as reason:
-        raise InvalidInput(f"{path} cannot be read: {reason}") from reason
+    except UnicodeDecodeError as reason:
+        raise InvalidInput(f"machine file {path.name} is no text: give a TOML or a .fcm file") from reason
+    except OSError as reason:
+        raise InvalidInput(f"{path} cannot be read: {reason.strerror}") from reason
     try:
         return machine_from_fcm(content) if path.suffix.lower() == ".fcm" else machine_from_toml(content, path.parent)
     except InvalidInput as reason:

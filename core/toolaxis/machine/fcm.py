@@ -44,7 +44,8 @@ def machine_from_fcm(text: str) -> Machine:
         axes = dict(machine["axes"])
         name = str(machine["name"])
     except (ValueError, KeyError, AttributeError, TypeError) as reason:
-        raise InvalidInput(f"not a FreeCAD machine file: {reason!r}") from reason
+        raise InvalidInput("not a FreeCAD machine file: JSON with a machine that has a name and axes is "
+                           "needed") from reason
     linear: list[LinearAxis] = []
     table: list[RotaryAxis] = []
     head: list[RotaryAxis] = []

@@ -238,26 +238,31 @@ def _verdict(operations):
 
 def _write(plan, folder, wish, told):
     """Make all files beside the folder, then move them there."""
+    from toolaxis.errors import InvalidInput
     from toolaxis.job.folder import staged, write_plan
 
     verdict, progress = told
-    with staged(folder) as stage:
-        inner = stage.folder / folder.resolve().name  # the page is called by its folder
-        inner.mkdir()
-        progress.report("writing the plan", 0, 1)
-        write_plan(plan, inner)
-        if wish.dialect:
-            for name, text in _program(plan, wish, folder.resolve().name, verdict).items():
-                (inner / name).write_text(text, encoding="utf-8")
-        if wish.report:
-            from toolaxis.job.reporting import report
+    try:
+        with staged(folder) as stage:
+            inner = stage.folder / folder.resolve().name  # the page is called by its folder
+            inner.mkdir()
+            progress.report("writing the plan", 0, 1)
+            write_plan(plan, inner)
+            if wish.dialect:
+                for name, text in _program(plan, wish, folder.resolve().name, verdict).items():
+                    (inner / name).write_text(text, encoding="utf-8")
+            if wish.report:
+                from toolaxis.job.reporting import report
 
-            report(inner, None, progress)
-        names = sorted(path.name for path in inner.iterdir())
-        for name in names:
-            (inner / name).rename(stage.folder / name)
-        inner.rmdir()
-        stage.publish()
+                report(inner, None, progress)
+            names = sorted(path.name for path in inner.iterdir())
+            for name in names:
+                (inner / name).rename(stage.folder / name)
+            inner.rmdir()
+            stage.publish()
+    except OSError as reason:  # the disk is full, the drive is gone
+        raise InvalidInput(f"folder {folder} cannot be written ({reason.strerror}): make room there, or give "
+                           "another") from reason
     return names
 
 

@@ -9,6 +9,7 @@ also changes hands more often, since the window asks for it several times in dra
 """
 
 import gc
+import re
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -118,7 +119,7 @@ def sentence(reason: BaseException) -> str:
     ----------
     reason : BaseException
     """
-    text = " ".join(str(reason).split())
+    text = re.sub(r"(?<!\S)--(?=[a-z])", "", " ".join(str(reason).split()))  # options of the command have fields here
     return (text or type(reason).__name__).rstrip(".")
 
 

@@ -44,6 +44,7 @@ def warn(text):
     """
     from PySide import QtWidgets
 
+    text = text if text.endswith(".") else f"{text}."
     QtWidgets.QMessageBox.information(FreeCADGui.getMainWindow(), "Tool Axis", text)
 
 

@@ -95,8 +95,8 @@ class ExportPanel(Panel):
         dialect = form.dialect.currentData()
         machine = form.machine.currentData() if dialect else ""
         wish = Wish(dialect, machine, tuple(spin.value() for spin in self._spins), form.report.isChecked())
-        folder = Path(form.folder.text().strip()).expanduser()
         try:
+            folder = Path(form.folder.text().strip()).expanduser()
             compute = task(self.operations, folder, wish)
         except Exception as reason:
             tell(form.message, sentence(reason), bad=True)
@@ -143,5 +143,9 @@ class ExportPanel(Panel):
 
     def object_deleted(self, name):
         """An operation is about to be deleted: it is not written."""
-        self.operations = [operation for operation in self.operations if operation.Name != name]
+        left = [operation for operation in self.operations if operation.Name != name]
+        if self.operations and not left:
+            tell(self.form.message, translate("ToolAxis", "The operations were deleted: there is nothing to write"),
+                 bad=True)
+        self.operations = left
         self._show()

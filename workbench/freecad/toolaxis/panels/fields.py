@@ -53,8 +53,9 @@ def load_form(name):
 def _sound(form, name, expected):
     """Whether a form and its widgets are what the layout says, and none is the object of a dead one."""
     try:
-        return form.objectName() == name and all(isinstance(getattr(form, child, None), kind)
-                                                 for child, kind in expected.items())
+        return form.objectName() == name and all(
+            isinstance(getattr(form, child, None), kind) and getattr(form, child).objectName() == child
+            for child, kind in expected.items())
     except RuntimeError:  # "Internal C++ object already deleted"
         return False
 
@@ -376,6 +377,21 @@ class BodyList:
             item = QtWidgets.QListWidgetItem(translate("ToolAxis", "no other body in the document"), self.widget)
             item.setFlags(QtCore.Qt.NoItemFlags)
         self.widget.blockSignals(blocked)
+
+    def remove_object(self, name):
+        """Remove a body that is about to be deleted; whether it was ticked.
+
+        Parameters
+        ----------
+        name : str
+        """
+        bodies = [self.widget.item(i).data(_DATA) for i in range(self.widget.count())]
+        left = [body for body in bodies if body is not None and body.Name != name]
+        if len(left) == len([body for body in bodies if body is not None]):
+            return False
+        ticked = self.ticked
+        self.offer(left, ticked)
+        return len(self.ticked) < len(ticked)
 
     @property
     def ticked(self):

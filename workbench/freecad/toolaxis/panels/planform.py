@@ -1,5 +1,7 @@
 """The fields of the planning panel: what they hold, and in one sentence why that is not possible."""
 
+from contextlib import suppress
+from dataclasses import replace
 from math import degrees
 
 import FreeCAD
@@ -47,6 +49,7 @@ class PlanForm:
         self.strategy = self._find("strategy", QtWidgets.QComboBox)
         self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
+        self.unshown = ""
         for combo, _ in self.counts.values():
             combo.currentIndexChanged.connect(self._show_what_counts)
         self.kind.currentIndexChanged.connect(self._show_what_counts)
@@ -108,7 +111,7 @@ class PlanForm:
         text : str
             Its short form, "torus:12x1".
         """
-        kind, _, sizes = text.partition(":")
+        kind, _, sizes = text.strip().lower().partition(":")
         numbers = [float(size) for size in sizes.split("x")]
         self.kind.setCurrentIndex(KINDS.index(kind))
         self.quantities["diameter"].value = numbers[0]
@@ -183,10 +186,14 @@ class PlanForm:
         text : str
             Short form, or empty.
         """
+        from toolaxis.errors import ToolAxisError
         from toolaxis.machine.limits import Cone, RotaryRanges, parse_limits
 
         defaults = {"cone": 60.0, "tiltLow": 0.0, "tiltHigh": 90.0, "turnLow": -180.0, "turnHigh": 180.0}
-        found = parse_limits(text) if text and not text.startswith(PREFIX) else None
+        found = None
+        if text and not text.startswith(PREFIX):
+            with suppress(ToolAxisError):  # it is refused with the reason, as what is chosen
+                found = parse_limits(text)
         middle, choice = (0.0, 0.0, 1.0), _NO_LIMITS
         if isinstance(found, Cone):
             middle, choice, defaults["cone"] = found.direction, _CONE, degrees(found.tilt)
@@ -232,12 +239,13 @@ class PlanForm:
         combo.setCurrentIndex({None: _NONE, "auto": _AUTO}.get(count, _NUMBER))
 
     def fill(self, inputs):
-        """Show what a job was, or should be, given.
+        """Show what a job was, or should be, given; what no field can show is a refusal until a field is changed.
 
         Parameters
         ----------
         inputs : freecad.toolaxis.bridge.Inputs
         """
+        self.unshown, inputs = _shown(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
@@ -281,6 +289,8 @@ class PlanForm:
         """Why the fields cannot be computed with, one sentence; empty where they can."""
         from toolaxis.errors import ToolAxisError
 
+        if self.unshown:
+            return self.unshown
         try:
             check(self.read())
         except (ToolAxisError, ValueError) as reason:
@@ -288,6 +298,34 @@ class PlanForm:
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
         return ""
+
+
+def _shown(inputs, fastest):
+    """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
+    from toolaxis.errors import InvalidInput
+    from toolaxis.partition.regions import checked_count
+    from toolaxis.tools.assembly import Tool
+
+    from ..inputs import Inputs
+
+    checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: checked_count(inputs.regions),
+              "orientations": lambda: checked_count(inputs.orientations, "orientations"),
+              "spindle": lambda: _check_spindle(inputs.spindle, fastest)}
+    reasons = {}
+    for name, look in checks.items():
+        try:
+            look()
+        except InvalidInput as reason:
+            reasons[name] = " ".join(str(reason).split()).rstrip(".")
+    usual = Inputs()
+    return "; ".join(reasons.values()), replace(inputs, **{name: getattr(usual, name) for name in reasons})
+
+
+def _check_spindle(speed, fastest):
+    from toolaxis.errors import InvalidInput
+
+    if not 0 < speed <= fastest:
+        raise InvalidInput(f"spindle is {speed:g} rev/min: it must be above zero, and at most {fastest} rev/min")
 
 
 def check(values):

@@ -14,6 +14,7 @@ from ..machines import offered
 from ..macros import again_lines, plan_line, record
 from ..objects import is_operation
 from ..pictures import drawn
+from ..places import chain_of
 from ..reading import titles_of
 from ..tasks import Work, sentence
 from .axisview import AxisView
@@ -55,6 +56,7 @@ class PlanPanel(Panel):
         self.view = AxisView(self.form, self.preview)
         self.ongoing = Ongoing(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed = self.buttons = None
+        self.outrun = False
         self._fill(inputs)
         self._connect()
         self._follow()
@@ -116,7 +118,7 @@ class PlanPanel(Panel):
 
     def _connect(self):
         form = self.form
-        self.fields.on_change(self._changed)
+        self.fields.on_change(self._edited)
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
         form.faces.itemSelectionChanged.connect(self._point_out)
@@ -153,6 +155,11 @@ class PlanPanel(Panel):
         except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
             self.form.tool.setCurrentIndex(_TYPED)
             self.problem = sentence(reason)
+        self._changed()
+
+    def _edited(self):
+        """The user has changed a field: what no field could show is given up."""
+        self.fields.unshown = ""
         self._changed()
 
     def _changed(self):
@@ -199,7 +206,7 @@ class PlanPanel(Panel):
         if self.refusal or self.work is not None:
             self._show_state()
             return
-        self.problem = ""
+        self.problem, self.outrun = "", False
         inputs = bridge.Inputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
@@ -280,7 +287,7 @@ class PlanPanel(Panel):
         if not plan.operations:
             self._not_computed("")
             return
-        self.computed = inputs
+        self.computed = None if self.outrun else inputs
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
         self.view.show(plan, pictures, titles, Locks(inputs, plan))
         self.form.tabs.setCurrentWidget(self.form.resultTab)
@@ -302,18 +309,33 @@ class PlanPanel(Panel):
         """A part is about to be deleted: take its faces off the list, and stop what is computed for them."""
         if self.operation is not None and self.operation.Name == name:
             self.operation = None  # what is planned again becomes a new one
-        if not self.fields.faces.remove_object(name):
+        self._forget_tool(name)
+        if self.fields.faces.remove_object(name):
+            self.problem = translate("ToolAxis", "The part was deleted: select other faces")
+        elif self.fields.avoid.remove_object(name):
+            self.problem = translate("ToolAxis", "A body to avoid was deleted: compute again without it")
+        else:
             return
         self._leave()
         self.computed = None
         self.view.clear()
-        self.problem = translate("ToolAxis", "The part was deleted: select other faces")
         self._changed()
 
+    def _forget_tool(self, name):
+        """Take a tool of the document that is about to be deleted off the choice."""
+        for k, (_, thing) in reversed(list(enumerate(self.tools))):
+            if thing.Name == name:
+                del self.tools[k]
+                self.form.tool.removeItem(k + 1)
+
     def object_changed(self, name):
-        """A part has changed: what was computed for it no longer counts."""
-        if any(thing.Name == name for thing, _ in self.fields.faces.faces) and self.work is None:
-            self._changed()
+        """A part, a body to avoid, or what carries one has changed: what was computed for it no longer counts."""
+        things = {thing.Name: thing for thing, _ in self.fields.faces.faces}
+        things |= {body.Name: body for body in self.fields.avoid.ticked}
+        if any(one.Name == name for thing in things.values() for one in (thing, *chain_of(thing))):
+            self.outrun = True
+            if self.work is None:
+                self._changed()
 
     def _forget_view(self):
         self.preview.forget()

@@ -111,7 +111,10 @@ def view_of(name):
     name : str
         Of the document.
     """
-    document = FreeCADGui.getDocument(name)
+    try:
+        document = FreeCADGui.getDocument(name)
+    except NameError:  # it is just being closed
+        document = None
     view = document.ActiveView if document is not None else None
     if hasattr(view, "getSceneGraph"):
         return view
