@@ -2,8 +2,9 @@
 
 Which FreeCAD that is says the environment variable TOOLAXIS_FREECAD: the beginning of a command that runs the rest of
 it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets the tests
-without a window, those in ONCE only with --long.  Without the first, a FreeCAD that is installed is looked for; where
-there is none the tests are skipped, and the reason is printed.
+too, of those in a window only WINDOW and of the others not ONCE without --long; its window opens in its own program
+alone, not in Python.  Without the first, a FreeCAD that is installed is looked for; where there is none the tests are
+skipped, and the reason is printed.
 """
 
 import atexit
@@ -26,6 +27,7 @@ TIME_LIMIT, LONG_TIME_LIMIT = 1200.0, 5400.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
 ONCE = ("test_same_plan.py", "test_example_parts.py")
+WINDOW = ("test_bad_cases.py", "test_panel.py")
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
 STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
@@ -73,8 +75,8 @@ class InnerFile(pytest.File):
 
     def collect(self):
         yield InnerRun.from_parent(self, name="in FreeCAD", variable="TOOLAXIS_FREECAD")
-        once = "gui" in self.path.parts or (self.path.name in ONCE and not self.config.getoption("--long"))
-        if os.environ.get("TOOLAXIS_FREECAD_OLD") and not once:
+        once = self.path.name not in WINDOW if "gui" in self.path.parts else self.path.name in ONCE
+        if os.environ.get("TOOLAXIS_FREECAD_OLD") and (self.config.getoption("--long") or not once):
             yield InnerRun.from_parent(self, name="in the older FreeCAD", variable="TOOLAXIS_FREECAD_OLD")
 
 
@@ -172,7 +174,9 @@ def document():
 
 def command_for(variable, arguments, window):
     """The command that runs pytest in FreeCAD, before and after its environment; skips where there is no FreeCAD."""
-    prefix = shlex.split(os.environ.get(variable, ""))
+    prefix, start = shlex.split(os.environ.get(variable, "")), ROOT / "tests" / "workbench" / "start.py"
+    if prefix and window and variable == "TOOLAXIS_FREECAD_OLD":
+        return prefix, [f"TOOLAXIS_ARGUMENTS={json.dumps(arguments)}", "freecad", start.relative_to(ROOT).as_posix()]
     if prefix:
         return prefix, ["python3", "-c", STARTER, *arguments]
     found = next(filter(None, map(shutil.which, INSTALLED[window])), None)
@@ -181,7 +185,6 @@ def command_for(variable, arguments, window):
         pytest.skip(f"no FreeCAD: {reason} (TOOLAXIS_FREECAD names one; see tests/workbench/conftest.py)")
     if window and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         pytest.skip("no display for FreeCAD's window: run under Xvfb")
-    start = ROOT / "tests" / "workbench" / "start.py"
     return [], [f"TOOLAXIS_ARGUMENTS={json.dumps(arguments)}", found, str(start)]
 
 

@@ -145,7 +145,7 @@ def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, pr
 
 
 def _said(witness: Witness) -> str:
-    where = f"face {witness.label} at {np.round(witness.point, 2).tolist()}"
+    where = f"{f'face {witness.label}' if witness.label else 'the part'} at {np.round(witness.point, 2).tolist()}"
     name = "cutter" if witness.reason == GOUGE else COMPONENTS[max(witness.reason - CUTTER, 0)]
     if witness.distance < 0:
         return f"the {name} goes {-witness.distance:.3f} mm into {where}"

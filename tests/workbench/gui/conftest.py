@@ -78,7 +78,7 @@ class Desk:
         self.pump(0.5)
         FreeCADGui.activateWorkbench("ToolAxisWorkbench")
         self.pump(0.3)
-        self.errors = []
+        self.errors, self.held = [], []
         sys.excepthook = lambda kind, value, trace: self.errors.append(f"{kind.__name__}: {value}")
 
     def pump(self, seconds=0.05):
@@ -233,7 +233,9 @@ class Desk:
         """Scroll the task panel until a widget is in sight."""
         above = form.parentWidget()
         while above is not None and not isinstance(above, self.widgets.QScrollArea):
+            self.held.append(above)  # in FreeCAD 1.0 Python's objects of what is in it end with Python's object of a widget
             above = above.parentWidget()
+        self.held.append(above)
         if above is not None:
             above.ensureWidgetVisible(widget, 0, 400)
             self.pump(0.1)

@@ -1,5 +1,6 @@
 """What panels do, as lines of a macro that do the same again without a panel."""
 
+import __main__
 import FreeCAD
 
 _IMPORT = "import freecad.toolaxis"
@@ -20,8 +21,37 @@ def record(*lines):
     if FreeCAD.GuiUp:
         import FreeCADGui
 
+        skip = getattr(FreeCADGui, "doCommandSkip", _only_told)
         for line in (_IMPORT, *lines):
-            FreeCADGui.doCommandSkip(line)
+            skip(line)
+
+
+class _Nothing:
+    """Takes whatever is asked of it, called or set, and does nothing."""
+
+    def __getattr__(self, name):
+        return self
+
+    def __call__(self, *_, **__):
+        return self
+
+    def __setattr__(self, name, value):
+        pass
+
+
+def _only_told(line):
+    """Add a line to the macro where FreeCAD, as 1.0, adds only what it also runs: it runs on nothing."""
+    import FreeCADGui
+
+    if line == _IMPORT:
+        FreeCADGui.doCommand(line)
+        return
+    names = {name: __main__.__dict__.get(name) for name in ("FreeCAD", "freecad")}
+    try:
+        __main__.__dict__.update(dict.fromkeys(names, _Nothing()))
+        FreeCADGui.doCommand(line)
+    finally:
+        __main__.__dict__.update(names)
 
 
 def plan_line(inputs):
