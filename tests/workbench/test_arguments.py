@@ -1,5 +1,6 @@
 """What scripts hand to the public functions: wrong kinds end in one sentence, and the document stays as it was."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import FreeCAD
@@ -8,7 +9,9 @@ from freecad import toolaxis
 from freecad.toolaxis import arguments, bridge
 from freecad.toolaxis.reading import sculptured
 
+import toolaxis as ta
 from toolaxis.errors import InvalidInput, ToolAxisError
+from toolaxis.job.toolfile import load_tool
 from toolaxis.progress import Progress
 
 Quantity = FreeCAD.Units.Quantity
@@ -183,3 +186,19 @@ def test_planned_with_units_and_names(document, parts, face):
 def test_a_tool_that_is_none(document, part, face):
     with pytest.raises(ToolAxisError, match="is no tool"):
         bridge.plan(document, face, tool=part)
+
+
+@pytest.mark.parametrize("tool", ["tapered-2x1x3", "torus-10x1", ta.Tool.torus(8, 1, flute_length=5.0, stickout=40.0),
+                                  ta.Tool.ball(6, shank=[(4, 30), (4, 60)])])
+def test_a_tool_is_taken_whole(tool):
+    """Cutting edge and shank are those of the tool that is given, not of another one."""
+    given = load_tool(tool) if isinstance(tool, str) else tool
+    taken = replace(bridge.Inputs(shank=((9, 0), (9, 50)), flute_length=3.0, stickout=50.0),
+                    **bridge.tool_fields(tool)).assembled()
+    assert (taken.name, taken.flute_length) == (given.name, given.flute_length)
+    for member in ("shank", "holder"):
+        theirs = getattr(given, member)
+        assert theirs is None or (getattr(taken, member) == theirs).all()
+    assert given.shank is not None or taken.shank is None
+    again = replace(bridge.Inputs(), **bridge.tool_fields(taken)).assembled()
+    assert again.flute_length == given.flute_length

@@ -233,7 +233,7 @@ class Desk:
         """Scroll the task panel until a widget is in sight."""
         above = form.parentWidget()
         while above is not None and not isinstance(above, self.widgets.QScrollArea):
-            self.held.append(above)  # in FreeCAD 1.0 Python's objects of what is in it end with Python's object of a widget
+            self.held.append(above)  # in FreeCAD 1.0 those of what is in a widget end with Python's object of it
             above = above.parentWidget()
         self.held.append(above)
         if above is not None:

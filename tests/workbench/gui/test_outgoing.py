@@ -219,13 +219,14 @@ def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
 @pytest.fixture
 def recorded(monkeypatch, desk):
     """What goes to FreeCAD's recorder of macros, line by line; FreeCAD still gets it."""
-    lines, keep = [], desk.gui.doCommandSkip
+    name = "doCommandSkip" if hasattr(desk.gui, "doCommandSkip") else "doCommand"
+    lines, keep = [], getattr(desk.gui, name)
 
     def kept(line):
         lines.append(line)
         keep(line)
 
-    monkeypatch.setattr(desk.gui, "doCommandSkip", kept)
+    monkeypatch.setattr(desk.gui, name, kept)
     return lines
 
 

@@ -13,7 +13,7 @@ _ROUGHNESS = (_UNITS.Length, 1000.0, "a finite roughness in micrometres, such as
 _LENGTH = (_UNITS.Length, 1.0, "a finite length in mm, such as 0.02 or FreeCAD.Units.Quantity(\"0.02 mm\")")
 #: For each number its unit, what FreeCAD's own value of it is multiplied with, and how to give it.
 _NUMBERS = {"scallop": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
-            "roughness": _ROUGHNESS,
+            "flute_length": _LENGTH, "roughness": _ROUGHNESS,
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
 _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",

@@ -6,6 +6,7 @@ from .arguments import document_of, faces_of, fields_of, operation_of, progress_
 from .cam import tool_from as tool_from
 from .defaults import defaults as defaults
 from .inputs import Inputs as Inputs
+from .inputs import flute_of
 from .inputs import inputs_of as inputs_of
 from .machines import limits_from
 from .objects import is_plan, plan_of
@@ -135,19 +136,28 @@ def tool_fields(tool):
     ----------
     tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
     """
-    if isinstance(tool_of(tool), str):
-        from toolaxis.job.toolfile import load_tool
-
-        tool = load_tool(tool)
-    elif not hasattr(tool, "corner_radius"):
-        tool = tool_from(tool)
-    found = {"tool": tool.name}
+    tool = cutter_of(tool)
+    found = {"tool": tool.name, "flute_length": flute_of(tool), "shank": ()}
     if tool.stickout is not None:
         found["stickout"] = tool.stickout
     for name in ("shank", "holder"):
         if getattr(tool, name) is not None:
             found[name] = tuple(map(tuple, getattr(tool, name).tolist()))
     return found
+
+
+def cutter_of(tool):
+    """What stands for a tool as a tool of the library.
+
+    Parameters
+    ----------
+    tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
+    """
+    if isinstance(tool_of(tool), str):
+        from toolaxis.job.toolfile import load_tool
+
+        return load_tool(tool)
+    return tool if hasattr(tool, "corner_radius") else tool_from(tool)
 
 
 def recompute(operation, progress=None):

@@ -105,7 +105,8 @@ def tool_of(one):
     ----------
     one : Passes
     """
-    return one.tool.name, one.inputs.stickout, one.inputs.shank, one.inputs.feedrate, one.inputs.spindle
+    cutter = one.tool.name, one.tool.flute_length, one.inputs.stickout, one.inputs.shank
+    return *cutter, one.inputs.feedrate, one.inputs.spindle
 
 
 def _base(document, thing):

@@ -52,8 +52,9 @@ class Inputs:
         Short form of the cutter.
     shank, holder : tuple of (radius, z)
         Outlines, the shank's from the tip and the holder's from its own lower face; empty where not known.
-    stickout : float
-        Length from the tip to the holder.
+    stickout, flute_length : float
+        Lengths from the tip to the holder, and of the cutting edge; 0 for two diameters of that, as far as the
+        stick-out allows.
     scallop, allowance : float
     limits : str
         Limits of the axis in their short form, in the document's space; empty for none.
@@ -83,6 +84,7 @@ class Inputs:
     shank: tuple = ()
     holder: tuple = ()
     stickout: float = 60.0
+    flute_length: float = 0.0
     scallop: float = 0.02
     allowance: float = 0.0
     limits: str = ""
@@ -135,6 +137,8 @@ class Inputs:
         from toolaxis.tools.assembly import Tool
 
         body = {name: [list(row) for row in getattr(self, name)] for name in ("shank", "holder") if getattr(self, name)}
+        if self.flute_length:
+            body["flute_length"] = self.flute_length
         return Tool.parse(self.tool, stickout=self.stickout, **body)
 
     def job(self):
@@ -189,12 +193,25 @@ def inputs_of(thing):
     rows = {name: tuple((point.x, point.z) for point in getattr(thing, name.capitalize()))
             for name in ("shank", "holder")}
     pieces = kept_pieces(thing) if is_plan(thing) else [own_piece(thing, faces)]
-    return Inputs(faces, thing.Tool, rows["shank"], rows["holder"], thing.StickOut.Value,
+    return Inputs(faces, thing.Tool, rows["shank"], rows["holder"], thing.StickOut.Value, thing.FluteLength.Value,
                   thing.Scallop.Value, thing.Allowance.Value, thing.Limits, tuple(thing.Obstacles),
                   thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
                   thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
                   thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
                   thing.Strategy, thing.Roughness or ROUGHNESS)
+
+
+def flute_of(tool):
+    """The length of a tool's cutting edge, mm; 0 where it is the usual one.
+
+    Parameters
+    ----------
+    tool : toolaxis.tools.assembly.Tool
+    """
+    from toolaxis.tools.assembly import Tool
+
+    usual = Tool.parse(tool.name, stickout=tool.stickout).flute_length
+    return 0.0 if abs(tool.flute_length - usual) < 1e-9 else float(tool.flute_length)
 
 
 def count_from(text):

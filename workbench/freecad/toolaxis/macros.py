@@ -1,14 +1,15 @@
 """What panels do, as lines of a macro that do the same again without a panel."""
 
-import __main__
 import FreeCAD
+
+import __main__
 
 _IMPORT = "import freecad.toolaxis"
 _DOCUMENT = "FreeCAD.ActiveDocument"
 #: Fields of the inputs that an operation planned again may have changed, and the properties that hold them.
-_HELD = {"tool": "Tool", "stickout": "StickOut", "scallop": "Scallop", "allowance": "Allowance", "limits": "Limits",
-         "objective": "Objective", "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method",
-         "strategy": "Strategy", "roughness": "Roughness"}
+_HELD = {"tool": "Tool", "stickout": "StickOut", "flute_length": "FluteLength", "scallop": "Scallop",
+         "allowance": "Allowance", "limits": "Limits", "objective": "Objective", "direction": "Direction",
+         "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy", "roughness": "Roughness"}
 
 
 def record(*lines):
@@ -40,10 +41,10 @@ class _Nothing:
 
 
 def _only_told(line):
-    """Add a line to the macro where FreeCAD, as 1.0, adds only what it also runs: it runs on nothing."""
+    """Add a line to the macro where FreeCAD, as 1.0, adds only what it also runs: a call runs on nothing."""
     import FreeCADGui
 
-    if line == _IMPORT:
+    if line.startswith("import "):
         FreeCADGui.doCommand(line)
         return
     names = {name: __main__.__dict__.get(name) for name in ("FreeCAD", "freecad")}
@@ -67,9 +68,9 @@ def plan_line(inputs):
     faces = [f"{thing.Name}.{name}" for thing, name in inputs.faces]
     given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}
     given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
-    given |= {name: getattr(inputs, name) for name in ("allowance", "limits", "objective", "direction", "regions",
-                                                       "orientations", "method", "blades", "compare", "strategy",
-                                                       "roughness")
+    given |= {name: getattr(inputs, name) for name in ("flute_length", "allowance", "limits", "objective", "direction",
+                                                       "regions", "orientations", "method", "blades", "compare",
+                                                       "strategy", "roughness")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]

@@ -11,7 +11,8 @@ _GRID = 4
 #: Shapes that were looked at last, with their points, and how many.
 _SEEN, _KEPT = [], 6
 #: Inputs that older documents do not have, with what stood for them.
-_USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS}
+_USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS,
+          "flute_length": 0.0}
 
 
 def signature(things, obstacles=(), turned=False):

@@ -18,6 +18,7 @@ INPUTS = (
     Property("VectorList", "Holder", _ASKED, "Outline of the holder from its lower face: radius, 0, height", False,
              True),
     Property("Length", "StickOut", _ASKED, "Length from the tip to the holder's lower face"),
+    Property("Length", "FluteLength", _ASKED, "Length of the cutting edge from the tip; 0: two diameters"),
     Property("Length", "Scallop", _ASKED, "Greatest scallop height"),
     Property("Length", "Allowance", _ASKED, "Stock left on the face"),
     Property("String", "Limits", _ASKED, "Limits of the axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
@@ -190,7 +191,8 @@ def set_inputs(thing, inputs):
     thing.Obstacles = list(inputs.obstacles)
     for name, rows in (("Shank", inputs.shank), ("Holder", inputs.holder)):
         setattr(thing, name, [FreeCAD.Vector(radius, 0, z) for radius, z in rows])
-    assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, Scallop=inputs.scallop, Allowance=inputs.allowance,
+    assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, FluteLength=inputs.flute_length,
+           Scallop=inputs.scallop, Allowance=inputs.allowance,
            Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
            FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
            Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,

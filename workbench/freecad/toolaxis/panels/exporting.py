@@ -122,8 +122,8 @@ class ExportPanel(Panel):
         tell(self.form.message, f"{stage[:1].upper()}{stage[1:]}")
 
     def _done(self, folder, wish, names):
-        record("from freecad.toolaxis.exporting import Wish, export",
-               f"export({list_of(self.operations)}, {str(folder)!r}, {wish!r})")
+        export = "freecad.toolaxis.exporting"
+        record(f"import {export}", f"{export}.export({list_of(self.operations)}, {str(folder)!r}, {export}.{wish!r})")
         self.form.files.addItems(names)
         self._ended(translate("ToolAxis", "{} files in {}").format(len(names), folder), False)
 

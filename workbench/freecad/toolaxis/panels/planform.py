@@ -7,6 +7,7 @@ from math import degrees
 import FreeCAD
 from PySide import QtWidgets
 
+from ..inputs import flute_of
 from ..machines import PREFIX, mounting
 from ..strategies import INDEXED, ROUGH, STRATEGIES, needs
 from .fields import BodyList, FaceList, OutlineTable, QuantityField
@@ -34,7 +35,7 @@ class PlanForm:
         self.faces = FaceList(self._find("faces", QtWidgets.QListWidget))
         self.avoid = BodyList(self._find("avoid", QtWidgets.QListWidget))
         self.shank, self.holder = OutlineTable(form, "shank"), OutlineTable(form, "holder")
-        lengths = ("diameter", "corner", "stickout")
+        lengths = ("diameter", "corner", "fluteLength", "stickout")
         angles = ("taper", "cone", "tiltLow", "tiltHigh", "turnLow", "turnHigh")
         self.quantities = {name: QuantityField(self._find(name), decimals=3) for name in lengths}
         self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
@@ -121,7 +122,7 @@ class PlanForm:
             self.quantities["taper"].value = numbers[2]
 
     def take_tool(self, tool, speeds):
-        """Show a tool of the document: its cutter, and what is known of shank, holder, stick-out and speeds.
+        """Show a tool of the document or the library: cutter and shank, and what is known of the rest and of speeds.
 
         Parameters
         ----------
@@ -136,8 +137,8 @@ class PlanForm:
         self.set_tool(tool.name)
         if tool.stickout is not None:
             self.quantities["stickout"].value = tool.stickout
-        if tool.shank is not None:
-            self.shank.rows = tool.shank.tolist()
+        self.quantities["fluteLength"].value = flute_of(tool)
+        self.shank.rows = () if tool.shank is None else tool.shank.tolist()
         if tool.holder is not None:
             self.holder.rows = tool.holder.tolist()
 
@@ -252,6 +253,7 @@ class PlanForm:
         self.shank.rows, self.holder.rows = inputs.shank or (), inputs.holder or ()
         for name in ("stickout", "scallop", "allowance", "feedrate"):
             self.quantities[name].value = getattr(inputs, name) or 0.0
+        self.quantities["fluteLength"].value = inputs.flute_length
         self.spindle.setValue(int(inputs.spindle))
         self._find("objective", QtWidgets.QComboBox).setCurrentIndex(OBJECTIVES.index(inputs.objective))
         self._find("direction", QtWidgets.QComboBox).setCurrentIndex(DIRECTIONS.index(inputs.direction))
@@ -274,6 +276,7 @@ class PlanForm:
         """
         return {"faces": self.faces.faces, "tool": self.tool_text, "shank": self.shank.rows,
                 "holder": self.holder.rows, "stickout": self.quantities["stickout"].value,
+                "flute_length": self.quantities["fluteLength"].value,
                 "scallop": self.quantities["scallop"].value, "allowance": self.quantities["allowance"].value,
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],

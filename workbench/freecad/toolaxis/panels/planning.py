@@ -151,7 +151,7 @@ class PlanPanel(Panel):
             return
         try:
             found = self.tools[index - 1][1]
-            self.fields.take_tool(bridge.tool_from(found), speeds(found))
+            self.fields.take_tool(bridge.cutter_of(found), (None, None) if isinstance(found, str) else speeds(found))
         except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
             self.form.tool.setCurrentIndex(_TYPED)
             self.problem = sentence(reason)

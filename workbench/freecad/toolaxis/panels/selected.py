@@ -71,14 +71,18 @@ def owner_of(thing, name):
 
 
 def tools_in(document):
-    """Tool controllers of a document's CAM jobs, and tool bits that are in none of them, as (label, object).
+    """Tools to choose from, as (label, object or name).
+
+    Tool controllers of a document's CAM jobs come first, then tool bits that are in none of them, then the library.
 
     Parameters
     ----------
     document : App.Document
     """
+    from toolaxis.job.toolfile import library
+
     found = controllers(document)
     held = {thing.Tool.Name for thing in found if getattr(thing, "Tool", None) is not None}
     bits = [thing for thing in document.Objects if thing.Name not in held and thing not in found
             and "ToolBit" in type(getattr(thing, "Proxy", None)).__name__]
-    return [(thing.Label, thing) for thing in (*found, *bits)]
+    return [*((thing.Label, thing) for thing in (*found, *bits)), *((name, name) for name in library())]
