@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-SHARED = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
-#: Part, kind and sizes of the cutter, stick-out, shank and holder (diameter, height), sub-surfaces, blades, outcome.
+PREPARED = ROOT / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/blades_whole")
+#: Part, what is typed or chosen of the tool, sub-surfaces, blades, outcome.
 PARTS = {
-    "blisk": (ROOT / "examples" / "blisk.step", "torus", ("10 mm", "1 mm"), "70 mm", (),
-              ((20, 0), (20, 40), (50, 40), (50, 80)), 1, 16, "complete"),
-    "kj66": (SHARED / "kj66_impeller.step", "tapered", ("2 mm", "1 mm", "3 deg"), "45 mm",
-             ((4.6, 0), (4.6, 28), (6, 34), (6, 45)), ((16, 0), (16, 35), (40, 35), (40, 65)), 0, 9, "incomplete")}
+    "blisk": (ROOT / "examples" / "blisk.step", "typed", 1, 16, "complete"),
+    "kj66": (PREPARED / "kj66_impeller.step", "tapered-2x1x3", 0, 9, "incomplete")}
+#: Sizes of the cutter and stick-out, and rows of the holder (diameter, height).
+SIZES = {"diameter": "10 mm", "corner": "1 mm", "stickout": "70 mm"}
+HOLDER = ((20, 0), (20, 40), (50, 40), (50, 80))
 
 
 class Pauses:
@@ -56,19 +57,22 @@ def outline(desk, table, rows):
 def test_a_part_with_blades_is_planned_whole(desk, name):
     from freecad.toolaxis.objects import is_plan, operations_in
 
-    path, kind, sizes, stickout, shank, holder, regions, blades, outcome = PARTS[name]
+    path, tool, regions, blades, outcome = PARTS[name]
     if not path.exists():
-        pytest.skip(f"{path} is not there (set TOOLAXIS_SHARED)")
-    part = desk.open(path)
-    document, pauses = part.Document, Pauses(desk.qt)
+        pytest.skip(f"{path.name} is one of the parts by others: set TOOLAXIS_SHARED")
+    document = desk.open(path).Document
+    part, = (thing for thing in document.RootObjects if thing.TypeId in ("App::Part", "Part::Feature"))
+    pauses = Pauses(desk.qt)
     form = desk.start(part)
     form.tabs.setCurrentWidget(form.toolTab)
-    form.kind.setCurrentIndex(("torus", "ball", "flat", "tapered").index(kind))
-    for field, value in zip((form.diameter, form.corner, form.taper), sizes, strict=False):
-        desk.type(field, value)
-    desk.type(form.stickout, stickout)
-    outline(desk, form.shank, shank)
-    outline(desk, form.holder, holder)
+    if tool == "typed":
+        form.kind.setCurrentIndex(0)
+        for field, value in SIZES.items():
+            desk.type(getattr(form, field), value)
+        outline(desk, form.holder, HOLDER)
+    else:
+        form.tool.setCurrentText(tool)
+        form.tool.activated.emit(form.tool.currentIndex())
     desk.shot(f"80-{name}-tool")
     form.tabs.setCurrentWidget(form.jobTab)
     desk.type(form.scallop, "0.1 mm")
