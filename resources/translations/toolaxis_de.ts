@@ -91,6 +91,10 @@
    <translation>Durchmesser</translation>
   </message>
   <message>
+   <source>Different axes: {}; sub-surfaces: {}; {}</source>
+   <translation>Verschiedene Achsen: {}; Teilflächen: {}; {}</translation>
+  </message>
+  <message>
    <source>Drawing</source>
    <translation>Bilder werden gezeichnet</translation>
   </message>
@@ -703,10 +707,6 @@
    <translation>{} bei ({}, {}, {}) auf Fläche {}</translation>
   </message>
   <message>
-   <source>{} axes, {} sub-surfaces: {}, {:.1f} % less than the first</source>
-   <translation>{} Achsen, {} Teilflächen: {}, {:.1f} % weniger als beim ersten</translation>
-  </message>
-  <message>
    <source>{} files in {}</source>
    <translation>{} Dateien in {}</translation>
   </message>
@@ -769,6 +769,10 @@
   <message>
    <source>{}, about {} left of this step</source>
    <translation>{}, in diesem Schritt noch etwa {}</translation>
+  </message>
+  <message>
+   <source>{}, {:.1f} % less than the first</source>
+   <translation>{}, {:.1f} % weniger als beim ersten</translation>
   </message>
   <message>
    <source>{}: left to clean-up</source>
@@ -1131,6 +1135,10 @@
    <translation>Schaftfräser</translation>
   </message>
   <message>
+   <source>Flute length</source>
+   <translation>Schneidenlänge</translation>
+  </message>
+  <message>
    <source>From</source>
    <translation>Von</translation>
   </message>
@@ -1205,6 +1213,10 @@
   <message>
    <source>Least turn of the tool axis about the middle.</source>
    <translation>Kleinste Drehung der Werkzeugachse um die Mitte.</translation>
+  </message>
+  <message>
+   <source>Length of the cutting edge from the tip; above it the shank begins. 0: two diameters, as far as the stick-out allows.</source>
+   <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
    <source>Limits</source>
