@@ -1,6 +1,9 @@
-"""Documents that the add-on saved before it knew divisions, machines and jobs: they open, and go on as if made today.
+"""Documents that the add-on saved in earlier versions: they open, and go on as if made today.
 
-They were saved by commit 1816a7b in FreeCAD 1.1 and 1.0: a block with one operation on its wavy face.
+before-divisions was saved by commit 1816a7b in FreeCAD 1.1 and 1.0: a block with one operation on its wavy face.
+before-moving-axes (5d17646) and before-raised-surfaces (78fcea3) were saved from the window of FreeCAD 1.1: a roof in
+two sub-surfaces, one locked, beside a clamp, on a machine, with a job of the second; the later one also has a block
+whose axis moves.
 """
 
 import shutil
@@ -9,9 +12,16 @@ from pathlib import Path
 import FreeCAD
 import pytest
 from freecad.toolaxis import bridge
-from freecad.toolaxis.objects import is_operation
+from freecad.toolaxis.cam_jobs import make_jobs
+from freecad.toolaxis.exporting import plan_task
+from freecad.toolaxis.objects import is_operation, is_plan, operations_in
+from freecad.toolaxis.objects.machine import machine_of
+from freecad.toolaxis.objects.operation import Operation
 from freecad.toolaxis.objects.passes import moves
+from freecad.toolaxis.objects.wholeplan import WholePlan
 from freecad.toolaxis.results import child
+
+from toolaxis.progress import NO_PROGRESS
 
 SAVED = Path(__file__).with_name("saved")
 NEWER = FreeCAD.Version()[:2] >= ["1", "1"]
@@ -50,3 +60,39 @@ def test_it_is_verified_and_planned_again(opened, operation, parts):
     again = parts.planned(opened, *inputs.faces)[0]
     assert again.Passes == operation.Passes
     assert again.CuttingLength.Value == pytest.approx(operation.CuttingLength.Value, rel=1e-9)
+
+
+@pytest.fixture(params=["before-moving-axes.FCStd", "before-raised-surfaces.FCStd"])
+def whole(request, tmp_path):
+    """A document with a whole plan, and whether it knew axes that move."""
+    if not NEWER:
+        pytest.skip("an older FreeCAD opens its own documents")
+    shutil.copy(SAVED / request.param, tmp_path)
+    document = FreeCAD.openDocument(str(tmp_path / request.param))
+    yield document, "raised" in request.param
+    FreeCAD.closeDocument(document.Name)
+
+
+def test_a_whole_plan_opens_and_goes_on(whole):
+    """What it lacks gets its plain value, nothing is stale, all can be written, and planned again it is the same."""
+    document, moving = whole
+    plan = next(filter(is_plan, document.Objects))
+    operations = list(filter(is_operation, document.Objects))
+    assert len(operations) == 2 + moving and operations_in(plan) == operations[:2]
+    for _ in range(2):
+        assert not any(one.Stale for one in (plan, *operations)), [one.StaleReasons for one in (plan, *operations)]
+        document.recompute(None, True)
+    assert {one.name for one in Operation.properties} <= set(operations[0].PropertiesList)
+    assert {one.name for one in WholePlan.properties} <= set(plan.PropertiesList)
+    assert [one.Strategy for one in operations] == ["indexed", "indexed", "sturz"][:2 + moving]
+    assert [one.AxisLocked for one in operations[:2]] == [True, False] and machine_of(document).Offset.z == 20
+    assert all(plan_task([one])(NO_PROGRESS).operations[0].path.passes == one.Passes for one in operations)
+    before = [(one.Name, one.Passes, one.CuttingLength.Value) for one in operations[:2]]
+    assert [(one.Name, one.Passes, pytest.approx(one.CuttingLength.Value, rel=1e-9))
+            for one in bridge.recompute(plan)] == before
+    assert not plan.Stale and not any(one.Stale for one in operations)
+    jobs = [thing.Name for thing in document.Objects if hasattr(thing, "PostProcessor")]
+    assert len(jobs) == 1 and len(make_jobs(document, operations[:2])) == 2
+    document.removeObject(operations[1].Name)
+    document.recompute()
+    assert plan.Stale and "deleted" in plan.StaleReasons[0]
