@@ -822,6 +822,10 @@
    <translation>Ordner, in den die Dateien geschrieben werden. Dateien eines früheren Plans dort werden ersetzt, andere bleiben.</translation>
   </message>
   <message>
+   <source>HTML report</source>
+   <translation>HTML-Bericht</translation>
+  </message>
+  <message>
    <source>Machine</source>
    <translation>Maschine</translation>
   </message>
@@ -840,10 +844,6 @@
   <message>
    <source>Program</source>
    <translation>Programm</translation>
-  </message>
-  <message>
-   <source>Report, one page for the browser</source>
-   <translation>Bericht, eine Seite für den Browser</translation>
   </message>
   <message>
    <source>Stop</source>

@@ -164,7 +164,7 @@ class Desk:
 
         def answer():
             box = self.app.activeModalWidget()
-            if box is not None:
+            if isinstance(box, self.widgets.QMessageBox):  # a dialog that shows progress goes by itself
                 seen.append(box.text())
                 self.shot("dialog")
                 box.accept()

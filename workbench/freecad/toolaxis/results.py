@@ -188,7 +188,8 @@ def _fill(operation, inputs, plan, which):
     set_inputs(operation, inputs)
     set_results(operation, op.orientation, plan.not_checked)
     _keep(operation, inputs, (op, plan), (number, f"{number}{label}"))
-    remove([one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)])
+    maps = [one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)]
+    remove(maps)
     if op.done:
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
         passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
@@ -197,6 +198,8 @@ def _fill(operation, inputs, plan, which):
     else:
         remove([one for one in operation.Group if not is_shown(one)])
     show_surface(operation, op, chain_of(thing), colour)
+    for one in filter(is_shown, operation.Group if maps else ()):  # a map stood in its place
+        one.Visibility = True
     mark(operation)
 
 

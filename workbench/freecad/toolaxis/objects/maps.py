@@ -5,6 +5,7 @@ from typing import NamedTuple
 import FreeCAD
 
 from .properties import Property, assign, ensure
+from .surfaces import SURFACE, is_shown
 
 _GROUP = "Legend"
 _PROPERTIES = (
@@ -47,16 +48,34 @@ def drawn(verdict, frame):
     from ..colours import judged
     from ..places import matrix_of
 
-    points, triangles = _joined(verdict.maps)
-    matrix = matrix_of(frame.inverse())
-    points = points @ matrix[:3, :3].T + matrix[:3, 3]
-    mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
-    rows, made = _rows_of(mesh, points), []
+    matrix, made = matrix_of(frame.inverse()), []
     for _, name, _ in _MAPS:
-        values = _values(verdict.maps, name)[rows]
+        some = shown_of(verdict, name)
+        points, triangles = _joined(some)
+        points = points @ matrix[:3, :3].T + matrix[:3, 3]
+        mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
+        values = _values(some, name)[_rows_of(mesh, points)]
         colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, _limit(verdict, name)).tolist()]
-        made.append(Drawn(mesh.copy(), values.tolist(), colours))
+        made.append(Drawn(mesh, values.tolist(), colours))
     return made
+
+
+def shown_of(verdict, name):
+    """The surface maps that are shown: heights of what was machined, gouges also of the skin around it.
+
+    Heights that are left of the skin are another operation's.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    name : str
+        "remaining" or "gouge".
+
+    Returns
+    -------
+    tuple of toolaxis.verify.maps.SurfaceMap
+    """
+    return verdict.maps[:len(verdict.faces)] if name == "remaining" else verdict.maps
 
 
 def keep(operation, verdict, frame, maps=None):
@@ -88,6 +107,9 @@ def keep(operation, verdict, frame, maps=None):
         passes = next(one for one in operation.Group if one.isDerivedFrom("Path::Feature"))
         thing.setExpression("Placement", f"{passes.Name}.Placement")
         thing.Visibility = what == "remaining"
+    for one in operation.Group:  # it would shine through the map
+        if is_shown(one) and one.Shows == SURFACE:
+            one.Visibility = False
     operation.Document.recompute([*meshes, operation])
     for thing in meshes:
         colour(thing)

@@ -34,7 +34,8 @@ class AxisView(QtCore.QObject):
     def __init__(self, form, preview):
         super().__init__()
         self.form, self.preview = form, preview
-        self.map, self.legend = HemisphereMap(form, ""), Legend(form)
+        empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
+        self.map, self.legend = HemisphereMap(form, empty), Legend(form)
         self.map.setObjectName("axisMap")
         form.mapPlace.layout().addWidget(self.map)
         form.legendPlace.layout().addWidget(self.legend)
@@ -92,7 +93,8 @@ class AxisView(QtCore.QObject):
         self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
         self.left = left_to_clean_up(plan)
         undone = [k for k, op in enumerate(plan.operations) if not op.done and op.number not in self.left]
-        self._offer(self._titles(), undone[0] if undone else 0)
+        done = [k for k, op in enumerate(plan.operations) if op.done]
+        self._offer(self._titles(), (undone or done or [0])[0])
         self._show_operation()
 
     def _offer(self, names, index):
@@ -172,9 +174,7 @@ class AxisView(QtCore.QObject):
         picture, text = self.pictures.get(op.number) if op is not None else None, ""
         if self.growing:
             picture, text = self._growth()
-        empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
-        self.map.empty = empty if op is None else no_map(op.orientation)
-        self.map.show_picture(picture)
+        self.map.show_picture(picture, "" if op is None else no_map(op.orientation))
         self.legend.show_picture(picture)
         self.form.pointer.setText("")
         self._show_numbers()

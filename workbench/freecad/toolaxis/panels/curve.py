@@ -4,6 +4,7 @@ import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
 from . import palette
+from .hemisphere import place_of
 
 translate = FreeCAD.Qt.translate
 
@@ -100,13 +101,15 @@ class OrientationCurve(QtWidgets.QWidget):
         cost = self.cost(option)
         text = translate("ToolAxis", "{:.0f} s").format(cost) if self.timed else FreeCAD.Units.Quantity(
             float(cost), FreeCAD.Units.Length).UserString
-        less = 100 * (1 - cost / first) if first > 0 else 0.0
-        return translate("ToolAxis", "{} axes, {} sub-surfaces: {}, {:.1f} % less than the first").format(
-            option.orientations, option.sub_surfaces, text, less)
+        told = translate("ToolAxis", "Different axes: {}; sub-surfaces: {}; {}").format(
+            option.orientations, option.sub_surfaces, text)
+        if option is self.options[0] or not first > 0:
+            return told
+        return translate("ToolAxis", "{}, {:.1f} % less than the first").format(told, 100 * (1 - cost / first))
 
     def mouseMoveEvent(self, event):
         """Tell what stands under the pointer."""
-        option = self.option_at(event.position())
+        option = self.option_at(place_of(event))
         self.setCursor(QtCore.Qt.PointingHandCursor if option else QtCore.Qt.ArrowCursor)
         self.hovered.emit(self.words(option) if option else "")
 
@@ -116,7 +119,7 @@ class OrientationCurve(QtWidgets.QWidget):
 
     def mousePressEvent(self, event):
         """Ask for the option that was clicked."""
-        option = self.option_at(event.position())
+        option = self.option_at(place_of(event))
         if option is not None and self.isEnabled():
             self.picked.emit(option.orientations)
 

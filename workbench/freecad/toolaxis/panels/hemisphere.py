@@ -11,7 +11,7 @@ from .legend import draw_mark
 
 translate = FreeCAD.Qt.translate
 
-_MARGIN, _HEIGHT = 12, 300
+_MARGIN, _HEIGHT, _LOW = 12, 300, 84
 
 
 def no_map(found):
@@ -46,7 +46,7 @@ class HemisphereMap(QtWidgets.QWidget):
 
     def __init__(self, parent, empty):
         super().__init__(parent)
-        self.empty = empty
+        self.empty, self.reason = empty, ""
         self.setMouseTracking(True)
         self.setMinimumWidth(200)
         self.setFixedHeight(_HEIGHT)
@@ -56,14 +56,18 @@ class HemisphereMap(QtWidgets.QWidget):
         self.tried = None
         self._drawn = None
 
-    def show_picture(self, picture):
+    def show_picture(self, picture, reason=""):
         """Show another map.
 
         Parameters
         ----------
         picture : AxisPicture or None
+        reason : str
+            Why there is none, if none will come.
         """
+        self.reason = reason
         self.picture, self.tried, self._drawn = picture, None, None
+        self.setFixedHeight(_LOW if picture is None and self.reason else _HEIGHT)
         self.setCursor(QtCore.Qt.CrossCursor if picture is not None else QtCore.Qt.ArrowCursor)
         self.update()
 
@@ -128,7 +132,7 @@ class HemisphereMap(QtWidgets.QWidget):
 
     def mouseMoveEvent(self, event):
         """Tell what stands under the pointer."""
-        self.hovered.emit(self.text_at(_place(event)))
+        self.hovered.emit(self.text_at(place_of(event)))
 
     def leaveEvent(self, event):
         """Tell that the pointer left."""
@@ -136,7 +140,7 @@ class HemisphereMap(QtWidgets.QWidget):
 
     def mousePressEvent(self, event):
         """Pick the axis under the pointer."""
-        axis = self.axis_at(_place(event)) if event.button() == QtCore.Qt.LeftButton else None
+        axis = self.axis_at(place_of(event)) if event.button() == QtCore.Qt.LeftButton else None
         if axis is not None and self.isEnabled():
             self.picked.emit(axis)
 
@@ -162,6 +166,10 @@ class HemisphereMap(QtWidgets.QWidget):
     def _draw_nothing(self, painter):
         centre, radius = self.disc()
         colour = self.palette().color(QtGui.QPalette.WindowText)
+        if self.reason:
+            painter.setPen(colour)
+            painter.drawText(QtCore.QRectF(self.rect()), QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap, self.reason)
+            return
         painter.setPen(QtGui.QPen(colour, 1, QtCore.Qt.DashLine))
         painter.drawEllipse(centre, radius, radius)
         box = QtCore.QRectF(centre.x() - 0.7 * radius, centre.y() - radius / 2, 1.4 * radius, radius)
@@ -217,8 +225,17 @@ class HemisphereMap(QtWidgets.QWidget):
         return QtCore.QPointF(centre.x() + radius * place[0], centre.y() - radius * place[1])
 
 
-def _place(event):
-    """Where a mouse event is; FreeCAD 1.0 has a Qt that calls it otherwise."""
+def place_of(event):
+    """Where a mouse event is; FreeCAD 1.0 has a Qt that calls it otherwise.
+
+    Parameters
+    ----------
+    event : QMouseEvent
+
+    Returns
+    -------
+    QPointF
+    """
     return event.position() if hasattr(event, "position") else event.localPos()
 
 

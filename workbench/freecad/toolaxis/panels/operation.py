@@ -46,8 +46,8 @@ class OperationPanel(Panel):
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
         self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
-        if self.found is not None:
-            self.map.empty = no_map(self.found)
+        if self.found is not None and self.found.map is None:
+            self.map.show_picture(None, no_map(self.found))
         self.map.setObjectName("axisMap")
         self.form.mapPlace.layout().addWidget(self.map)
         self.form.legendPlace.layout().addWidget(self.legend)

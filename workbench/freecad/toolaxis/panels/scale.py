@@ -9,6 +9,9 @@ from .fields import fine_text
 
 translate = FreeCAD.Qt.translate
 
+#: Height of a row of swatches, and where their texts begin, pixels.
+_ROW, _SWATCH = 19, 28
+
 
 class Scale(QtWidgets.QWidget):
     """A bar of colours with its ends, and swatches for above the limit and not reached."""
@@ -16,7 +19,7 @@ class Scale(QtWidgets.QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.limit, self.name, self.missed = 1.0, "", True
-        self.setFixedHeight(58)
+        self._fit()
 
     def show_scale(self, name, limit, missed):
         """Explain another map.
@@ -30,7 +33,32 @@ class Scale(QtWidgets.QWidget):
             Whether places that were not reached have a colour of their own.
         """
         self.limit, self.name, self.missed = limit, name, missed
+        self._fit()
         self.update()
+
+    def resizeEvent(self, event):
+        """What no longer fits beside each other goes below each other."""
+        self._fit()
+
+    def _fit(self):
+        self.setFixedHeight(39 + _ROW * len(self._rows()))
+
+    def _entries(self):
+        """Colours beyond the scale, with what they mean."""
+        entries = [(ABOVE, translate("ToolAxis", "above the limit"))]
+        return entries + ([(MISSED, translate("ToolAxis", "not reached"))] if self.missed else [])
+
+    def _rows(self):
+        """The same in rows: in one where each fits into its half."""
+        entries, metrics = self._entries(), self.fontMetrics()
+        fits = all(metrics.horizontalAdvance(name) + _SWATCH < self.width() / 2 for _, name in entries)
+        return [entries] if fits else [[entry] for entry in entries]
+
+    def _caption(self):
+        """The name of the scale between its ends, or less of it where they need the room."""
+        metrics = self.fontMetrics()
+        room = self.width() - 2 * (metrics.horizontalAdvance(fine_text(self.limit)) + 8)
+        return metrics.elidedText(self.name, QtCore.Qt.ElideRight, max(room, 0))
 
     def paintEvent(self, event):
         """Draw bar, ends and swatches."""
@@ -42,17 +70,15 @@ class Scale(QtWidgets.QWidget):
         painter.drawRect(bar)
         line = QtCore.QRectF(0, 16, self.width(), 18)
         painter.drawText(line, QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, "0")
-        painter.drawText(line, QtCore.Qt.AlignCenter, self.name)
+        painter.drawText(line, QtCore.Qt.AlignCenter, self._caption())
         painter.drawText(line, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, fine_text(self.limit))
-        entries = [(ABOVE, translate("ToolAxis", "above the limit"))]
-        if self.missed:
-            entries.append((MISSED, translate("ToolAxis", "not reached")))
-        for k, (colour, name) in enumerate(entries):
-            x = k * self.width() / 2
-            box = QtCore.QRectF(x, 39, 22, 13)
-            painter.fillRect(box, QtGui.QColor(*colour))
-            painter.setPen(text)
-            painter.drawRect(box)
-            painter.drawText(QtCore.QRectF(x + 28, 36, self.width() / 2 - 28, 19),
-                             QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, name)
+        for row, entries in enumerate(self._rows()):
+            for column, (colour, name) in enumerate(entries):
+                x, y = column * self.width() / 2, 36 + row * _ROW
+                box = QtCore.QRectF(x, y + 3, _SWATCH - 6, 13)
+                painter.fillRect(box, QtGui.QColor(*colour))
+                painter.setPen(text)
+                painter.drawRect(box)
+                painter.drawText(QtCore.QRectF(x + _SWATCH, y, self.width() - x - _SWATCH, _ROW),
+                                 QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, name)
         painter.end()

@@ -10,7 +10,7 @@ from PySide import QtCore, QtWidgets
 from .. import RESOURCES, bridge
 from ..macros import record, thing_of
 from ..objects.belongings import child
-from ..objects.maps import drawn
+from ..objects.maps import drawn, shown_of
 from ..tasks import Work, sentence
 from .fields import fine_text, length_text, load_form, tell
 from .figures import fill
@@ -125,7 +125,7 @@ class VerifyPanel(Panel):
 
     @property
     def chosen(self):
-        """The verdict that is shown, with its skins; None before there is one."""
+        """The verdict that is shown, with its skins for each of `WHAT`; None before there is one."""
         index = self.form.operation.currentIndex()
         return self.found[index] if self.found and 0 <= index < len(self.found) else None
 
@@ -147,7 +147,7 @@ class VerifyPanel(Panel):
         what = WHAT[form.what.currentIndex()]
         limit = verdict.scallop_limit if what == "remaining" else verdict.gouge_allowed
         self.scale.show_scale(form.what.currentText(), limit, what == "remaining")
-        self.paint.show(skins, what, limit)
+        self.paint.show(skins[what], what, limit)
         fill(form.results, [("", _measures(verdict))])
         form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in verdict.reasons))
         self.places = verdict.worst_scallop if what == "remaining" else verdict.worst_gouge
@@ -194,8 +194,9 @@ class VerifyPanel(Panel):
 def _judged(judge, frame, progress):
     """Verdicts of one operation with the skins to paint, and the maps to keep; runs off the GUI thread."""
     verdicts = judge(progress).operations
-    return ([(verdict, [skin for one in verdict.maps for skin in skins_of(one)]) for verdict in verdicts],
-            drawn(verdicts[0], frame))
+    skins = [{name: [skin for one in shown_of(verdict, name) for skin in skins_of(one)] for name in WHAT}
+             for verdict in verdicts]
+    return list(zip(verdicts, skins, strict=True)), drawn(verdicts[0], frame)
 
 
 def _measures(verdict):
