@@ -106,6 +106,17 @@ def test_each_orientation_is_a_job_and_shares_it(document, parts, posting):
     assert "\nG55" in posting.posted(jobs[1])
 
 
+def test_a_clone_that_shows_something_else_is_refused(document, parts):
+    thing = parts.block(document)
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
+    job, = make_jobs(document, operation)
+    model, frame = job.Model.Group[0], frame_of(operation).Placement
+    cam_setup._turn_model(model, thing, frame)
+    model.Scale = Vector(1.0, 1.0, 1.001)
+    with pytest.raises(InvalidInput, match="makes no true copy of Block"):
+        cam_setup._turn_model(model, thing, frame)
+
+
 def test_the_safe_height_is_above_what_is_avoided(document, parts, posting):
     thing, clamp = parts.block(document), document.addObject("Part::Box", "Clamp")
     clamp.Placement.Base, clamp.Height = Vector(60, 0, 0), 90

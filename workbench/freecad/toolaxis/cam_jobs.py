@@ -72,7 +72,19 @@ def make_jobs(document, operations, progress=None):
                 setattr(job, name, value)
         tell_shared(document)
         document.recompute()
+        _check_computed(jobs)
     return jobs
+
+
+def _check_computed(jobs):
+    """Refuse jobs whose passes FreeCAD left uncomputed: they would be posted as programs without motions."""
+    from toolaxis.errors import InvalidInput
+
+    for job in jobs:
+        for made in job.Operations.Group:
+            if len(made.Path.Commands) < len(made.Gcode):
+                raise InvalidInput(f"FreeCAD did not compute the passes of '{made.Label}': look for what is marked in "
+                                   "the tree, mend or delete it, and make the jobs again")
 
 
 def jobs_of(operation):

@@ -125,6 +125,8 @@ def _base(document, thing):
 
 def _turn_model(model, thing, frame):
     """Put a job's model where its part stands in a frame; a clone that shows something else is refused."""
+    import numpy as np
+
     from toolaxis.cad.freecad import shape_of
     from toolaxis.errors import InvalidInput
 
@@ -132,12 +134,23 @@ def _turn_model(model, thing, frame):
     model.Placement = frame.inverse().multiply(shape.Placement)
     model.recompute()
     if len(model.Shape.Faces) == len(shape.Faces):
-        gaps = [frame.multVec(own.CenterOfMass).distanceToPoint(face.CenterOfMass)
-                for own, face in zip(model.Shape.Faces, shape.Faces, strict=True)]
-        if max(gaps) < _CLOSE * max(1.0, shape.BoundBox.DiagonalLength):
+        ours, theirs = _marks(model.Shape), _marks(shape)
+        matrix = matrix_of(frame)
+        if ours.shape == theirs.shape and (np.abs(ours @ matrix[:3, :3].T + matrix[:3, 3] - theirs).max(initial=0.0)
+                                           < _CLOSE * max(1.0, np.abs(theirs - theirs[:1]).max(initial=0.0))):
             return
     raise InvalidInput(f"FreeCAD makes no true copy of {thing.Label} for a job: make a simple copy of it (Part, Create "
                        "a copy), and plan that")
+
+
+def _marks(shape):
+    """Where the vertices of a shape and the middles of its edges lie, (n, 3); centres of faces would take seconds."""
+    import numpy as np
+
+    points = [vertex.Point for vertex in shape.Vertexes]
+    points += [edge.valueAt((edge.FirstParameter + edge.LastParameter) / 2) for edge in shape.Edges
+               if not edge.Degenerated]
+    return np.array([tuple(point) for point in points]).reshape(-1, 3)
 
 
 def _stand_stock(job):

@@ -21,9 +21,35 @@ def add_bit(document, tool, label):
     Returns
     -------
     App.DocumentObject
-        Where FreeCAD has no tapered cutters, a ball end or end mill of the diameter at the tip; its label tells.
+        Where FreeCAD has no tapered cutters, or fails to draw this one, a ball end or end mill of the diameter at the
+        tip; its label tells.
     """
     shape, kind = _shape_for(tool)
+    bit = _bit(document, tool, label, (shape, kind))
+    if shape == "taperedballnose" and _is_broken(bit):
+        name = bit.Name
+        bit.Proxy.onDelete(bit)
+        if document.getObject(name) is not None:
+            document.removeObject(name)
+        bit = _bit(document, tool, label, _SHAPES["ball"][0])
+    bit.Label = label
+    if bit.ViewObject is not None:
+        bit.ViewObject.Visibility = False
+    return bit
+
+
+def _is_broken(bit):
+    """Whether FreeCAD fails to draw a bit: nothing that hangs on it is computed then, a job's passes neither."""
+    body = getattr(bit, "BitBody", None)
+    if body is None:
+        return False
+    body.recompute(True)
+    return any("Invalid" in one.State for one in (body, *body.OutListRecursive))
+
+
+def _bit(document, tool, label, which):
+    """A tool bit of one of FreeCAD's shapes."""
+    shape, kind = which
     new = find_spec("Path.Tool.toolbit") is not None
     sizes = {name: f"{value:.9g} {'deg' if name == 'TaperAngle' else 'mm'}"
              for name, value in _sizes(tool, shape, new).items()}
@@ -37,9 +63,6 @@ def add_bit(document, tool, label):
         import Path.Tool.Bit as Bits
 
         bit = Bits.Factory.CreateFromAttrs(words, "ToolBit")
-    bit.Label = label
-    if bit.ViewObject is not None:
-        bit.ViewObject.Visibility = False
     return bit
 
 
