@@ -43,6 +43,16 @@ def test_the_map_is_painted_and_a_click_zooms(desk, planned):
     assert desk.form("ToolAxisVerify") is None
 
 
+def test_what_is_left_to_clean_up_is_passed_over(desk, planned):
+    """Another operation of the document, which has no axis and no passes, does not keep this one from being judged."""
+    from freecad.toolaxis.objects.operation import Operation
+
+    other = planned.addObject("App::DocumentObjectGroupPython", "Operation")
+    Operation(other)
+    form = judged(desk)
+    assert "nside tolerance" in form.message.text() and form.worst.count() > 0
+
+
 def test_stop_and_verify_again(desk, planned):
     form = opened(desk)
     if form.stop.isEnabled():

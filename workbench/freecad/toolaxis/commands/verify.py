@@ -27,7 +27,8 @@ class Verify:
 
     def Activated(self):
         """Open the panel, or say what is missing."""
-        found = operations(FreeCAD.ActiveDocument)
+        every = operations(FreeCAD.ActiveDocument)
+        found = [one for one in every if one.Motions] or every  # what is left to clean-up has nothing to be judged
         if not found:
             warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation to verify: "
                                                   "select faces and run Plan Orientations first."))
