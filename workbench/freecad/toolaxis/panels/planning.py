@@ -324,7 +324,7 @@ class PlanPanel(Panel):
     def _forget_tool(self, name):
         """Take a tool of the document that is about to be deleted off the choice."""
         for k, (_, thing) in reversed(list(enumerate(self.tools))):
-            if thing.Name == name:
+            if getattr(thing, "Name", None) == name:  # a name of the library of tools has none
                 del self.tools[k]
                 self.form.tool.removeItem(k + 1)
 
