@@ -163,6 +163,8 @@ def test_bodies_of_the_same_assembly_are_avoided(document, part):
     assert set(bodies_in(document, [part])) == {disc, hidden, apart}
     assert defaults(document, ((part, "Face1"),)).obstacles == (disc,)
     assert defaults(document, ((apart, "Face1"),)).obstacles == ()
+    assert bodies_in(document, [outer]) == [apart] and set(bodies_in(document, [inner])) == {part, hidden, apart}
+    assert defaults(document, ((outer, "Face1"),)).obstacles == ()
 
 
 def test_numbers_may_have_units(document, part):

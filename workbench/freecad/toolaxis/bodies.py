@@ -6,15 +6,17 @@ from .places import chain_of
 def bodies_in(document, parts):
     """Objects of a document that may have to be avoided: solids and shells at the top, but for some parts.
 
+    What stands in a container that is a part is of that part.
+
     Parameters
     ----------
     document : App.Document
     parts : sequence of objects
     """
     own = {part.Name for part in parts}
-    for part in parts:
-        own |= {above.Name for above in part.InListRecursive}
-    return [thing for thing in document.Objects if thing.Name not in own and _is_body(thing)]
+    above = {one.Name for part in parts for one in part.InListRecursive}
+    return [thing for thing in document.Objects if thing.Name not in above and _is_body(thing)
+            and own.isdisjoint(one.Name for one in (thing, *chain_of(thing)))]
 
 
 def bodies_beside(document, parts):
