@@ -211,6 +211,19 @@ def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member
     assert found.text.startswith(f"the {member} meets face ") and f" of the {thing} by 1.0 mm" in found.text
 
 
+def test_the_tool_may_go_along_the_border_of_a_side(document, mounted):
+    """A wedge whose sides are trapezoids: the tool over the low end meets the rectangle around a side, not the side."""
+    import Part
+
+    corners = [Vector(x, -20, z) for x, z in ((-20, 0), (20, 0), (20, 24), (-20, 4), (-20, 0))]
+    wedge = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 40, 0))
+    known = meetings.around(mounted, [TOOL], [meetings.Copy("Wedge", "Wedge", wedge)], NO_PROGRESS)
+    tips = np.array([[-18.0, -19.0, 9.0], [-15.0, -19.0, 10.5]])
+    assert known.on_passes(0, np.zeros(2), tips) is None
+    low = known.on_passes(0, np.zeros(2), tips - [0, 0, 3.6])
+    assert low.member == "cutter" and "by 0.6 mm" in low.text, "1 + 2 sin a - 1.4 cos a, tan a = 0.5"
+
+
 def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
     """A tool 20 mm longer lifts the spindle by that, and its holder clears the post that the short one's meets."""
     long = ta.Tool.ball(diameter=8, stickout=55, holder=[(10, 0), (10, 30), (20, 30), (20, 50)])

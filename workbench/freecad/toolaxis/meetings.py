@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 #: Looks between two operations, and how deep two things lie in one another before they meet, mm: the cutter touches
 #: what it cuts, and faces are known to a few hundredths.
 STEPS, DEPTH = 20, 0.1
+#: Motions of the tool that are measured once it is known that they meet something: some from the first to the last.
+_MEASURED = 400
 
 
 @dataclass(frozen=True)
@@ -61,11 +63,17 @@ class Around:
         One for each operation, with its tool.
     names : dict of str to str
         Names of objects by what their faces are called after their numbers.
+    near : toolaxis.contact.surroundings.Surroundings
+        The same faces as exact as they are, for the tool, which goes along their borders.
+    called : tuple of str
+        What each of these faces is called, "3 of Block".
     """
 
     mounted: object
     surroundings: tuple
     names: dict
+    near: object
+    called: tuple
 
     def on_passes(self, row, rotary, tips):
         """Where an operation meets something at all, at rotary angles; None where it does not.
@@ -85,7 +93,8 @@ class Around:
         """
         from toolaxis.contact.machinery import nearest_meeting
 
-        found = nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row], with_tool=True)
+        found = self._of_tool(row, rotary, tips)
+        found = found or nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row])
         return self._told(found, rotary)
 
     def at(self, row, joints):
@@ -102,10 +111,33 @@ class Around:
         Met or None
         """
         from toolaxis.contact.machinery import meeting_on
+        from toolaxis.machine.kinematics import forward
         from toolaxis.numeric.convex import places
 
-        found = meeting_on(self._holding(row), joints[3:], places(joints[None, :3]), self.surroundings[row])
+        held = self._holding(row)
+        tips, _ = forward(held.machine, joints[None], held.tool_length, held.table_from_part)
+        found = self._of_tool(row, joints[3:], tips)
+        found = found or meeting_on(held, joints[3:], places(joints[None, :3]), self.surroundings[row], with_tool=False)
         return self._told(found, joints[3:])
+
+    def _of_tool(self, row, rotary, tips):
+        """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
+        import numpy as np
+
+        from toolaxis.contact.clearance import clearances, clears, segment_clearances, segment_clears
+        from toolaxis.contact.machinery import Meeting
+        from toolaxis.tools.solid import COMPONENTS
+
+        tool, axis, alone = self.surroundings[row].tool, self.mounted.axis_at(rotary), len(tips) == 1
+        bad = np.flatnonzero(~(clears if alone else segment_clears)(tool, tips, axis, self.near).safe)
+        best = None
+        for k in bad[np.unique(np.linspace(0, max(len(bad) - 1, 0), _MEASURED).astype(int))] if len(bad) else ():
+            one = (clearances if alone else segment_clearances)(tool, tips[k:k + 2], axis, self.near)
+            which = int(np.argmin(one.distance[0]))
+            distance, face = float(one.distance[0, which]), int(one.face[0, which])
+            if face >= 0 and distance < -DEPTH and (best is None or distance < best.distance):
+                best = Meeting(COMPONENTS[which], f"face {self.called[face]}", distance, int(k))
+        return best
 
     def _holding(self, row):
         """The machine with the tool of an operation in its spindle."""
@@ -208,17 +240,23 @@ def around(mounted, tools, found, progress):
     -------
     Around
     """
+    import numpy as np
+
     from toolaxis.contact.machinery import Surroundings
+    from toolaxis.contact.surroundings import Surroundings as Near
     from toolaxis.progress import heard
     from toolaxis.shape.cells import forest
 
-    names, cells = {}, []
+    names, cells, every = {}, [], []
     for label, name, faces in read(found, progress):
         names[label] = name
         with heard(progress):
             if faces:
-                cells.append(forest(tuple(replace(face, label=f"{face.number} of {label}") for face in faces)))
-    return Around(mounted, tuple(Surroundings(tool, tuple(cells), -DEPTH) for tool in tools), names)
+                every += [replace(face, label=f"{face.number} of {label}") for face in faces]
+                cells.append(forest(tuple(every[-len(faces):])))
+    near = Near(tuple(every), np.full((len(every), 3), -DEPTH))
+    return Around(mounted, tuple(Surroundings(tool, tuple(cells), -DEPTH) for tool in tools), names, near,
+                  tuple(face.label for face in every))
 
 
 def along(known, journey, rows, progress):
