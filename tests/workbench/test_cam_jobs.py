@@ -1,5 +1,6 @@
 """FreeCAD's own CAM jobs from operations: what its post-processor writes lies on the CL data, and nothing half-made."""
 
+import re
 import sys
 import types
 
@@ -258,7 +259,7 @@ def turned_copy(document, operation, face):
     link.addProperty("App::PropertyPlacement", "Turn")
     link.addProperty("App::PropertyString", "Face")
     link.Placement = link.Turn = Placement(Vector(), Rotation(Vector(0, 0, 1), 90))
-    link.Face, link.Label = face, "Another blade"
+    link.Face, link.Label = face, "Another blade (turned copy)"
     return link
 
 
@@ -273,8 +274,10 @@ def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path, pos
     link = turned_copy(document, operation, name)
     document.recompute()
     jobs = make_jobs(document, operation)
-    assert [job.Operations.Group[0].MadeFor for job in jobs] == [operation.Label, "Another blade"]
+    assert [job.Operations.Group[0].MadeFor for job in jobs] == [operation.Label, "Another blade (turned copy)"]
     assert [job.Fixtures for job in jobs] == [["G54"], ["G55"]] and jobs_of(operation) == jobs
+    assert jobs[1].Operations.Group[0].Label == "Finishing Another blade, turned copy"
+    assert not re.search(r"\([^)]*\(", posting.posted(jobs[1])), "comments inside one another"
     frame = link.Placement.multiply(frame_of(operation).Placement)
     posting.check_on_cl(posting.posted(jobs[1]), jobs[1].Operations.Group[0], op.path, frame, matrix_of(link.Placement))
     export(operation, tmp_path / "plan")

@@ -229,6 +229,10 @@ class Desk:
 
         return next(filter(is_operation, document.Objects), None)
 
+    def text(self, view, row, column=0):
+        """What an entry of a table or a list says."""
+        return view.model().index(row, column).data()
+
     def down(self, form, widget):
         """Scroll the task panel until a widget is in sight."""
         above = form.parentWidget()

@@ -86,20 +86,18 @@ class Hand:
 
     def marked(self):
         """Mark an entry of a list, or tick it."""
-        item = self.widget("faces").item(0)
-        if item is not None:
-            item.setSelected(True)
-        body = self.widget("avoid").item(0)
-        if body is not None and body.flags() & self.desk.qt.Qt.ItemIsUserCheckable:
-            body.setCheckState(self.random.choice((self.desk.qt.Qt.Checked, self.desk.qt.Qt.Unchecked)))
+        self.widget("faces").setCurrentRow(0)
+        bodies, role = self.widget("avoid").model(), self.desk.qt.Qt.CheckStateRole
+        if bodies.index(0, 0).data(role) is not None:
+            bodies.setData(bodies.index(0, 0), self.random.choice((2, 0)), role)
 
     def cell(self):
         """Write into a cell of an outline."""
         table = self.widget(self.random.choice(("shank", "holder")))
-        item = table.item(self.random.randrange(max(table.rowCount(), 1)), self.random.randrange(2))
+        place = table.model().index(self.random.randrange(max(table.rowCount(), 1)), self.random.randrange(2))
         text = self.random.choice(TEXTS)
-        if item is not None and table.isEnabled():
-            item.setText(text)
+        if place.isValid() and table.isEnabled():
+            table.model().setData(place, text)
         return table.objectName(), text
 
     def mapped(self):

@@ -64,7 +64,7 @@ def test_edges_selected(desk, wavy):
 
 def test_a_body_stands_for_its_sculptured_faces(desk, wavy):
     form = desk.start(wavy[0])
-    names = [form.faces.item(k).text() for k in range(form.faces.count())]
+    names = [desk.text(form.faces, k) for k in range(form.faces.count())]
     assert any(wavy[1] in name for name in names) and form.compute.isEnabled()
     assert len(names) < len(wavy[0].Shape.Faces)
 
@@ -129,7 +129,7 @@ def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
     desk.gui.runCommand("ToolAxis_PlanOrientations")
     desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
-    texts = {form.faces.item(k).text() for k in range(form.faces.count())}
+    texts = {desk.text(form.faces, k) for k in range(form.faces.count())}
     assert texts == {f"{box.Label}: Face1", f"{link.Label}: Round.Face1", f"{part.Label}: {face}"}, texts
     assert form.compute.isEnabled(), form.message.text()
 
@@ -154,5 +154,5 @@ def test_tools_of_a_cam_job_are_offered_and_other_bodies_can_be_avoided(desk, wa
     desk.shot("22-cam-tool")
     controller = next(thing for thing in document.Objects if thing.Label == names[1])
     assert form.diameter.property("rawValue") == pytest.approx(float(controller.Tool.Diameter))
-    bodies = [form.avoid.item(k).text() for k in range(form.avoid.count())]
+    bodies = [desk.text(form.avoid, k) for k in range(form.avoid.count())]
     assert bodies == ["Clamp"]

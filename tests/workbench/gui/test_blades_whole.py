@@ -49,7 +49,7 @@ def outline(desk, table, rows):
     table.setRowCount(len(rows))
     for i, row in enumerate(rows):
         for k, value in enumerate(row):
-            table.setItem(i, k, desk.widgets.QTableWidgetItem(f"{value} mm"))
+            table.model().setData(table.model().index(i, k), f"{value} mm")
 
 
 @pytest.mark.long

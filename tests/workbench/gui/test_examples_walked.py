@@ -150,7 +150,7 @@ def outline(desk, table, rows):
     table.setRowCount(len(rows))
     for i, row in enumerate(rows):
         for k, value in enumerate(row):
-            table.setItem(i, k, desk.widgets.QTableWidgetItem(f"{value} mm"))
+            table.model().setData(table.model().index(i, k), f"{value} mm")
 
 
 def picked(walk, form):
@@ -237,7 +237,7 @@ def machine_seen(walk):
     assert "can be held" in form.message.text(), form.message.text()
     assert form.angles.rowCount() == len([one for one in walk.operations if one.Motions])
     for row in range(form.angles.rowCount()):
-        texts = [form.angles.item(row, column).text() for column in (0, 1)]
+        texts = [desk.text(form.angles, row, column) for column in (0, 1)]
         assert all("C" in text and "B" in text for text in texts)
     walk.seen("machine")
     if form.slide.isEnabled():

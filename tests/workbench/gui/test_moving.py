@@ -45,11 +45,11 @@ def test_a_moving_axis_is_chosen_refused_computed_and_drawn(desk, wavy, tmp_path
     desk.computed(form)
     assert "Every face has an axis" in form.message.text() and names(document) == before
     assert not form.mapPlace.isVisible() and not form.lockAxis.isVisible() and form.slide.isVisible()
-    rows = [form.results.verticalHeaderItem(k).text() for k in range(form.results.rowCount())]
+    rows = [form.results.model().headerData(k, desk.qt.Qt.Vertical) for k in range(form.results.rowCount())]
     assert "Lean from the normal, mean" in rows
     desk.shot("70-moving-axis")
     window = pictures(desk, form.pictures)
-    assert [window.list.item(k).text() for k in range(window.list.count())] == ["Passes and tool, op01-face" + face[4:]]
+    assert [desk.text(window.list, k) for k in range(window.list.count())] == ["Passes and tool, op01-face" + face[4:]]
     assert window.image.pixmap().width() > 300
     window.save(tmp_path)
     assert (tmp_path / f"op01-face{face[4:]}-passes.png").stat().st_size > 10000

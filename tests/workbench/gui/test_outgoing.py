@@ -85,7 +85,7 @@ def test_plan_and_program_are_written(desk, operation, tmp_path):
     written(desk, form)
     names = {path.name for path in (tmp_path / "plan").iterdir()}
     assert {"plan.json", "program-linuxcnc.ngc", "setup-linuxcnc.md", "part.json"} <= names, form.message.text()
-    assert {form.files.item(k).text() for k in range(form.files.count())} == names
+    assert {desk.text(form.files, k) for k in range(form.files.count())} == names
     assert json.loads((tmp_path / "plan" / "plan.json").read_text())["outcome"] == "complete"
     desk.shot("80-export")
 
@@ -149,7 +149,7 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
     form = machine_panel(desk, "bc-table-table", (0, 0, 20))
     assert "can be held" in form.message.text(), form.message.text()
     assert form.still.isChecked() and form.angles.rowCount() == 2 and form.angles.columnCount() == 2
-    texts = [[form.angles.item(row, column).text() for column in (0, 1)] for row in (0, 1)]
+    texts = [[desk.text(form.angles, row, column) for column in (0, 1)] for row in (0, 1)]
     assert all("C" in text and "B" in text for row in texts for text in row) and texts[0] != texts[1]
     desk.shot("70-machine")
     form.slide.setValue(400)
@@ -176,7 +176,7 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
 
 def test_what_cannot_be_held_is_told(desk, leaning):
     form = machine_panel(desk, "four-axis-a", (0, 0, 0))
-    assert form.angles.item(0, 0).text() == "no position reaches it"
+    assert desk.text(form.angles, 0, 0) == "no position reaches it"
     assert "Not held by this machine" in form.message.text() and not form.play.isEnabled()
     desk.press(desk.standard_button("Cancel"))
     desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
@@ -185,7 +185,7 @@ def test_what_cannot_be_held_is_told(desk, leaning):
 def test_bodies_that_meet_are_red(desk, leaning):
     """The part stands so deep in the table that the spindle meets it."""
     form = machine_panel(desk, "bc-table-table", (0, 0, -85))
-    assert "the spindle meets the table by" in form.angles.item(0, 0).text(), form.angles.item(0, 0).text()
+    assert "the spindle meets the table by" in desk.text(form.angles, 0, 0), desk.text(form.angles, 0, 0)
     form.angles.cellClicked.emit(0, 0)
     desk.pump(0.2)
     assert "spindle, table meet by" in form.pointer.text(), form.pointer.text()
@@ -205,7 +205,7 @@ def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
     form = machine_panel(desk, "bc-table-table", (0, 0, 20))
     desk.wait(lambda: "meets face" in form.message.text(), "collisions are looked for")
     assert form.message.text().startswith(leaning[0].Label) and "of Clamp by" in form.message.text()
-    assert "of Clamp by" in form.angles.item(0, 0).text() + form.angles.item(0, 1).text()
+    assert "of Clamp by" in desk.text(form.angles, 0, 0) + desk.text(form.angles, 0, 1)
     assert "of Clamp by" in form.pointer.text(), form.pointer.text()
     desk.shot("74-clamp-met")
     red, there = desk.red_points(document, tmp_path), form.pointer.text()

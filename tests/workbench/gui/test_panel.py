@@ -23,7 +23,7 @@ def test_the_workbench_is_there_with_its_commands(desk):
 def test_plan_from_selection_to_objects_and_back(desk, wavy, form, remembered):
     document = wavy[0].Document
     before = [thing.Name for thing in document.Objects]
-    assert form.faces.count() == 1 and wavy[1] in form.faces.item(0).text()
+    assert form.faces.count() == 1 and wavy[1] in desk.text(form.faces, 0)
     desk.shot("1-job")
     form.tabs.setCurrentWidget(form.toolTab)
     desk.shot("2-tool")
@@ -111,13 +111,13 @@ def test_pointer_and_click_on_the_map(desk, form, remembered):
     desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")
     assert form.results.columnCount() == 2
     assert "Against the best axis" in form.cost.text() and form.lock.isEnabled()
-    passes = [form.results.item(1, column).text() for column in (0, 1)]
+    passes = [desk.text(form.results, 1, column) for column in (0, 1)]
     assert int(passes[1]) >= int(passes[0])
     desk.shot("6-tried")
     desk.press(form.lock)
-    assert form.results.item(1, 0).text() == passes[1] and form.results.columnCount() == 1
+    assert desk.text(form.results, 1, 0) == passes[1] and form.results.columnCount() == 1
     desk.press(form.best)
-    assert form.results.item(1, 0).text() == passes[0]
+    assert desk.text(form.results, 1, 0) == passes[0]
 
 
 def test_a_forbidden_axis_says_why_and_cannot_be_locked(desk, form, remembered):
@@ -185,14 +185,14 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
         assert ("in" in form.diameter.property("text")) == inches
         desk.type(form.diameter, "0.25 in")
         assert form.diameter.property("rawValue") == pytest.approx(6.35)
-        assert ("in" in form.holder.item(0, 0).text()) == inches
+        assert ("in" in desk.text(form.holder, 0, 0)) == inches
         form.tabs.setCurrentWidget(form.jobTab)
         desk.type(form.scallop, "0.0125 mm")
         assert form.scallop.property("rawValue") == pytest.approx(0.0125, rel=0.02)
         desk.shot(f"11-units-{schema}")
         desk.type(form.scallop, "0.2 mm")
         desk.computed(form)
-        assert any("in" in form.results.item(row, 0).text().split() for row in (2, 3)) == inches
+        assert any("in" in desk.text(form.results, row, 0).split() for row in (2, 3)) == inches
         desk.press(desk.standard_button("Ok"))
         rate = 60 * desk.operation_in(wavy[0].Document).FeedRate.Value
         assert rate == pytest.approx(1000, abs=1e-6), "not 1000.2, from 16.67 mm/s"

@@ -32,7 +32,7 @@ def test_the_map_is_painted_and_a_click_zooms(desk, planned):
     camera = desk.gui.getDocument(planned.Name).ActiveView.getCameraNode()
     before = camera.height.getValue()
     assert form.worst.count() > 0
-    rect = form.worst.visualItemRect(form.worst.item(0))
+    rect = form.worst.visualRect(form.worst.model().index(0, 0))
     desk.click(form.worst.viewport(), rect.center())
     assert camera.height.getValue() < before
     desk.shot("31-zoomed")

@@ -1,5 +1,6 @@
 """What one CAM job is made of: the model in the frame of a plane, stock, tool controllers, operations with passes."""
 
+import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -72,7 +73,7 @@ def bare_job(document, group, frame):
 
     things = list({thing.Name: thing for one in group for thing in one.inputs.things}.values())
     job = Jobs.Create("Job", [_base(document, thing) for thing in things])
-    job.Label = translate("ToolAxis", "Job {}").format(group[0].label)
+    job.Label = translate("ToolAxis", "Job {}").format(plain(group[0].label))
     if job.ViewObject is not None:
         _show_job(job)
     for model, thing in zip(job.Model.Group, things, strict=True):
@@ -87,6 +88,16 @@ def bare_job(document, group, frame):
     axes = "; ".join(dict.fromkeys("({:.6f}, {:.6f}, {:.6f})".format(*one.matrix[:3, 2]) for one in group))
     job.Description = translate("ToolAxis", "Tool Axis: {}; tool axis {} in the document").format(names, axes)
     return job, controllers
+
+
+def plain(label):
+    """A label without parentheses: programs tell it in comments, which controls do not take inside one another.
+
+    Parameters
+    ----------
+    label : str
+    """
+    return re.sub(r"[()]", "", re.sub(r"\s*\(([^()]*)\)", r", \1", label))
 
 
 def _controller(job, number, one):
@@ -234,7 +245,7 @@ def add_passes(job, controller, one, stands):
 
     with _answering(controller):
         made = Custom.Create("Passes", parentJob=job)
-    made.Label = translate("ToolAxis", "Finishing {}").format(one.label)
+    made.Label = translate("ToolAxis", "Finishing {}").format(plain(one.label))
     ensure(made, _FROM)
     made.OrientedFrom, made.MadeFor = one.operation, one.label
     made.ToolController = controller

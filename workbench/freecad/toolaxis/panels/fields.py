@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import FreeCAD
 import FreeCADGui
 from FreeCAD import Units
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 from .. import RESOURCES
 from ..tasks import clear_away
@@ -15,6 +15,7 @@ from . import palette
 translate = FreeCAD.Qt.translate
 
 _DATA = QtCore.Qt.UserRole
+_TICKED = 2  # Qt.Checked, which is a number in data
 #: How often a layout is loaded until all its widgets are of their own class.
 _LOADINGS = 5
 
@@ -117,6 +118,56 @@ def tell(label, text, bad=False):
     sentence = text if not text or text.endswith((".", "...")) else f"{text}."
     if label.text() != sentence:
         label.setText(sentence)
+
+
+def put(view, row, column, text, tip=None, **roles):
+    """Write an entry of a table or a list.
+
+    Entries are made, written and read by the widget's model, never as Python's objects of its items: these may end
+    before the items do, or stay when the items are gone, and either takes FreeCAD down or is handed out for a widget.
+
+    Parameters
+    ----------
+    view : QTableWidget or QListWidget
+    row, column : int
+        There is such a row.
+    text : str
+    tip : str, optional
+    **roles
+        Further data by the names of their roles, FontRole=font.
+    """
+    model, place = view.model(), view.model().index(row, column)
+    model.setData(place, text, QtCore.Qt.EditRole)
+    if tip is not None:
+        model.setData(place, tip, QtCore.Qt.ToolTipRole)
+    for role, value in roles.items():
+        model.setData(place, value, getattr(QtCore.Qt, role))
+
+
+def data_of(view, row, column=0, role=QtCore.Qt.DisplayRole):
+    """What an entry of a table or a list holds; None where there is none.
+
+    Parameters
+    ----------
+    view : QTableWidget or QListWidget
+    row, column : int
+    role : Qt.ItemDataRole
+    """
+    return view.model().index(row, column).data(role)
+
+
+def append(view, text, **roles):
+    """Add an entry to a list.
+
+    Parameters
+    ----------
+    view : QListWidget
+    text : str
+    **roles
+        As for `put`.
+    """
+    view.addItem(text)
+    put(view, view.count() - 1, 0, text, **roles)
 
 
 class QuantityField:
@@ -224,14 +275,11 @@ class OutlineTable:
         row = self.table.rowCount()
         self.table.insertRow(row)
         for column, value in enumerate((diameter, height)):
-            item = QtWidgets.QTableWidgetItem(length_text(value))
-            item.setData(_DATA, float(value))  # the text may be rounded
-            self.table.setItem(row, column, item)
+            put(self.table, row, column, length_text(value), UserRole=float(value))  # the text may be rounded
 
     def _length(self, row, column):
-        item = self.table.item(row, column)
-        text = item.text().strip() if item is not None else ""
-        known = item.data(_DATA) if item is not None else None
+        text = (data_of(self.table, row, column) or "").strip()
+        known = data_of(self.table, row, column, _DATA)
         if known is not None and text == length_text(known):
             return float(known)
         try:
@@ -241,7 +289,7 @@ class OutlineTable:
             if not text or quantity.Unit != Units.Length:
                 raise ValueError
         except Exception as reason:  # FreeCAD's parser raises an exception of its own kind
-            column_name = self.table.horizontalHeaderItem(column).text().lower()
+            column_name = self.table.model().headerData(column, QtCore.Qt.Horizontal).lower()
             raise ValueError(translate("ToolAxis", "{} row {}: {} '{}' is not a length").format(
                 self.name, row + 1, column_name, text)) from reason
         return float(quantity.Value)
@@ -297,7 +345,8 @@ class FaceList:
     @property
     def faces(self):
         """What the list holds."""
-        return tuple(self.widget.item(i).data(_DATA) for i in range(self.widget.count()))
+        return tuple((thing, sub) for thing, sub in (data_of(self.widget, i, role=_DATA)
+                                                     for i in range(self.widget.count())))
 
     @faces.setter
     def faces(self, faces):
@@ -313,22 +362,20 @@ class FaceList:
         faces : sequence of (object, str)
         """
         known = {(thing.Document.Name, thing.Name, sub) for thing, sub in self.faces}
-        added = 0
+        count = self.widget.count()
         for thing, sub in faces:
             if (thing.Document.Name, thing.Name, sub) not in known:
                 known.add((thing.Document.Name, thing.Name, sub))
-                item = QtWidgets.QListWidgetItem(f"{thing.Label}: {sub}", self.widget)
-                item.setData(_DATA, (thing, sub))
-                added += 1
-        if added:
+                append(self.widget, f"{thing.Label}: {sub}", UserRole=(thing, sub))
+        if self.widget.count() > count:
             self._changed()
-        return added
+        return self.widget.count() - count
 
     def remove_marked(self):
         """Remove the marked entries."""
-        marked = self.widget.selectedItems()
-        for item in marked:
-            self.widget.takeItem(self.widget.row(item))
+        marked = sorted((index.row() for index in self.widget.selectedIndexes()), reverse=True)
+        for row in marked:
+            self.widget.model().removeRow(row)
         if marked:
             self._changed()
 
@@ -369,13 +416,10 @@ class BodyList:
         blocked = self.widget.blockSignals(True)
         self.widget.clear()
         for body in bodies:
-            item = QtWidgets.QListWidgetItem(body.Label, self.widget)
-            item.setFlags(QtCore.Qt.ItemIsEnabled | QtCore.Qt.ItemIsUserCheckable)
-            item.setCheckState(QtCore.Qt.Checked if body.Name in names else QtCore.Qt.Unchecked)
-            item.setData(_DATA, body)
+            append(self.widget, body.Label, CheckStateRole=_TICKED if body.Name in names else 0, UserRole=body)
         if not bodies:
-            item = QtWidgets.QListWidgetItem(translate("ToolAxis", "no other body in the document"), self.widget)
-            item.setFlags(QtCore.Qt.NoItemFlags)
+            grey = self.widget.palette().brush(QtGui.QPalette.Disabled, QtGui.QPalette.Text)
+            append(self.widget, translate("ToolAxis", "no other body in the document"), ForegroundRole=grey)
         self.widget.blockSignals(blocked)
 
     def remove_object(self, name):
@@ -385,7 +429,7 @@ class BodyList:
         ----------
         name : str
         """
-        bodies = [self.widget.item(i).data(_DATA) for i in range(self.widget.count())]
+        bodies = [data_of(self.widget, i, role=_DATA) for i in range(self.widget.count())]
         left = [body for body in bodies if body is not None and body.Name != name]
         if len(left) == len([body for body in bodies if body is not None]):
             return False
@@ -396,6 +440,6 @@ class BodyList:
     @property
     def ticked(self):
         """The bodies to avoid."""
-        items = (self.widget.item(i) for i in range(self.widget.count()))
-        return tuple(item.data(_DATA) for item in items
-                     if item.data(_DATA) is not None and item.checkState() == QtCore.Qt.Checked)
+        ticks = (data_of(self.widget, i, role=QtCore.Qt.CheckStateRole) for i in range(self.widget.count()))
+        return tuple(data_of(self.widget, i, role=_DATA) for i, tick in enumerate(ticks)
+                     if tick is not None and getattr(tick, "value", tick) == _TICKED)

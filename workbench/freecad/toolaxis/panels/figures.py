@@ -4,7 +4,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtWidgets
 
-from .fields import fine_text, fit_rows, length_text
+from .fields import fine_text, fit_rows, length_text, put
 
 translate = FreeCAD.Qt.translate
 
@@ -81,9 +81,7 @@ def fill(table, columns):
         table.setVerticalHeaderLabels([name for name, _ in columns[0][1]])
     for k, (_, rows) in enumerate(columns):
         for i, (_, text) in enumerate(rows):
-            item = QtWidgets.QTableWidgetItem(text)
-            item.setToolTip(text)
-            table.setItem(i, k, item)
+            put(table, i, k, text, text)
     table.verticalHeader().setVisible(True)
     table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
     fit_rows(table)
@@ -114,9 +112,7 @@ def fill_baselines(table, rows):
         if not row.complete:
             cells[3] = translate("ToolAxis", "{} of {} sub-surfaces").format(row.machined, row.sub_surfaces)
         for k, text in enumerate(cells):
-            item = QtWidgets.QTableWidgetItem(text)
-            item.setToolTip(f"{name}: {row.reason}" if row.reason else text)
-            table.setItem(i, k, item)
+            put(table, i, k, text, f"{name}: {row.reason}" if row.reason else text)
     table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.ResizeToContents)
     table.horizontalHeader().setStretchLastSection(True)
     fit_rows(table)

@@ -10,7 +10,7 @@ from .. import RESOURCES, meetings
 from ..machines import available, text_of, texts_of
 from ..objects.machine import machine_of, place_machine
 from ..tasks import Work, sentence
-from .fields import load_form, tell
+from .fields import data_of, load_form, put, tell
 from .machinelook import lengths_at, looked_at, met_by, middle_of, names_of, things_of, tip_of
 from .machinemotion import Journey, meeting
 from .machinescene import MachineScene
@@ -202,10 +202,9 @@ class MachinePanel(Panel):
         at = self.form.slide.value()
         self.journey = journey
         for (row, column), one in self.held.items():
-            item = self.form.angles.item(row, column)
             if one is not None and not self.found[1][row][0][column].reason:
-                item.setText(f"{item.text()}\n{one.text}")
-                item.setToolTip(one.text)
+                text = data_of(self.form.angles, row, column)
+                put(self.form.angles, row, column, f"{text}\n{one.text}", one.text)
         self.form.angles.resizeRowsToContents()
         tell(self.form.message, *self._verdict())
         self._slide(at)
@@ -249,20 +248,17 @@ class MachinePanel(Panel):
         metrics = table.fontMetrics()  # the end tells faces of one part apart
         for row, operation in enumerate(self.operations):
             name = metrics.elidedText(operation.Label, QtCore.Qt.ElideMiddle, _NAMES - 12)
-            item = QtWidgets.QTableWidgetItem(name)
-            item.setToolTip(operation.Label)
-            table.setVerticalHeaderItem(row, item)
+            for role, text in ((QtCore.Qt.EditRole, name), (QtCore.Qt.ToolTipRole, operation.Label)):
+                table.model().setHeaderData(row, QtCore.Qt.Vertical, text, role)
         for row, (ways, taken) in enumerate(rows):
             if not ways:
-                table.setItem(row, 0, QtWidgets.QTableWidgetItem(translate("ToolAxis", "no position reaches it")))
+                put(table, row, 0, translate("ToolAxis", "no position reaches it"))
             for column, way in enumerate(ways):
                 shown = way.text(machine).replace("  ", "\n")
-                item = QtWidgets.QTableWidgetItem(shown + (f"\n{way.reason}" if way.reason else ""))
-                font = QtGui.QFont(item.font())
+                font = QtGui.QFont(table.font())
                 font.setBold(column == taken)
-                item.setFont(font)
-                item.setToolTip(way.reason or way.text(machine))
-                table.setItem(row, column, item)
+                put(table, row, column, shown + (f"\n{way.reason}" if way.reason else ""),
+                    way.reason or way.text(machine), FontRole=font)
         table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
         table.verticalHeader().setMaximumWidth(_NAMES)
         table.resizeRowsToContents()

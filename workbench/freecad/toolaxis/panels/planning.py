@@ -142,8 +142,8 @@ class PlanPanel(Panel):
     def _point_out(self):
         """Select in the 3D view what is marked in the list."""
         FreeCADGui.Selection.clearSelection(self.document.Name)
-        for item in self.form.faces.selectedItems():
-            thing, name = item.data(QtCore.Qt.UserRole)
+        for index in self.form.faces.selectedIndexes():
+            thing, name = index.data(QtCore.Qt.UserRole)
             FreeCADGui.Selection.addSelection(self.document.Name, thing.Name, name)
 
     def _tool_chosen(self, index):

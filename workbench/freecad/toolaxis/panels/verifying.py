@@ -5,7 +5,7 @@ from contextlib import suppress
 import FreeCAD
 import FreeCADGui
 import numpy as np
-from PySide import QtCore, QtWidgets
+from PySide import QtWidgets
 
 from .. import RESOURCES, bridge
 from ..macros import record, thing_of
@@ -162,8 +162,7 @@ class VerifyPanel(Panel):
             x, y, z = (f"{v:.2f}" for v in place.point)
             worst.addItem(translate("ToolAxis", "{} at ({}, {}, {}) on face {}").format(value, x, y, z, place.face))
         if not self.places:
-            item = QtWidgets.QListWidgetItem(translate("ToolAxis", "none"), worst)
-            item.setFlags(QtCore.Qt.NoItemFlags)
+            worst.addItem(translate("ToolAxis", "none"))
         worst.blockSignals(blocked)
 
     def _zoom(self, row):
