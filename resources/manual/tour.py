@@ -72,9 +72,10 @@ class Tour:
         desk.gui.runCommand("ToolAxis_Example_freeform")
         desk.pump(0.5)
         self.document = FreeCAD.ActiveDocument
-        menu = next(action.menu() for action in desk.window.menuBar().actions() if "Tool Axis" in action.text()
-                    .replace("&", ""))
-        inner = next(action.menu() for action in menu.actions() if action.menu() is not None)
+        actions = desk.window.menuBar().actions()  # held: in FreeCAD 1.0 a menu's object ends with that of its action
+        menu = next(action for action in actions if "Tool Axis" in action.text().replace("&", "")).menu()
+        entries = menu.actions()
+        inner = next(action for action in entries if action.menu() is not None).menu()
         place = desk.window.menuBar().mapToGlobal(desk.window.menuBar().actionGeometry(menu.menuAction()).bottomLeft())
         self.fitted()
         menu.popup(place)
@@ -143,9 +144,7 @@ class Tour:
 
     def top(self, form):
         """Scroll the panel to its beginning."""
-        above = form.parentWidget()
-        while above is not None and not isinstance(above, self.desk.widgets.QScrollArea):
-            above = above.parentWidget()
+        above = self.desk.around(form)
         if above is not None:
             above.verticalScrollBar().setValue(0)
         self.desk.pump(0.2)

@@ -233,13 +233,18 @@ class Desk:
         """What an entry of a table or a list says."""
         return view.model().index(row, column).data()
 
-    def down(self, form, widget):
-        """Scroll the task panel until a widget is in sight."""
+    def around(self, form):
+        """The area that a task panel scrolls in, or None."""
         above = form.parentWidget()
         while above is not None and not isinstance(above, self.widgets.QScrollArea):
             self.held.append(above)  # in FreeCAD 1.0 those of what is in a widget end with Python's object of it
             above = above.parentWidget()
         self.held.append(above)
+        return above
+
+    def down(self, form, widget):
+        """Scroll the task panel until a widget is in sight."""
+        above = self.around(form)
         if above is not None:
             above.ensureWidgetVisible(widget, 0, 400)
             self.pump(0.1)

@@ -1,6 +1,6 @@
 """Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder, lists of faces and bodies."""
 
-from math import ceil, floor, log10
+from math import ceil, floor, isclose, log10
 from xml.etree import ElementTree
 
 import FreeCAD
@@ -218,7 +218,14 @@ class QuantityField:
         ----------
         slot : callable
         """
-        self.widget.connect(self.widget, QtCore.SIGNAL("valueChanged(double)"), lambda _: slot())
+        seen = [self.value]
+
+        def told(_):
+            if not isclose(self.value, seen[0], rel_tol=1e-12, abs_tol=1e-12):  # 1.0 tells it when it is shown
+                seen[0] = self.value
+                slot()
+
+        self.widget.connect(self.widget, QtCore.SIGNAL("valueChanged(double)"), told)
 
 
 class OutlineTable:
