@@ -150,6 +150,8 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
     assert "can be held" in form.message.text(), form.message.text()
     assert form.still.isChecked() and form.angles.rowCount() == 2 and form.angles.columnCount() == 2
     texts = [[desk.text(form.angles, row, column) for column in (0, 1)] for row in (0, 1)]
+    heads = [form.angles.model().headerData(row, desk.qt.Qt.Vertical) for row in (0, 1)]
+    assert all("Face" in head for head in heads), heads
     assert all("C" in text and "B" in text for row in texts for text in row) and texts[0] != texts[1]
     desk.shot("70-machine")
     form.slide.setValue(400)

@@ -246,10 +246,10 @@ class MachinePanel(Panel):
         table.setRowCount(len(rows))
         table.setHorizontalHeaderLabels([translate("ToolAxis", "Solution {}").format(k + 1) for k in range(count)])
         metrics = table.fontMetrics()  # the end tells faces of one part apart
+        table.setVerticalHeaderLabels([metrics.elidedText(operation.Label, QtCore.Qt.ElideMiddle, _NAMES - 12)
+                                       for operation in self.operations])
         for row, operation in enumerate(self.operations):
-            name = metrics.elidedText(operation.Label, QtCore.Qt.ElideMiddle, _NAMES - 12)
-            for role, text in ((QtCore.Qt.EditRole, name), (QtCore.Qt.ToolTipRole, operation.Label)):
-                table.model().setHeaderData(row, QtCore.Qt.Vertical, text, role)
+            table.model().setHeaderData(row, QtCore.Qt.Vertical, operation.Label, QtCore.Qt.ToolTipRole)
         for row, (ways, taken) in enumerate(rows):
             if not ways:
                 put(table, row, 0, translate("ToolAxis", "no position reaches it"))
