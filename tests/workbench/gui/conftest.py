@@ -229,6 +229,13 @@ class Desk:
 
         return next(filter(is_operation, document.Objects), None)
 
+    def outline(self, table, rows):
+        """Write the rows of a shank or holder, diameter and height in mm."""
+        table.setRowCount(len(rows))
+        for i, row in enumerate(rows):
+            for k, value in enumerate(row):
+                table.model().setData(table.model().index(i, k), f"{value} mm")
+
     def text(self, view, row, column=0):
         """What an entry of a table or a list says."""
         return view.model().index(row, column).data()

@@ -44,14 +44,6 @@ def say(text):
     print(text, file=sys.__stdout__, flush=True)
 
 
-def outline(desk, table, rows):
-    """Type the rows of a shank or holder."""
-    table.setRowCount(len(rows))
-    for i, row in enumerate(rows):
-        for k, value in enumerate(row):
-            table.model().setData(table.model().index(i, k), f"{value} mm")
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_with_blades_is_planned_whole(desk, name):
@@ -69,7 +61,7 @@ def test_a_part_with_blades_is_planned_whole(desk, name):
         form.kind.setCurrentIndex(0)
         for field, value in SIZES.items():
             desk.type(getattr(form, field), value)
-        outline(desk, form.holder, HOLDER)
+        desk.outline(form.holder, HOLDER)
     else:
         form.tool.setCurrentText(tool)
         form.tool.activated.emit(form.tool.currentIndex())

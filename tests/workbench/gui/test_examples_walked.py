@@ -125,7 +125,7 @@ def filled(walk, part):
     form.tabs.setCurrentWidget(form.toolTab)
     desk.type(form.diameter, asked.diameter)
     desk.type(form.stickout, asked.stickout)
-    outline(desk, form.holder, HOLDER)
+    desk.outline(form.holder, HOLDER)
     walk.seen("tool")
     if asked.limited:
         form.tabs.setCurrentWidget(form.limitsTab)
@@ -143,14 +143,6 @@ def filled(walk, part):
     desk.pump(0.2)
     walk.seen("fields")
     return form
-
-
-def outline(desk, table, rows):
-    """Type the rows of a shank or holder."""
-    table.setRowCount(len(rows))
-    for i, row in enumerate(rows):
-        for k, value in enumerate(row):
-            table.model().setData(table.model().index(i, k), f"{value} mm")
 
 
 def picked(walk, form):

@@ -124,20 +124,15 @@ class Around:
         """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
         import numpy as np
 
-        from toolaxis.contact.clearance import clearances, clears, segment_clearances, segment_clears
         from toolaxis.contact.machinery import Meeting
-        from toolaxis.tools.solid import COMPONENTS
 
-        tool, axis, alone = self.surroundings[row].tool, self.mounted.axis_at(rotary), len(tips) == 1
-        bad = np.flatnonzero(~(clears if alone else segment_clears)(tool, tips, axis, self.near).safe)
-        best = None
-        for k in bad[np.unique(np.linspace(0, max(len(bad) - 1, 0), _MEASURED).astype(int))] if len(bad) else ():
-            one = (clearances if alone else segment_clearances)(tool, tips[k:k + 2], axis, self.near)
-            which = int(np.argmin(one.distance[0]))
-            distance, face = float(one.distance[0, which]), int(one.face[0, which])
-            if face >= 0 and distance < -DEPTH and (best is None or distance < best.distance):
-                best = Meeting(COMPONENTS[which], f"face {self.called[face]}", distance, int(k))
-        return best
+        axes = np.tile(self.mounted.axis_at(rotary), (len(tips), 1))
+        _, found = met_by_tool(self.surroundings[row].tool, (tips, axes), self.near, len(tips) == 1)
+        deep = [(depth, k, member, face) for k, member, face, depth in found if face >= 0 and depth > DEPTH]
+        if not deep:
+            return None
+        depth, k, member, face = max(deep, key=lambda one: one[0])
+        return Meeting(member, f"face {self.called[face]}", -depth, k)
 
     def _holding(self, row):
         """The machine with the tool of an operation in its spindle."""
@@ -155,6 +150,40 @@ class Around:
             name = next(iter(self.names.values()), "")
         text = words(self.mounted, rotary, found, 0.0).removesuffix(self.mounted.at(rotary))
         return Met(text.replace("the face", "face", 1), found.one, name, found.other if not name else "", found.motion)
+
+
+def met_by_tool(tool, path, near, still):
+    """Where a tool is not clear of faces, and how deep it lies in them at some of these places.
+
+    Parameters
+    ----------
+    tool : toolaxis.tools.assembly.Tool
+    path : (tips, axes), each (n, 3) array
+        mm; the axes are all the same unless `still`.
+    near : toolaxis.contact.surroundings.Surroundings
+    still : bool
+        Whether it is looked for at the tips, else on the motions between them.
+
+    Returns
+    -------
+    bad : (k,) array of int
+        Tips, or motions by the tips that they begin at.
+    found : list of (int, str, int, float)
+        One of these, "cutter", "shank" or "holder", number of the face from 0, -1 for none, and depth, mm.
+    """
+    import numpy as np
+
+    from toolaxis.contact.clearance import clearances, clears, segment_clearances, segment_clears
+    from toolaxis.tools.solid import COMPONENTS
+
+    tips, axes = path
+    judge, measure = (clears, clearances) if still else (segment_clears, segment_clearances)
+    bad, found = np.flatnonzero(~judge(tool, tips, axes if still else axes[0], near).safe), []
+    for k in bad[np.unique(np.linspace(0, len(bad) - 1, _MEASURED).astype(int))].tolist() if len(bad) else ():
+        one = measure(tool, tips[k:k + 1] if still else tips[k:k + 2], axes[k], near)
+        which = int(np.argmin(one.distance[0]))
+        found.append((k, COMPONENTS[which], int(one.face[0, which]), -float(one.distance[0, which])))
+    return bad, found
 
 
 def copies(operations):

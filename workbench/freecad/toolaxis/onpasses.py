@@ -4,9 +4,6 @@ from dataclasses import dataclass
 
 from . import meetings
 
-#: Motions that are measured once it is known that they meet something: the first, the last, and those between.
-_MEASURED = 400
-
 
 @dataclass(frozen=True)
 class Bump:
@@ -68,7 +65,6 @@ def bumps(tool, path, found, progress):
     """
     import numpy as np
 
-    from toolaxis.contact.clearance import clearances, clears, segment_clearances, segment_clears
     from toolaxis.contact.surroundings import Surroundings
     from toolaxis.progress import heard
 
@@ -78,38 +74,18 @@ def bumps(tool, path, found, progress):
         faces += read
     around = Surroundings(tuple(faces), np.full((len(faces), 3), -meetings.DEPTH))
     moves = bool(np.ptp(path.axis, axis=0).max(initial=0.0) > 1e-9)
-    judge, measure = (clears, clearances) if moves else (segment_clears, segment_clearances)
-    progress.report("looking for collisions", 0, 2)
+    progress.report("looking for collisions", 0, 1)
     with heard(progress):
-        bad = np.flatnonzero(~judge(tool, path.cl, path.axis if moves else path.axis[0], around).safe)
-        progress.report("looking for collisions", 1, 2)
-        some = bad[np.unique(np.linspace(0, max(len(bad) - 1, 0), _MEASURED).astype(int))] if len(bad) else bad
-        rows = [] if not len(some) else _worst(measure, tool, (path, some, moves), around)
+        bad, some = meetings.met_by_tool(tool, (path.cl, path.axis), around, moves)
+    end = 0 if moves else 1  # motion k leads from point k - 1 to point k
     checked = ("cutter", *(name for name in ("shank", "holder") if name in tool.outlines))
-    ends = some + (0 if moves else 1)  # motion k leads from point k - 1 to point k
-    return Bumps(_joined(ends.tolist(), rows, (bad + (0 if moves else 1)).tolist(), names), checked)
+    known = {k + end: rest for k, *rest in some}
+    return Bumps(_joined(known, (bad + end).tolist(), names), checked)
 
 
-def _worst(measure, tool, what, around):
-    """Of each motion which part of the tool meets which face, and how deep, mm."""
-    import numpy as np
-
-    from toolaxis.tools.solid import COMPONENTS
-
-    path, some, moves = what
-    found = []
-    for k in some.tolist():
-        tips = path.cl[k:k + 1] if moves else path.cl[k:k + 2]
-        one = measure(tool, tips, path.axis[k], around)
-        which = int(np.argmin(one.distance[0]))
-        found.append((COMPONENTS[which], int(one.face[0, which]), -float(one.distance[0, which])))
-    return found
-
-
-def _joined(ends, rows, bad, names):
+def _joined(at, bad, names):
     """Bumps of motions one after the other that say the same; motions that were not measured go with the one before."""
-    made, at = [], dict(zip(ends, rows, strict=True))
-    known = None
+    made, known = [], None
     for motion in bad:
         known = at.get(motion, known)
         member, face, depth = known

@@ -1,4 +1,4 @@
-"""Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder, lists of faces and bodies."""
+"""Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder."""
 
 from math import ceil, floor, isclose, log10
 from xml.etree import ElementTree
@@ -6,16 +6,16 @@ from xml.etree import ElementTree
 import FreeCAD
 import FreeCADGui
 from FreeCAD import Units
-from PySide import QtCore, QtGui, QtWidgets
+from PySide import QtCore, QtWidgets
 
 from .. import RESOURCES
 from ..tasks import clear_away
 from . import palette
+from .entries import data_of, put
 
 translate = FreeCAD.Qt.translate
 
 _DATA = QtCore.Qt.UserRole
-_TICKED = 2  # Qt.Checked, which is a number in data
 #: How often a layout is loaded until all its widgets are of their own class.
 _LOADINGS = 5
 
@@ -86,22 +86,6 @@ def fine_text(value):
     return f"{number:.{digits}f}" + ("" if unit == '"' else " ") + unit
 
 
-def fit_rows(table):
-    """Make a table as high as its rows, and the rows as high as their text.
-
-    Parameters
-    ----------
-    table : QTableWidget
-    """
-    row = table.fontMetrics().height() + 8
-    table.verticalHeader().setMinimumSectionSize(row)
-    table.verticalHeader().setDefaultSectionSize(row)
-    head = table.horizontalHeader()
-    height = row * table.rowCount() + 4 + (0 if head.isHidden() else head.sizeHint().height())
-    table.setMinimumHeight(height)
-    table.setMaximumHeight(height)
-
-
 def tell(label, text, bad=False):
     """Show a sentence on a label, in a warning colour where it is bad; nothing is drawn anew without need.
 
@@ -118,56 +102,6 @@ def tell(label, text, bad=False):
     sentence = text if not text or text.endswith((".", "...")) else f"{text}."
     if label.text() != sentence:
         label.setText(sentence)
-
-
-def put(view, row, column, text, tip=None, **roles):
-    """Write an entry of a table or a list.
-
-    Entries are made, written and read by the widget's model, never as Python's objects of its items: these may end
-    before the items do, or stay when the items are gone, and either takes FreeCAD down or is handed out for a widget.
-
-    Parameters
-    ----------
-    view : QTableWidget or QListWidget
-    row, column : int
-        There is such a row.
-    text : str
-    tip : str, optional
-    **roles
-        Further data by the names of their roles, FontRole=font.
-    """
-    model, place = view.model(), view.model().index(row, column)
-    model.setData(place, text, QtCore.Qt.EditRole)
-    if tip is not None:
-        model.setData(place, tip, QtCore.Qt.ToolTipRole)
-    for role, value in roles.items():
-        model.setData(place, value, getattr(QtCore.Qt, role))
-
-
-def data_of(view, row, column=0, role=QtCore.Qt.DisplayRole):
-    """What an entry of a table or a list holds; None where there is none.
-
-    Parameters
-    ----------
-    view : QTableWidget or QListWidget
-    row, column : int
-    role : Qt.ItemDataRole
-    """
-    return view.model().index(row, column).data(role)
-
-
-def append(view, text, **roles):
-    """Add an entry to a list.
-
-    Parameters
-    ----------
-    view : QListWidget
-    text : str
-    **roles
-        As for `put`.
-    """
-    view.addItem(text)
-    put(view, view.count() - 1, 0, text, **roles)
 
 
 class QuantityField:
@@ -322,131 +256,3 @@ class OutlineTable:
             self.table.removeRow(row)
         if self._slot:
             self._slot()
-
-
-class FaceList:
-    """The list of faces to machine, as (object, "Face7").
-
-    Parameters
-    ----------
-    widget : QListWidget
-    """
-
-    def __init__(self, widget):
-        self.widget = widget
-        self._slots = []
-
-    def on_change(self, slot):
-        """Call a slot without arguments whenever faces come or go.
-
-        Parameters
-        ----------
-        slot : callable
-        """
-        self._slots.append(slot)
-
-    def _changed(self):
-        for slot in self._slots:
-            slot()
-
-    @property
-    def faces(self):
-        """What the list holds."""
-        return tuple((thing, sub) for thing, sub in (data_of(self.widget, i, role=_DATA)
-                                                     for i in range(self.widget.count())))
-
-    @faces.setter
-    def faces(self, faces):
-        self.widget.clear()
-        if not self.add(faces):
-            self._changed()
-
-    def add(self, faces):
-        """Add what is not there yet; how many were added.
-
-        Parameters
-        ----------
-        faces : sequence of (object, str)
-        """
-        known = {(thing.Document.Name, thing.Name, sub) for thing, sub in self.faces}
-        count = self.widget.count()
-        for thing, sub in faces:
-            if (thing.Document.Name, thing.Name, sub) not in known:
-                known.add((thing.Document.Name, thing.Name, sub))
-                append(self.widget, f"{thing.Label}: {sub}", UserRole=(thing, sub))
-        if self.widget.count() > count:
-            self._changed()
-        return self.widget.count() - count
-
-    def remove_marked(self):
-        """Remove the marked entries."""
-        marked = sorted((index.row() for index in self.widget.selectedIndexes()), reverse=True)
-        for row in marked:
-            self.widget.model().removeRow(row)
-        if marked:
-            self._changed()
-
-    def remove_object(self, name):
-        """Remove the faces of an object that is about to be deleted; how many there were.
-
-        Parameters
-        ----------
-        name : str
-        """
-        kept = [(thing, sub) for thing, sub in self.faces if thing.Name != name]
-        gone = self.widget.count() - len(kept)
-        if gone:
-            self.faces = kept
-        return gone
-
-
-class BodyList:
-    """The list of bodies that may be avoided, with ticks.
-
-    Parameters
-    ----------
-    widget : QListWidget
-    """
-
-    def __init__(self, widget):
-        self.widget = widget
-        widget.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
-
-    def offer(self, bodies, ticked):
-        """Fill the list.
-
-        Parameters
-        ----------
-        bodies, ticked : sequence of objects
-        """
-        names = {body.Name for body in ticked}
-        blocked = self.widget.blockSignals(True)
-        self.widget.clear()
-        for body in bodies:
-            append(self.widget, body.Label, CheckStateRole=_TICKED if body.Name in names else 0, UserRole=body)
-        if not bodies:
-            grey = self.widget.palette().brush(QtGui.QPalette.Disabled, QtGui.QPalette.Text)
-            append(self.widget, translate("ToolAxis", "no other body in the document"), ForegroundRole=grey)
-        self.widget.blockSignals(blocked)
-
-    def remove_object(self, name):
-        """Remove a body that is about to be deleted; whether it was ticked.
-
-        Parameters
-        ----------
-        name : str
-        """
-        bodies = [data_of(self.widget, i, role=_DATA) for i in range(self.widget.count())]
-        left = [body for body in bodies if body is not None and body.Name != name]
-        if len(left) == len([body for body in bodies if body is not None]):
-            return False
-        ticked = self.ticked
-        self.offer(left, ticked)
-        return len(self.ticked) < len(ticked)
-
-    @property
-    def ticked(self):
-        """The bodies to avoid."""
-        ticks = (data_of(self.widget, i, role=QtCore.Qt.CheckStateRole) for i in range(self.widget.count()))
-        return tuple(data_of(self.widget, i, role=_DATA) for i, tick in enumerate(ticks)
-                     if tick is not None and getattr(tick, "value", tick) == _TICKED)

@@ -4,7 +4,8 @@ import FreeCAD
 import numpy as np
 from PySide import QtWidgets
 
-from .fields import fine_text, fit_rows, length_text, put
+from .entries import fit_rows, put
+from .fields import fine_text, length_text
 
 translate = FreeCAD.Qt.translate
 

@@ -10,7 +10,8 @@ from .. import RESOURCES, meetings
 from ..machines import available, text_of, texts_of
 from ..objects.machine import machine_of, place_machine
 from ..tasks import Work, sentence
-from .fields import data_of, load_form, put, tell
+from .entries import data_of, put
+from .fields import load_form, tell
 from .machinelook import lengths_at, looked_at, met_by, middle_of, names_of, things_of, tip_of
 from .machinemotion import Journey, meeting
 from .machinescene import MachineScene

@@ -10,7 +10,8 @@ from PySide import QtWidgets
 from ..inputs import flute_of
 from ..machines import PREFIX, mounting
 from ..strategies import INDEXED, ROUGH, STRATEGIES, needs
-from .fields import BodyList, FaceList, OutlineTable, QuantityField
+from .fields import OutlineTable, QuantityField
+from .lists import BodyList, FaceList
 
 translate = FreeCAD.Qt.translate
 
