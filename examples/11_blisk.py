@@ -6,7 +6,7 @@ thick at the root and 2.8 at the tip.
 """
 
 import numpy as np
-from block import write_facts
+from block import settled, write_facts
 from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
 from rotor import Rotor, bore, least_gap, ring_plane, sector, solid
@@ -92,4 +92,4 @@ if __name__ == "__main__":
     print(f"least gap {gap:.4f} mm, from {np.round(one, 3)} to {np.round(other, 3)}")
     if abs(gap - FACTS["least_gap"]) > 1e-3:
         raise ValueError(f"least gap is {gap} mm: it must be {FACTS['least_gap']} mm; change HUB_RADIUS")
-    write_facts("blisk", blisk(), "made for this project", **FACTS)
+    write_facts("blisk", settled(blisk()), "made for this project", **FACTS)

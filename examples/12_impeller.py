@@ -5,7 +5,7 @@ back sweep, 15 mm high where the flow comes in and 9 mm where it leaves.
 """
 
 import numpy as np
-from block import write_facts
+from block import settled, write_facts
 from OCP.Geom import Geom_ToroidalSurface
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
 from rotor import Rotor, bore, least_gap, rim, ring_plane, sector, solid
@@ -80,4 +80,4 @@ def impeller():
 if __name__ == "__main__":
     gap, one, other = least_gap(ROTOR)
     print(f"least gap {gap:.4f} mm, from {np.round(one, 3)} to {np.round(other, 3)}")
-    write_facts("impeller", impeller(), "made for this project", **FACTS)
+    write_facts("impeller", settled(impeller()), "made for this project", **FACTS)

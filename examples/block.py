@@ -4,6 +4,7 @@ Needs the Open CASCADE bindings that CadQuery or build123d bring.
 """
 
 import json
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from OCP.Geom import Geom_BSplineSurface
 from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
-from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+from OCP.STEPControl import STEPControl_Reader, STEPControl_StepModelType, STEPControl_Writer
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
@@ -94,6 +95,23 @@ def write_facts(name, shape, source, **facts):
     write_step(name, shape)
     known = "".join(f',\n "{key}": {json.dumps(value)}' for key, value in facts.items())
     (HERE / f"{name}.json").write_text(f'{{"source": {json.dumps(source)}{known}}}\n')
+
+
+def settled(shape):
+    """The shape as it is read back from a STEP file.
+
+    Kernels put the faces of some shells in order when they read them, each version in its own way: not those of a
+    shell that was read once. So the faces of a file written from it have the same numbers everywhere.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = str(Path(folder) / "once.step")
+        writer = STEPControl_Writer()
+        writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
+        writer.Write(path)
+        reader = STEPControl_Reader()
+        reader.ReadFile(path)
+        reader.TransferRoots()
+        return reader.OneShape()
 
 
 def write_step(name, shape):

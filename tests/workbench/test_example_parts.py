@@ -28,8 +28,6 @@ from toolaxis.progress import NO_PROGRESS
 FOLDER = Path(__file__).resolve().parents[2] / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/example_parts")
 ASKED = json.loads((FOLDER / "asked.json").read_text()) if (FOLDER / "asked.json").exists() else {}
 EVERY = "freeform", "trimmed", "boss", "bosses", "blisk", "kj66"
-#: Parts whose faces FreeCAD's kernel numbers otherwise than the command's.
-RENUMBERED = ("blisk",)
 MOVING = "freeform-sturz", "trimmed-sturz"
 #: Greatest difference of angles as the tree writes them, degrees.
 ANGLE = 0.0006
@@ -109,8 +107,6 @@ def check_figures(ours, op):
 def test_the_tree_holds_the_commands_plan(walk):
     """Labels, outcomes, reasons, axes, passes, lengths and clean-up zones."""
     theirs, rows = walk.theirs, originals(walk)
-    if walk.name in RENUMBERED:
-        return check_as_found(walk)
     for ours, op in zip(walk.made, rows, strict=True):
         check_figures(ours, op)
         assert bool(zones_of(ours)) == bool(op["zones"]), op["label"]
@@ -118,35 +114,10 @@ def test_the_tree_holds_the_commands_plan(walk):
     if above is not None:
         assert above.Outcome == theirs["outcome"]
         assert above.CuttingLength.Value == pytest.approx(theirs["length"], rel=1e-6)
-    return None
 
 
 def zones_of(operation):
     return [one for one in operation.Group if is_shown(one) and one.Shows == CLEAN_UP]
-
-
-def check_as_found(walk):
-    """The same whichever blade is the first: each axis of plan.json stands in the tree, as operation or as link."""
-    entries = [(one.Axis, ours) for ours in walk.made if ours.Motions
-               for one in (ours, *turned_copies(ours))]
-    axes = np.array([tuple(axis) for axis, _ in entries])
-    done = [op for op in walk.theirs["operations"] if op["cl_file"]]
-    assert len(entries) == len(done) and plan_of(walk.made[0]).Outcome == walk.theirs["outcome"]
-    for op in done:
-        found, away = op["orientation"], np.abs(axes - op["orientation"]["axis"]).max(axis=1)
-        ours = entries[int(np.argmin(away))][1]
-        assert away.min() < 1e-5, op["label"]
-        assert ours.Passes == found["passes"] and ours.Outcome == found["outcome"]
-        assert ours.CuttingLength.Value == pytest.approx(found["length"], rel=1e-5)
-        assert ours.LeftToCleanUp == pytest.approx(found["unreached"], abs=1e-5)
-        assert bool(zones_of(ours)) == bool(op["zones"])
-    without = sorted(unnumbered(one.Reasons) for one in walk.made if not one.Motions)
-    assert without == sorted(unnumbered(op["orientation"]["reasons"]) for op in originals(walk) if not op["cl_file"])
-
-
-def unnumbered(reasons):
-    """Reasons without the numbers of faces."""
-    return [re.sub(r"face \d+[a-z]*", "face", text) for text in reasons]
 
 
 def test_turned_copies_are_links_and_nothing_is_out_of_date(walk):
@@ -174,12 +145,11 @@ def test_what_is_exported_is_the_commands_plan(walk, tmp_path):
     ours = {}
     export(walk.made, tmp_path / "out")
     for op in read_plan(tmp_path / "out").operations:
-        ours.setdefault("" if walk.name in RENUMBERED else op.face.label, []).append(op)
+        ours.setdefault(op.face.label, []).append(op)
     for op in walk.plan.operations:
         if op.path is None:
             continue
-        among = ours["" if walk.name in RENUMBERED else op.face.label]
-        found = [one for one in among if one.path is not None and len(one.path.cl) == len(op.path.cl)]
+        found = [one for one in ours[op.face.label] if one.path is not None and len(one.path.cl) == len(op.path.cl)]
         on = op.path.kind != Motion.LINK
         away = [np.abs(one.path.cl - op.path.cl)[on].max() for one in found]
         assert away and min(away) < 1e-4, op.face.label

@@ -8,7 +8,7 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge, results, staleness
+from freecad.toolaxis import bridge, known, results, staleness
 from freecad.toolaxis.objects import is_operation
 from freecad.toolaxis.objects.frames import kind_of_frame
 from freecad.toolaxis.objects.passes import moves
@@ -124,7 +124,7 @@ def test_one_pole_a_hundredth_of_a_millimetre_off_is_a_change(document, parts):
 def test_a_shape_is_looked_at_once_and_anew_where_it_stands_elsewhere(clamp, monkeypatch):
     looks, points = [], staleness._points
     monkeypatch.setattr(staleness, "_points", lambda shape: looks.append(shape) or points(shape))
-    monkeypatch.setattr(staleness, "_SEEN", [])
+    monkeypatch.setattr(known, "_SEEN", [])
     assert bridge_signature(clamp) == bridge_signature(clamp) and len(looks) == 1
     clamp.Placement.Base = Vector(10, 0, 0)
     bridge_signature(clamp)

@@ -33,10 +33,12 @@ def coloured(operations: Sequence[Operation]) -> list[int]:
     operations : sequence of Operation
     """
     borders = [_border(op) for op in operations]
+    low, high = (np.array([end(points, axis=0) for _, points in borders]).reshape(-1, 3) for end in (np.min, np.max))
     chosen: list[int] = []
     for k, (tree, points) in enumerate(borders):
         near = 0.01 * operations[k].face.diagonal
-        beside = {chosen[other] for other in range(k)
+        around = np.flatnonzero(((low[:k] <= high[k] + near) & (high[:k] >= low[k] - near)).all(axis=1))
+        beside = {chosen[other] for other in around
                   if (borders[other][0].query(points, distance_upper_bound=near)[0] <= near).any()
                   or (tree.query(borders[other][1], distance_upper_bound=near)[0] <= near).any()}
         order = [(k + step) % len(COLOURS) for step in range(len(COLOURS))]

@@ -2,6 +2,8 @@
 
 import FreeCAD
 
+from .known import known_of
+
 _KINDS = {"Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Toroid": "torus",
           "BSplineSurface": "B-spline surface", "BezierSurface": "Bezier surface",
           "SurfaceOfExtrusion": "extruded surface", "SurfaceOfRevolution": "surface of revolution"}
@@ -32,7 +34,10 @@ def facts_of(thing, name):
     from .reading import number_in
 
     shape = shape_of(thing)
-    return _facts(shape, shape.Faces[number_in(thing, shape, name) - 1])
+    number, known = number_in(thing, shape, name), known_of(shape)
+    if number not in known:
+        known[number] = _facts(shape, shape.Faces[number - 1])
+    return dict(known[number])
 
 
 def _facts(shape, face):

@@ -2,14 +2,13 @@
 
 import json
 
+from .known import known_of
 from .strategies import INDEXED, ROUGHNESS
 
 #: Deviation at which a shape counts as changed, mm; reading a document back rounds to fifteen digits.
 _SAME = 1e-6
 _SUMS = 8
 _GRID = 4
-#: Shapes that were looked at last, with their points, and how many.
-_SEEN, _KEPT = [], 6
 #: Inputs that older documents do not have, with what stood for them.
 _USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS,
           "flute_length": 0.0}
@@ -33,34 +32,29 @@ def signature(things, obstacles=(), turned=False):
     InvalidInput
         When one of them has no shape any more.
     """
-    import numpy as np
-
     from toolaxis.cad.freecad import shape_of
 
     shapes = [shape_of(thing) for thing in (*things, *obstacles)]
     own = shapes[0].Placement.inverse().toMatrix()
-    found = []
-    for shape in shapes:
-        rows = _rows(shape)
-        turn = np.array(own.A, dtype=float).reshape(4, 4)
-        values = (rows @ turn[:3, :3].T + turn[:3, 3]).ravel()
-        index = np.arange(1, len(values) + 1)
-        found += [float(len(shape.Faces)), float(len(values))]
-        found += [float(np.cos(index * (0.7 + 1.1 * k)) @ values) for k in range(_SUMS)]
+    found = [number for shape in shapes for number in _numbers(shape, own)]
     return found + ([float(x) for x in own.A] if turned else [])
 
 
-def _rows(shape):
-    """Points of a shape, (n, 3); looked at once for each shape: parts with blades have hundreds of faces."""
+def _numbers(shape, own):
+    """The numbers of one shape in a frame, a matrix."""
     import numpy as np
 
-    for known, rows in _SEEN:  # holding the shape itself, so that none of another shape has its place in memory
-        if known.isPartner(shape) and known.Orientation == shape.Orientation and known.Placement == shape.Placement:
-            return rows  # `isSame` also asks by which steps it came to stand there
-    rows = np.array(_points(shape), dtype=float)
-    _SEEN.insert(0, (shape, rows))
-    del _SEEN[_KEPT:]
-    return rows
+    known, frame = known_of(shape), tuple(own.A)
+    if "points" not in known:
+        known["points"] = np.array(_points(shape), dtype=float)
+    if known.get("frame") != frame:
+        turn = np.array(frame, dtype=float).reshape(4, 4)
+        values = (known["points"] @ turn[:3, :3].T + turn[:3, 3]).ravel()
+        index = np.arange(1, len(values) + 1)
+        known["numbers"] = [float(len(shape.Faces)), float(len(values)),
+                            *(float(np.cos(index * (0.7 + 1.1 * k)) @ values) for k in range(_SUMS))]
+        known["frame"] = frame
+    return known["numbers"]
 
 
 def _points(shape):
