@@ -1,5 +1,6 @@
 """A desk to drive FreeCAD's window as a user does: clicks, keys, waits with a limit, and screenshots to look at."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -104,7 +105,20 @@ class Desk:
     def form(self, name):
         """The form of a task panel, or None."""
         found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
-        return found[-1] if found else None
+        if not found or type(found[-1]) is self.widgets.QWidget:
+            return found[-1] if found else None
+        return self.held(name)  # PySide2 gave what it keeps of a deleted widget that stood at the same address
+
+    @staticmethod
+    def held(name):
+        """The form of an open panel, as the panel itself holds it."""
+        from freecad.toolaxis.panels.panel import Panel
+
+        for panel in (one for one in gc.get_objects() if issubclass(type(one), Panel)):
+            with suppress(RuntimeError):  # it is closed, and its form was deleted
+                if panel.form.objectName() == name and panel.form.isVisible():
+                    return panel.form
+        return None
 
     def press(self, button):
         """Click a button with the mouse."""
