@@ -107,16 +107,16 @@ class Desk:
         found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
         if not found or type(found[-1]) is self.widgets.QWidget:
             return found[-1] if found else None
-        return self.held(name)  # PySide2 gave what it keeps of a deleted widget that stood at the same address
+        return self.form_of_panel(name)  # PySide2 gave what it keeps of a deleted widget that stood at the same address
 
     @staticmethod
-    def held(name):
+    def form_of_panel(name):
         """The form of an open panel, as the panel itself holds it."""
         from freecad.toolaxis.panels.panel import Panel
 
         for panel in (one for one in gc.get_objects() if issubclass(type(one), Panel)):
             with suppress(RuntimeError):  # it is closed, and its form was deleted
-                if panel.form.objectName() == name and panel.form.isVisible():
+                if panel.form is not None and panel.form.objectName() == name and panel.form.isVisible():
                     return panel.form
         return None
 

@@ -201,4 +201,4 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
 
 
 def test_the_panel_is_found_without_the_widgets_of_the_window(desk, form):
-    assert desk.held("ToolAxisPlan") is form and desk.held("ToolAxisVerify") is None
+    assert desk.form_of_panel("ToolAxisPlan") is form and desk.form_of_panel("ToolAxisVerify") is None
