@@ -107,7 +107,8 @@ class Desk:
         found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
         if not found or type(found[-1]) is self.widgets.QWidget:
             return found[-1] if found else None
-        return self.form_of_panel(name)  # PySide2 gave what it keeps of a deleted widget that stood at the same address
+        # a dialog, or what PySide2 keeps of a deleted widget that stood at the same address
+        return self.form_of_panel(name) or found[-1]
 
     @staticmethod
     def form_of_panel(name):
