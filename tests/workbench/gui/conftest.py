@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 SHOTS = Path(os.environ.get("TOOLAXIS_SHOTS", ROOT / "out" / "shots"))
 SIZE = (1400, 900)
+TURNS = 8
 LIMIT = 240.0  # the library's kernels are compiled when they are first used
 PACKS, STYLES = "Gui/PreferencePacks/{0}/{0}.cfg", "Gui/Stylesheets/parameters/{0}.yaml"
 
@@ -83,11 +84,12 @@ class Desk:
         sys.excepthook = lambda kind, value, trace: self.errors.append(f"{kind.__name__}: {value}")
 
     def pump(self, seconds=0.05):
-        """Let the window live for a while."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        """Let the window live for a while, and for some turns of its loop however busy the machine is."""
+        end, turns = time.monotonic() + seconds, 0
+        while time.monotonic() < end or turns < TURNS:
             self.app.processEvents(self.qt.QEventLoop.AllEvents, 10)
             time.sleep(0.002)
+            turns += 1
 
     def wait(self, condition, what, limit=LIMIT):
         """Let the window live until something is so; fail after a limit of seconds."""
@@ -166,11 +168,15 @@ class Desk:
 
     def standard_button(self, name):
         """A button in the bar of the task panel."""
-        for box in self.window.findChildren(self.widgets.QDialogButtonBox):
-            with suppress(RuntimeError):  # that of an earlier panel, which Qt has deleted meanwhile
-                button = box.button(getattr(self.widgets.QDialogButtonBox, name))
-                if button is not None and button.isVisible():
-                    return button
+        from freecad.toolaxis.tasks import clear_away
+
+        for _ in range(2):
+            for box in self.window.findChildren(self.widgets.QDialogButtonBox):
+                with suppress(RuntimeError, AttributeError):  # Python's object of one that Qt has deleted meanwhile
+                    button = box.button(getattr(self.widgets.QDialogButtonBox, name))
+                    if button is not None and button.isVisible():
+                        return button
+            clear_away()
         raise AssertionError(f"there is no button {name}")
 
     def dialog_text(self, action):
@@ -295,6 +301,7 @@ class Desk:
         for name in list(FreeCAD.listDocuments()):
             FreeCAD.closeDocument(name)
         self.pump(0.1)
+        self.held.clear()  # else they would be handed out for widgets that lie at their addresses later
         clear_away()
 
 

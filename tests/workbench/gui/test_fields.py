@@ -1,7 +1,10 @@
 """Layouts of panels come with widgets of their own classes."""
 
+import pytest
 
-def test_a_widget_of_a_wrong_class_is_loaded_again(desk, monkeypatch):
+
+@pytest.mark.parametrize("spoilt", ["slide", "mapLayout"])
+def test_a_widget_or_layout_of_a_wrong_class_is_loaded_again(desk, monkeypatch, spoilt):
     from freecad.toolaxis.panels import fields
     from PySide import QtWidgets
 
@@ -12,7 +15,7 @@ def test_a_widget_of_a_wrong_class_is_loaded_again(desk, monkeypatch):
         def loadUi(file, load=fields.FreeCADGui.PySideUic.loadUi):
             form = load(file)
             if not loaded:
-                form.slide = QtWidgets.QWidget()
+                setattr(form, spoilt, QtWidgets.QWidget())
             loaded.append(form)
             return form
 
@@ -20,6 +23,7 @@ def test_a_widget_of_a_wrong_class_is_loaded_again(desk, monkeypatch):
     for name in ("plan", "operation"):
         form = fields.load_form(name)
         assert form is loaded[-1] and isinstance(form.slide, QtWidgets.QSlider)
+        assert form.mapLayout.parentWidget().objectName() == "mapPlace"
     assert len(loaded) == 3
 
 
@@ -45,6 +49,7 @@ def test_a_form_that_is_dead_is_loaded_again(desk, monkeypatch):
 
 def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
     from freecad.toolaxis.panels import fields
+    from PySide import QtWidgets
 
     loaded = []
 
@@ -55,9 +60,11 @@ def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
             return loaded[-1]
 
     monkeypatch.setattr(fields.FreeCADGui, "PySideUic", Loader)
-    for name in ("plan", "operation", "verify"):
-        fields.load_form(name)
-    assert len(loaded) == 3
+    for name in ("plan", "operation", "verify", "export", "machine"):
+        form = fields.load_form(name)
+        # else FreeCAD squeezes widgets over one another
+        assert getattr(form, f"{name}Layout").sizeConstraint() == QtWidgets.QLayout.SetMinimumSize
+    assert len(loaded) == 5
 
 
 #: Classes of widgets that show or hold others, and what is done by mouse or keys goes to those.

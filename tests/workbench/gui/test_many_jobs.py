@@ -31,7 +31,7 @@ def answered(desk):
                 seen.append(box.text())
                 desk.shot(f"86-many-jobs-{len(left)}")
                 box.button(getattr(desk.widgets.QMessageBox, left.pop(0))).click()
-            elif isinstance(box, desk.widgets.QProgressDialog) and left == ["stop"]:
+            elif isinstance(box, desk.widgets.QProgressDialog) and left == ["stop"] and "about" in box.labelText():
                 seen.append(box.labelText())
                 left.clear()
                 desk.shot("86-many-jobs-stop")

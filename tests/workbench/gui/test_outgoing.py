@@ -261,12 +261,18 @@ def test_freecads_own_recorder_keeps_what_the_panel_did(desk, wavy, remembered, 
     def answer():
         """Fill in the dialog that the command opens, and start recording."""
         box = desk.app.activeModalWidget()
+        if box is None:
+            return
+        timer.stop()
         box.findChild(desk.widgets.QLineEdit, "lineEditPath").setText("Recorded")
         box.findChild(desk.widgets.QPushButton, "buttonStart").click()
 
     preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Macro")
     preferences.SetString("MacroPath", str(tmp_path))
-    desk.qt.QTimer.singleShot(500, answer)
+    timer = desk.qt.QTimer()
+    timer.setInterval(500)
+    timer.timeout.connect(answer)
+    timer.start()
     desk.gui.runCommand("Std_DlgMacroRecord")
     form = desk.start(part, face)
     desk.type(form.scallop, "0.2 mm")

@@ -37,10 +37,10 @@ class AxisView(QtCore.QObject):
         empty = translate("ToolAxis", "The map of the tool axes appears here after Compute.")
         self.map, self.legend = HemisphereMap(form, empty), Legend(form)
         self.map.setObjectName("axisMap")
-        form.mapPlace.layout().addWidget(self.map)
-        form.legendPlace.layout().addWidget(self.legend)
+        form.mapLayout.addWidget(self.map)
+        form.legendLayout.addWidget(self.legend)
         self.curve = OrientationCurve(form)
-        form.curvePlace.layout().addWidget(self.curve)
+        form.curveLayout.addWidget(self.curve)
         self.curve.hovered.connect(form.pointer.setText)
         self.locks = Locks()
         self.plan = self.found = None

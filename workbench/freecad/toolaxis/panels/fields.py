@@ -24,8 +24,9 @@ def load_form(name):
     """The widget of a layout file.
 
     Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
-    is of another class or raises when touched (seen: a QWidget instead of a slider, a dead box of buttons instead of
-    the form).  So these are collected first; where that does not do, the layout is loaded again, elsewhere in memory.
+    is of another class or raises when touched (seen: a QWidget instead of a slider or a layout, a dead box of buttons
+    instead of the form).  So these are collected first; where that does not do, the file is loaded again, elsewhere in
+    memory.  Panels take widgets and layouts by their names here, as they were looked at.
 
     Parameters
     ----------
@@ -33,32 +34,40 @@ def load_form(name):
         Without its ending.
     """
     file = RESOURCES / "ui" / f"{name}.ui"
-    widgets = list(ElementTree.parse(file).iter("widget"))
-    expected = {widget.get("name"): getattr(QtWidgets, widget.get("class"), QtWidgets.QWidget)
-                for widget in widgets[1:]}
+    root = next(ElementTree.parse(file).iter("widget"))
+    widgets = {one.get("name"): getattr(QtWidgets, one.get("class"), QtWidgets.QWidget)
+               for one in root.iter("widget") if one is not root}
+    layouts = {one.get("name"): getattr(QtWidgets, one.get("class")) for one in root.iter("layout")}
     spoilt = []
     clear_away()
     for _ in range(_LOADINGS):
         form = FreeCADGui.PySideUic.loadUi(str(file))
-        if _sound(form, widgets[0].get("name"), expected):
+        if _sound(form, root.get("name"), {**widgets, **layouts}):
             break
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
-    for name in expected:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
+    for name in widgets:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
         widget = getattr(form, name, None)
         if isinstance(widget, QtWidgets.QWidget) and not widget.whatsThis():
             widget.setWhatsThis(widget.toolTip())
-    form.layout().setSizeConstraint(QtWidgets.QLayout.SetMinimumSize)  # else FreeCAD squeezes widgets over one another
     return form
 
 
 def _sound(form, name, expected):
-    """Whether a form and its widgets are what the layout says, and none is the object of a dead one."""
+    """Whether a form, its widgets and its layouts are what the file says, and none is the object of a dead one."""
     try:
         return form.objectName() == name and all(
             isinstance(getattr(form, child, None), kind) and getattr(form, child).objectName() == child
-            for child, kind in expected.items())
+            and _parts_sound(getattr(form, child)) for child, kind in expected.items())
     except RuntimeError:  # "Internal C++ object already deleted"
         return False
+
+
+def _parts_sound(widget):
+    """Whether the model and the heads of a table or a list are such."""
+    if isinstance(widget, QtWidgets.QTableWidget) and not all(
+            isinstance(head, QtWidgets.QHeaderView) for head in (widget.horizontalHeader(), widget.verticalHeader())):
+        return False
+    return not isinstance(widget, QtWidgets.QAbstractItemView) or isinstance(widget.model(), QtCore.QAbstractItemModel)
 
 
 def length_text(value):

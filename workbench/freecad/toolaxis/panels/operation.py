@@ -49,8 +49,8 @@ class OperationPanel(Panel):
         if self.found is not None and self.found.map is None:
             self.map.show_picture(None, no_map(self.found))
         self.map.setObjectName("axisMap")
-        self.form.mapPlace.layout().addWidget(self.map)
-        self.form.legendPlace.layout().addWidget(self.legend)
+        self.form.mapLayout.addWidget(self.map)
+        self.form.legendLayout.addWidget(self.legend)
         self.tool = next((one for one in operation.Group
                           if getattr(getattr(one, "Proxy", None), "Type", "") == "ToolAxisTool"), None)
         moves = self.found is not None and self.found.lead is not None

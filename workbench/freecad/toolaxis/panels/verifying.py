@@ -40,7 +40,7 @@ class VerifyPanel(Panel):
         self.operations = list(operations)
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "verify.svg")))
         self.scale = Scale(self.form)
-        self.form.scalePlace.layout().addWidget(self.scale)
+        self.form.scaleLayout.addWidget(self.scale)
         self.paint = Paint(view_of(document.Name))
         self.found, self.meshes = None, []
         self.form.verify.clicked.connect(self.verify)
