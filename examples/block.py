@@ -104,18 +104,14 @@ def settled(shape):
     shell that was read once. So the faces of a file written from it have the same numbers everywhere.
     """
     with tempfile.TemporaryDirectory() as folder:
-        path = str(Path(folder) / "once.step")
-        writer = STEPControl_Writer()
-        writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
-        writer.Write(path)
         reader = STEPControl_Reader()
-        reader.ReadFile(path)
+        reader.ReadFile(str(write_step("once", shape, Path(folder))))
         reader.TransferRoots()
         return reader.OneShape()
 
 
-def write_step(name, shape):
-    """Write name.step: mm, AP214, the same bytes every time."""
+def write_step(name, shape, folder=HERE):
+    """Write name.step into a folder: mm, AP214, the same bytes every time; its path."""
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     Interface_Static.SetCVal_s("write.step.product.name", name)
@@ -124,5 +120,7 @@ def write_step(name, shape):
     header = APIHeaderSection_MakeHeader(writer.Model())
     header.SetName(TCollection_HAsciiString(f"{name}.step"))
     header.SetTimeStamp(TCollection_HAsciiString("2016-01-01T00:00:00"))
-    if writer.Write(str(HERE / f"{name}.step")) != IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise OSError(f"{name}.step could not be written to {HERE}")
+    path = folder / f"{name}.step"
+    if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise OSError(f"{name}.step could not be written to {folder}")
+    return path
