@@ -41,6 +41,12 @@ def pytest_configure(config):
         config.pluginmanager.register(Teller(), "toolaxis-teller")
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items):
+    """What runs in FreeCAD comes first: a file takes minutes, and no process should begin one when all else is done."""
+    items.sort(key=lambda item: not isinstance(item, InnerRun))
+
+
 def pytest_pycollect_makemodule(module_path, parent):
     return None if INSIDE else InnerFile.from_parent(parent, path=module_path)
 

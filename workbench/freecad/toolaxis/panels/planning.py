@@ -69,8 +69,9 @@ class PlanPanel(Panel):
         return QtWidgets.QDialogButtonBox.Ok | QtWidgets.QDialogButtonBox.Cancel
 
     def modifyStandardButtons(self, box):
-        """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan."""
-        self.buttons = box
+        """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan, and `accept` refuses."""
+        if isinstance(box, QtWidgets.QDialogButtonBox):  # else it is Python's object of a dead widget, see load_form
+            self.buttons = box
         self._show_state()
 
     def accept(self):
@@ -341,6 +342,7 @@ class PlanPanel(Panel):
         self.preview.forget()
 
     def _let_go(self):
+        self.buttons = None
         self.view.leave()
         self.preview.clear()
 
