@@ -6,8 +6,9 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.rooms import tightest
-from toolaxis.orient.crossing import OVER, Crossing
+from toolaxis.orient.crossing import OVER, Crossing, height_over
 from toolaxis.orient.indexed import task
+from toolaxis.orient.moving import MovingCrossing
 from toolaxis.orient.setting import grouped
 from toolaxis.tolerances import Tolerance
 
@@ -104,6 +105,19 @@ def test_a_link_between_walls_too_near_rises_to_the_top(sheet: ta.Face) -> None:
     assert crossing.heights(np.array([[5.0, 9, 3.0]]), np.array([[52.0, 9, 3.0]])) == pytest.approx([70.0])
 
 
+@pytest.mark.parametrize(("scallop", "lift"), [(0.02, 1.0), (0.05, 1.0), (0.2, 8.0), (0.5, 20.0)])
+def test_links_keep_what_passes_leave_standing(sheet: ta.Face, scallop: float, lift: float) -> None:
+    tips, normal = np.array([[20.0, 15, 1.0], [40.0, 15, 1.0]]), np.array([0.0, 0, 1])
+    crossing = Crossing(TOOL, grouped(sheet, Tolerance()), normal, 60.0, over=height_over(scallop))
+    height, = crossing.heights(tips[:1], tips[1:])
+    assert height == pytest.approx(1.0 + lift)
+    moving = MovingCrossing(TOOL, grouped(sheet, Tolerance()), over=height_over(scallop))
+    for up in (lift, 0.3 * height_over(scallop)):
+        ends = [(tip + up * normal)[None] for tip in tips]
+        free, = moving.clear(*ends, normal[None], normal[None], True)
+        assert free == (up == lift)
+
+
 def test_a_plan_with_low_links_passes_the_judge_beside_a_box(sheet: ta.Face) -> None:
     made = ta.plan(sheet, TOOL, 0.1, obstacles=box(24, 34, 34, 60, 20.0))
     assert made.outcome == "complete", made.operations[0].orientation.reasons
@@ -113,6 +127,13 @@ def test_a_plan_with_low_links_passes_the_judge_beside_a_box(sheet: ta.Face) -> 
     place = tightest(made)
     assert place is not None
     assert place.distance >= min(made.operations[0].orientation.clearance.values()), "never less than what was proven"
+
+
+def test_links_at_a_large_scallop_height_pass_the_judge_between_boxes(sheet: ta.Face) -> None:
+    made = ta.plan(sheet, TOOL, 0.5, obstacles=box(14, 24, 8, 20, 4.0) + box(38, 46, 10, 24, 4.0))
+    assert made.outcome == "complete", made.operations[0].orientation.reasons
+    verdict = ta.verify(made)
+    assert verdict.passed, verdict.reasons
 
 
 def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,

@@ -13,8 +13,20 @@ from toolaxis.tools.assembly import Tool
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: What the cutter keeps from the skin while it crosses, mm: stock that is still to be cut may stand there.
-OVER = 1.0
+#: What the cutter keeps from the skin while it crosses, mm and in scallop heights, whichever is more: stock that is
+#: still to be cut may stand there, and where no pass reaches it stays.
+OVER, SCALLOPS = 1.0, 20.0
+
+
+def height_over(scallop: float) -> float:
+    """What the cutter keeps from the skin while it crosses, mm.
+
+    Parameters
+    ----------
+    scallop : float
+        mm
+    """
+    return max(OVER, SCALLOPS * scallop)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +43,8 @@ class Crossing:
         Height along the axis, mm, at which the tip crosses above everything.
     allowance : float
         Stock left on the skin, mm.
+    over : float
+        What it keeps from the skin while it crosses, mm, see `height_over`.
     """
 
     tool: Tool
@@ -38,11 +52,12 @@ class Crossing:
     axis: Array
     top: float
     allowance: float = 0.0
+    over: float = OVER
 
     def heights(self, ends: Array, begins: Array) -> Array:
         """The least heights along the axis at which the tip may cross, (k,) mm.
 
-        Lifting, crossing and coming down keep the distances to walls and obstacles, and crossing keeps `OVER` from the
+        Lifting, crossing and coming down keep the distances to walls and obstacles, and crossing keeps `over` from the
         skin too; bounds hold along the motions.
 
         Parameters
@@ -59,8 +74,8 @@ class Crossing:
                 break
             height = base[left] + lift
             high = [tips[left] + (height - tips[left] @ self.axis)[:, None] * self.axis for tips in (ends, begins)]
-            across, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
-            free = self._clear(*across, over=True) & self._clear(*up) & self._clear(*down)
+            over, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
+            free = self._clear(*over, across=True) & self._clear(*up) & self._clear(*down)
             found[left[free]] = height[free]
             left = left[~free]
         return found
@@ -85,15 +100,15 @@ class Crossing:
             left = left[~free]
         return found
 
-    def _clear(self, start: Array, end: Array, over: bool = False) -> Bools:
+    def _clear(self, start: Array, end: Array, across: bool = False) -> Bools:
         """Whether straight motions keep their distances, (k,)."""
         axes = np.broadcast_to(self.axis, start.shape)
         moves = np.stack([(start + end) / 2, (end - start) / 2, axes], axis=1)
         free = np.ones(len(moves), dtype=bool)
         for group in self.groups:
             required = group.required.copy()
-            if over and group.role != OTHER:
-                required[0] = self.allowance + OVER
+            if across and group.role != OTHER:
+                required[0] = self.allowance + self.over
             table = np.tile(required, (len(group.faces), 1))
             some = np.flatnonzero(free)
             free[some] = judged(group.cells, self.tool, moves[some], table).blocked < 0

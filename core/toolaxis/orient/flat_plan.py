@@ -15,6 +15,7 @@ from toolaxis.contact.turning import turning_gouges
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
+from toolaxis.orient.crossing import OVER, height_over
 from toolaxis.orient.flat_path import strokes
 from toolaxis.orient.flat_strips import Lane, Strip, lay_strips, left_out, places, strip
 from toolaxis.orient.flat_tilt import REASONS, TIGHT, TWO
@@ -166,8 +167,10 @@ def linked(job: Task, work: Work, strips: tuple[Strip, ...]) -> ToolPath:
                 for group in job.groups)
     low, high = job.box
     height = float(np.maximum(low * up, high * up).sum()) + CROSSING
-    crossing = MovingCrossing(work.tool, job.groups, work.allowance)
-    return joined(passes, Swivelling(Linking(height, run_in=0.0 if walls else 1.0), up, work.tool, crossing.clear))
+    over = height_over(work.scallop)
+    crossing = MovingCrossing(work.tool, job.groups, work.allowance, over)
+    linking = Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER)
+    return joined(passes, Swivelling(linking, up, work.tool, crossing.clear))
 
 
 def gouging(job: Task, path: ToolPath) -> NDArray[np.intp]:

@@ -13,7 +13,7 @@ from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.orient.crossing import Crossing
+from toolaxis.orient.crossing import OVER, Crossing, height_over
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.impossible import corner_too_large, spread_too_wide
 from toolaxis.orient.least_made import least_made
@@ -108,9 +108,10 @@ class Task:
         own = self.worth.face
         walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
                     for group in self.groups)
-        crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance)
+        over = height_over(self.worth.scallop)
+        crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
         return trace(placed, self.direction, self.feasibility.tolerance,
-                     linking=Linking(height, run_in=0.0 if walls else 1.0, lower=crossing.heights,
+                     linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
                                      beside=crossing.beside))
 
     def made(self, axis: Array, feed: str) -> ToolPath:

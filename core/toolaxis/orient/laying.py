@@ -14,6 +14,7 @@ from toolaxis.feed.turning import Following, following
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
+from toolaxis.orient.crossing import OVER, height_over
 from toolaxis.orient.indexed import CROSSING, Task
 from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
@@ -135,8 +136,10 @@ def _links(job: Task, cut: LeadCut) -> Swivelling:
                 for group in job.groups)
     low, high = job.box
     height = float(np.maximum(low * cut.axis, high * cut.axis).sum()) + CROSSING
-    crossing = MovingCrossing(cut.tool, job.groups, cut.allowance)
-    return Swivelling(Linking(height, run_in=0.0 if walls else 1.0), cut.axis, cut.tool, crossing.clear)
+    over = height_over(cut.scallop)
+    crossing = MovingCrossing(cut.tool, job.groups, cut.allowance, over)
+    return Swivelling(Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER), cut.axis, cut.tool,
+                      crossing.clear)
 
 
 def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> list[list[MovingStroke]]:

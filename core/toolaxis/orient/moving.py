@@ -125,14 +125,17 @@ class MovingCrossing:
         With the distances to keep.
     allowance : float
         Stock left on the skin, mm.
+    over : float
+        What they keep from the skin where they cross, mm, see `toolaxis.orient.crossing.height_over`.
     """
 
     tool: Tool
     groups: tuple[Group, ...]
     allowance: float = 0.0
+    over: float = OVER
 
-    def clear(self, start: Array, end: Array, before: Array, after: Array, over: bool) -> Bools:
-        """Whether links are free, (k,): they keep their distances, and where they cross `OVER` from the skin too.
+    def clear(self, start: Array, end: Array, before: Array, after: Array, across: bool) -> Bools:
+        """Whether links are free, (k,): they keep their distances, and where they cross `over` from the skin too.
 
         Parameters
         ----------
@@ -140,14 +143,14 @@ class MovingCrossing:
             Tips, mm.
         before, after : (k, 3) array
             Axes there.
-        over : bool
+        across : bool
             Whether they cross.
         """
         free = np.ones(len(start), dtype=bool)
         for group in self.groups:
             required = group.required.copy()
-            if over and group.role != OTHER:
-                required[0] = self.allowance + OVER
+            if across and group.role != OTHER:
+                required[0] = self.allowance + self.over
             some = np.flatnonzero(free)
             free[some] = kept(self.tool, group, Spans(start, end, before, after).rows(some), required)
         return free
