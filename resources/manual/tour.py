@@ -121,7 +121,7 @@ class Tour:
 
     def expanded(self, depth):
         """Open the tree so far, and show all of what is visible."""
-        for tree in self.desk.window.findChildren(self.desk.widgets.QTreeWidget):
+        for tree in self.desk.children(self.desk.widgets.QTreeWidget):
             with suppress(RuntimeError):
                 tree.collapseAll()
                 tree.expandToDepth(depth)

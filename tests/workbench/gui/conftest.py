@@ -104,6 +104,18 @@ class Desk:
         assert found is not None, f"there is no widget {name}"
         return found
 
+    def is_a(self, widget, kind):
+        """Whether a widget is of a class in Qt too: Python's object may be that of a dead one at the same address, and
+        FreeCAD ends when what the widget does not have is called."""
+        try:
+            return isinstance(widget, kind) and widget.inherits(kind.__name__)
+        except RuntimeError:  # it is known to be dead
+            return False
+
+    def children(self, kind, within=None):
+        """All widgets of a class in a widget, the window unless given."""
+        return [one for one in (within or self.window).findChildren(kind) if self.is_a(one, kind)]
+
     def form(self, name):
         """The form of a task panel, or None."""
         found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
@@ -171,11 +183,10 @@ class Desk:
         from freecad.toolaxis.tasks import clear_away
 
         for _ in range(2):
-            for box in self.window.findChildren(self.widgets.QDialogButtonBox):
-                with suppress(RuntimeError, AttributeError):  # Python's object of one that Qt has deleted meanwhile
-                    button = box.button(getattr(self.widgets.QDialogButtonBox, name))
-                    if button is not None and button.isVisible():
-                        return button
+            for box in self.children(self.widgets.QDialogButtonBox):
+                button = box.button(getattr(self.widgets.QDialogButtonBox, name))
+                if self.is_a(button, self.widgets.QPushButton) and button.isVisible():
+                    return button
             clear_away()
         raise AssertionError(f"there is no button {name}")
 
@@ -185,7 +196,7 @@ class Desk:
 
         def answer():
             box = self.app.activeModalWidget()
-            if isinstance(box, self.widgets.QMessageBox):  # a dialog that shows progress goes by itself
+            if self.is_a(box, self.widgets.QMessageBox):  # a dialog that shows progress goes by itself
                 seen.append(box.text())
                 self.shot("dialog")
                 box.accept()
@@ -264,7 +275,7 @@ class Desk:
     def around(self, form):
         """The area that a task panel scrolls in, or None."""
         above = form.parentWidget()
-        while above is not None and not isinstance(above, self.widgets.QScrollArea):
+        while above is not None and not self.is_a(above, self.widgets.QScrollArea):
             self.held.append(above)  # in FreeCAD 1.0 those of what is in a widget end with Python's object of it
             above = above.parentWidget()
         self.held.append(above)
@@ -284,7 +295,7 @@ class Desk:
 
     def reported(self):
         """What stands in the report view that looks like an error, each with the lines after it."""
-        texts = [w.toPlainText() for w in self.window.findChildren(self.widgets.QTextEdit)
+        texts = [w.toPlainText() for w in self.children(self.widgets.QTextEdit)
                  if "Report" in w.objectName() or "Report" in w.metaObject().className()]
         lines = [line for text in texts for line in text.splitlines()]
         bad = [k for k, line in enumerate(lines) if any(word in line for word in ("Traceback", "Error", "xception"))]

@@ -39,7 +39,7 @@ def run(desk, command):
 
     def answer():
         box = desk.app.activeModalWidget()
-        if box is not None:
+        if desk.is_a(box, desk.widgets.QMessageBox):
             seen.append(box.text())
             desk.shot("54-question")
             button = box.button(desk.widgets.QMessageBox.Yes)

@@ -85,8 +85,8 @@ class Walk:
 
     def opened(self, title):
         """Choose the example in the menu."""
-        menus = self.desk.window.menuBar().findChildren(self.desk.widgets.QMenu)
-        menus += self.desk.window.findChildren(self.desk.widgets.QMenu)
+        menus = self.desk.children(self.desk.widgets.QMenu, self.desk.window.menuBar())
+        menus += self.desk.children(self.desk.widgets.QMenu)
         inner = next(menu for menu in menus if menu.title().replace("&", "") == "Examples")
         next(action for action in inner.actions() if action.text().replace("&", "") == title).trigger()
         self.desk.wait(lambda: self.document is not None and self.document.Objects, "the example opens")
@@ -210,7 +210,7 @@ def looked_at(walk, axes):
             assert any("CoordinateSystem" in kind for kind in kinds)
         colours += [tuple(thing.ViewObject.ShapeColor)[:3] for thing in one.Group if thing.TypeId == SURFACE]
     assert len(set(colours)) > 1
-    for tree in walk.desk.window.findChildren(walk.desk.widgets.QTreeWidget):
+    for tree in walk.desk.children(walk.desk.widgets.QTreeWidget):
         tree.expandToDepth(3)
     walk.seen("tree")
 

@@ -27,11 +27,11 @@ def answered(desk):
 
         def answer():
             box = desk.app.activeModalWidget()
-            if isinstance(box, desk.widgets.QMessageBox):
+            if desk.is_a(box, desk.widgets.QMessageBox):
                 seen.append(box.text())
                 desk.shot(f"86-many-jobs-{len(left)}")
                 box.button(getattr(desk.widgets.QMessageBox, left.pop(0))).click()
-            elif isinstance(box, desk.widgets.QProgressDialog) and left == ["stop"] and "about" in box.labelText():
+            elif left == ["stop"] and desk.is_a(box, desk.widgets.QProgressDialog) and "about" in box.labelText():
                 seen.append(box.labelText())
                 left.clear()
                 desk.shot("86-many-jobs-stop")

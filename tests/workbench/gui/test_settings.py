@@ -89,7 +89,7 @@ def test_every_example_of_the_menu_is_there_and_opens(desk):
     from freecad.toolaxis.commands.examples import PARTS, Example
 
     assert all(Example(name).file.is_file() for name in PARTS)
-    menus = desk.window.menuBar().findChildren(desk.widgets.QMenu)
+    menus = desk.children(desk.widgets.QMenu, desk.window.menuBar())
     texts = [action.text().replace("&", "") for menu in menus for action in menu.actions()]
     assert {"Examples", "Saddle", "Blisk with 16 blades"} <= set(texts)
     desk.gui.runCommand("ToolAxis_Example_saddle")
@@ -116,7 +116,7 @@ def test_the_panel_speaks_german(german, wavy):
     form = german.start(part, face)
     assert form.compute.text() == "Berechnen" and form.scallopLabel.text() == "Rillenhöhe"
     assert form.message.text().startswith("Berechnen findet die Achsen")
-    menus = [action.text().replace("&", "") for menu in german.window.menuBar().findChildren(german.widgets.QMenu)
+    menus = [action.text().replace("&", "") for menu in german.children(german.widgets.QMenu, german.window.menuBar())
              for action in menu.actions()]
     assert "CAM-Aufträge anlegen" in menus and "Beispiele" in menus
     german.shot("95-german")
