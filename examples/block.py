@@ -110,8 +110,9 @@ def settled(shape):
         return reader.OneShape()
 
 
-def write_step(name, shape, folder=HERE):
-    """Write name.step into a folder: mm, AP214, the same bytes every time; its path."""
+def write_step(name, shape, folder=None):
+    """Write name.step beside the scripts or into a folder: mm, AP214, the same bytes every time; its path."""
+    folder = HERE if folder is None else folder
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     Interface_Static.SetCVal_s("write.step.product.name", name)
