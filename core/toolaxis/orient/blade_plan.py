@@ -16,7 +16,7 @@ from toolaxis.orient.blade_layers import Ring, along_blade, closed_parameter
 from toolaxis.orient.blade_room import Room, with_room
 from toolaxis.orient.blade_section import base_of, section
 from toolaxis.orient.crossing import OVER, height_over
-from toolaxis.orient.indexed import CROSSING, Task
+from toolaxis.orient.indexed import Task
 from toolaxis.orient.laying import beyond
 from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
@@ -225,11 +225,9 @@ class BladeSearch:
             At its ends.
         """
         up = np.asarray(unit(axes.sum(axis=0)))
-        low, high = self.job.box
-        height = float(np.maximum(low * up, high * up).sum()) + CROSSING
         over = height_over(self.job.worth.scallop)
         crossing = MovingCrossing(self.tool, self.job.groups, self.job.worth.allowance, over)
-        return Swivelling(Linking(height, run_in=0.0, approach=over + OVER), up, self.tool, crossing.clear)
+        return Swivelling(Linking(self.job.top(up), run_in=0.0, approach=over + OVER), up, self.tool, crossing.clear)
 
     def made(self, planes: list[Plane], some: slice, left: tuple[float, float],
              clearance: float) -> tuple[BladeSchedule, ToolPath]:

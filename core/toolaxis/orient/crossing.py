@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: What the cutter keeps from the skin while it crosses, mm and in scallop heights, whichever is more: stock that is
-#: still to be cut may stand there, and where no pass reaches it stays.
+#: still to be cut may stand there, and where no pass reaches it stays; the judge takes it to be as high.
 OVER, SCALLOPS = 1.0, 20.0
 
 

@@ -20,7 +20,7 @@ from toolaxis.orient.flat_path import strokes
 from toolaxis.orient.flat_strips import Lane, Strip, lay_strips, left_out, places, strip
 from toolaxis.orient.flat_tilt import REASONS, TIGHT, TWO
 from toolaxis.orient.flat_work import Work
-from toolaxis.orient.indexed import CROSSING, Task
+from toolaxis.orient.indexed import Task
 from toolaxis.orient.laying import beyond
 from toolaxis.orient.mounted import while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
@@ -165,11 +165,9 @@ def linked(job: Task, work: Work, strips: tuple[Strip, ...]) -> ToolPath:
     up = np.asarray(unit(np.concatenate([one.axis for some in passes for one in some]).mean(axis=0)))
     walls = any(group.role == OTHER or (group.role == SKIN and any(face is not work.face for face in group.faces))
                 for group in job.groups)
-    low, high = job.box
-    height = float(np.maximum(low * up, high * up).sum()) + CROSSING
     over = height_over(work.scallop)
     crossing = MovingCrossing(work.tool, job.groups, work.allowance, over)
-    linking = Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER)
+    linking = Linking(job.top(up), run_in=0.0 if walls else 1.0, approach=over + OVER)
     return joined(passes, Swivelling(linking, up, work.tool, crossing.clear))
 
 

@@ -45,7 +45,7 @@ METHODS = {"sphere": search, "sectors": sectors, "roman": by_roman, "normal": by
 #: Methods that only name an axis: where that is refused, none beside it is tried.
 RULES = ("roman", "normal")
 
-#: Height above everything at which links cross, mm.
+#: Height above everything at which links cross at least, mm.
 CROSSING = 5.0
 _ATTEMPTS = 4
 #: Share of a face that passes may miss, away from walls, before the next best axis is tried.
@@ -80,6 +80,17 @@ class Task:
         boxes = np.array([group.box for group in self.groups])
         return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
+    def top(self, axis: Array) -> float:
+        """Height along an axis of a tip that is above everything, and above what may stand there, mm.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        low, high = self.box
+        clear = max(CROSSING, height_over(self.worth.scallop) + OVER)
+        return float(np.maximum(low * axis, high * axis).sum()) + clear
+
     def laid(self, axis: Array, feed: str) -> Layout:
         """The passes with an axis, cut out where the tool must not go, before they are traced.
 
@@ -102,9 +113,8 @@ class Task:
         ----------
         placed : Layout
         """
-        low, high = self.box
         axis = placed.cut.axis
-        height = float(np.maximum(low * axis, high * axis).sum()) + CROSSING
+        height = self.top(axis)
         own = self.worth.face
         walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
                     for group in self.groups)

@@ -15,7 +15,7 @@ from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.orient.crossing import OVER, height_over
-from toolaxis.orient.indexed import CROSSING, Task
+from toolaxis.orient.indexed import Task
 from toolaxis.orient.mounted import mounting_of, while_moving
 from toolaxis.orient.moving import MovingCrossing, prove_moving
 from toolaxis.orient.proof import Proof
@@ -134,12 +134,10 @@ def _links(job: Task, cut: LeadCut) -> Swivelling:
     face = job.worth.face
     walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
                 for group in job.groups)
-    low, high = job.box
-    height = float(np.maximum(low * cut.axis, high * cut.axis).sum()) + CROSSING
     over = height_over(cut.scallop)
     crossing = MovingCrossing(cut.tool, job.groups, cut.allowance, over)
-    return Swivelling(Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER), cut.axis, cut.tool,
-                      crossing.clear)
+    linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER)
+    return Swivelling(linking, cut.axis, cut.tool, crossing.clear)
 
 
 def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> list[list[MovingStroke]]:

@@ -150,7 +150,7 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
         As for `verify`.
     """
     cl = (task.tips, task.axes, task.kind)
-    cut = partial(removal, cl, task.profile, height=max(1.0, 20 * task.scallop), threads=threads, progress=progress)
+    cut = partial(removal, cl, task.profile, height=_standing(task), threads=threads, progress=progress)
     seen: list[float] = []
     samples: list[Rays] = []
 
@@ -206,12 +206,17 @@ def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance 
     return rooms
 
 
+def _standing(task: Task) -> float:
+    """How high stock stands on the targets before the cut, mm; it stays where no pass reaches, and links go over it."""
+    return max(1.0, 20 * task.scallop)
+
+
 def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Remains]) -> Place | None:
     """Where a link goes deepest into what the cutting motions leave above the targets."""
     worst: Place | None = None
     for one in maps:
         left = links((one.point + task.allowance * one.face.normal(one.uv), one.face.normal(one.uv)), depth=task.depth)
-        depth = np.minimum(one.remaining, max(1.0, 20 * task.scallop)) - left.remaining
+        depth = np.minimum(one.remaining, _standing(task)) - left.remaining
         i = int(np.argmax(depth))
         if depth[i] > task.tolerance.gouge and (worst is None or depth[i] > worst.value):
             worst = place_at(one.face, one.uv[i], one.point[i], (float(depth[i]), int(left.cut_by[i])))
