@@ -1,10 +1,10 @@
 """Tests of the FreeCAD add-on: plain pytest inside FreeCAD; outside, each file is started in the real FreeCAD.
 
 Which FreeCAD that is says the environment variable TOOLAXIS_FREECAD: the beginning of a command that runs the rest of
-it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets the tests
-too, of those in a window only WINDOW and of the others not ONCE without --long; its window opens in its own program
-alone, not in Python.  Without the first, a FreeCAD that is installed is looked for; where there is none the tests are
-skipped, and the reason is printed.
+it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets all of the
+tests too with --long, else OLDER, on what differs between releases; its window opens in its own program alone, not in
+Python.  Without the first, a FreeCAD that is installed is looked for; where there is none the tests are skipped, and
+the reason is printed.
 """
 
 import atexit
@@ -26,8 +26,10 @@ MARK = "TOOLAXIS-INNER "
 TIME_LIMIT, LONG_TIME_LIMIT = 1200.0, 5400.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
-ONCE = ("test_same_plan.py", "test_example_parts.py")
-WINDOW = ("test_bad_cases.py", "test_panel.py")
+OLDER = ("test_bad_cases.py", "test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_panel.py",
+         "test_part_contract.py", "test_saved_before.py")
+# each in another Python, where it compiles what the others then find compiled
+FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
 STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
@@ -43,8 +45,12 @@ def pytest_configure(config):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items):
-    """What runs in FreeCAD comes first: a file takes minutes, and no process should begin one when all else is done."""
-    items.sort(key=lambda item: not isinstance(item, InnerRun))
+    """FIRST, then what runs in FreeCAD: a file takes minutes, and none should begin when all else is done."""
+    def place(item):
+        first = [item.path.as_posix().endswith(name) for name in FIRST]
+        return first.index(True) if any(first) else len(FIRST) + (not isinstance(item, InnerRun))
+
+    items.sort(key=place)
 
 
 def pytest_pycollect_makemodule(module_path, parent):
@@ -80,10 +86,9 @@ class InnerFile(pytest.File):
     """Outside: a file of tests that runs in FreeCAD."""
 
     def collect(self):
-        yield InnerRun.from_parent(self, name="in FreeCAD", variable="TOOLAXIS_FREECAD")
-        once = self.path.name not in WINDOW if "gui" in self.path.parts else self.path.name in ONCE
-        if os.environ.get("TOOLAXIS_FREECAD_OLD") and (self.config.getoption("--long") or not once):
+        if os.environ.get("TOOLAXIS_FREECAD_OLD") and (self.config.getoption("--long") or self.path.name in OLDER):
             yield InnerRun.from_parent(self, name="in the older FreeCAD", variable="TOOLAXIS_FREECAD_OLD")
+        yield InnerRun.from_parent(self, name="in FreeCAD", variable="TOOLAXIS_FREECAD")
 
 
 class InnerFailure(Exception):

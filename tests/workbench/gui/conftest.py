@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[3]
 SHOTS = Path(os.environ.get("TOOLAXIS_SHOTS", ROOT / "out" / "shots"))
 SIZE = (1400, 900)
 TURNS = 8
+PAUSE = 0.05  # between looks at what is waited for: the window takes time from what is computed beside it, s
 LIMIT = 240.0  # the library's kernels are compiled when they are first used
 PACKS, STYLES = "Gui/PreferencePacks/{0}/{0}.cfg", "Gui/Stylesheets/parameters/{0}.yaml"
 
@@ -46,6 +47,19 @@ def set_theme(name):
     window.SetString("ThemeStyleParametersFile", str(folder / STYLES.format(name)))
 
 
+@contextmanager
+def nothing_ends():
+    """Keep widgets that are looked at alive: forms of closed panels end, with all that is in them, whenever Python
+    collects what nobody holds."""
+    usual = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if usual:
+            gc.enable()
+
+
 class Leaver:
     """Ends the process at once with the tests' status: the interpreter crashes while a window closes."""
 
@@ -73,14 +87,14 @@ class Desk:
             FreeCADGui.showMainWindow()
         from PySide import QtCore, QtWidgets
 
+        self.window = FreeCADGui.getMainWindow()
         self.theme, self.app, self.gui = theme, QtWidgets.QApplication, FreeCADGui
         self.qt, self.widgets = QtCore, QtWidgets
-        self.window = FreeCADGui.getMainWindow()
         self.window.setGeometry(0, 0, *SIZE)
         self.pump(0.5)
         FreeCADGui.activateWorkbench("ToolAxisWorkbench")
         self.pump(0.3)
-        self.errors, self.held = [], []
+        self.errors, self.held, self.box = [], [], None
         sys.excepthook = lambda kind, value, trace: self.errors.append(f"{kind.__name__}: {value}")
 
     def pump(self, seconds=0.05):
@@ -97,12 +111,13 @@ class Desk:
         while not condition():
             assert time.monotonic() < end, f"waited {limit:.0f} s in vain until {what}"
             self.pump(0.02)
+            time.sleep(PAUSE)
 
     def find(self, name, kind=None):
         """A visible widget by its name."""
-        found = self.window.findChild(kind or self.widgets.QWidget, name)
-        assert found is not None, f"there is no widget {name}"
-        return found
+        found = [one for one in self.children(kind or self.widgets.QWidget) if one.objectName() == name]
+        assert found, f"there is no widget {name}"
+        return found[0]
 
     def is_a(self, widget, kind):
         """Whether a widget is of a class in Qt too: Python's object may be that of a dead one at the same address, and
@@ -113,12 +128,18 @@ class Desk:
             return False
 
     def children(self, kind, within=None):
-        """All widgets of a class in a widget, the window unless given."""
-        return [one for one in (within or self.window).findChildren(kind) if self.is_a(one, kind)]
+        """All widgets of a class, in a widget if one is given.
+
+        Without one the window is not asked: its Python object would keep those of all that was found in it, which are
+        handed out again, when they are dead, for other widgets at their addresses.
+        """
+        with nothing_ends():
+            found = self.app.allWidgets() if within is None else within.findChildren(kind)
+            return [one for one in found if self.is_a(one, kind)]
 
     def form(self, name):
         """The form of a task panel, or None."""
-        found = [w for w in self.window.findChildren(self.widgets.QWidget, name) if w.isVisible()]
+        found = [w for w in self.children(self.widgets.QWidget) if w.objectName() == name and w.isVisible()]
         if not found or type(found[-1]) is self.widgets.QWidget:
             return found[-1] if found else None
         # a dialog, or what PySide2 keeps of a deleted widget that stood at the same address
@@ -183,10 +204,12 @@ class Desk:
         from freecad.toolaxis.tasks import clear_away
 
         for _ in range(2):
-            for box in self.children(self.widgets.QDialogButtonBox):
-                button = box.button(getattr(self.widgets.QDialogButtonBox, name))
-                if self.is_a(button, self.widgets.QPushButton) and button.isVisible():
-                    return button
+            with nothing_ends():
+                for box in self.children(self.widgets.QDialogButtonBox):
+                    button = box.button(getattr(self.widgets.QDialogButtonBox, name))
+                    if self.is_a(button, self.widgets.QPushButton) and button.isVisible():
+                        self.box = box  # the button's Python object ends with that of its box
+                        return button
             clear_away()
         raise AssertionError(f"there is no button {name}")
 
@@ -295,8 +318,9 @@ class Desk:
 
     def reported(self):
         """What stands in the report view that looks like an error, each with the lines after it."""
-        texts = [w.toPlainText() for w in self.children(self.widgets.QTextEdit)
-                 if "Report" in w.objectName() or "Report" in w.metaObject().className()]
+        with nothing_ends():
+            texts = [w.toPlainText() for w in self.children(self.widgets.QTextEdit)
+                     if "Report" in w.objectName() or "Report" in w.metaObject().className()]
         lines = [line for text in texts for line in text.splitlines()]
         bad = [k for k, line in enumerate(lines) if any(word in line for word in ("Traceback", "Error", "xception"))]
         return ["\n".join(lines[k:k + 12]) for k in bad]
@@ -312,6 +336,7 @@ class Desk:
         for name in list(FreeCAD.listDocuments()):
             FreeCAD.closeDocument(name)
         self.pump(0.1)
+        self.box = None
         self.held.clear()  # else they would be handed out for widgets that lie at their addresses later
         clear_away()
 
@@ -405,7 +430,7 @@ def operation(desk, wavy, _recalling):
     part, face = wavy
     with _recalling():
         form = desk.start(part, face)
-        desk.type(form.scallop, "0.2 mm")
+        desk.type(form.scallop, "0.05 mm")
         desk.computed(form)
         desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
@@ -418,5 +443,5 @@ def form(desk, wavy):
     part, face = wavy
     form = desk.start(part, face)
     form.tabs.setCurrentWidget(form.jobTab)
-    desk.type(form.scallop, "0.2 mm")
+    desk.type(form.scallop, "0.05 mm")
     return form

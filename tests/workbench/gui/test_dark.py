@@ -4,7 +4,7 @@
 def test_panels_in_the_dark(desk, wavy):
     part, face = wavy
     form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
+    desk.type(form.scallop, "0.05 mm")
     for number, name in enumerate(("job", "tool", "limits"), 1):
         form.tabs.setCurrentWidget(getattr(form, f"{name}Tab"))
         desk.shot(f"{number}-{name}")

@@ -194,7 +194,7 @@ def test_the_growing_map_says_whose_it_is(desk, part_file):
     sides = [f"Face{k}" for k, face in enumerate(part.Shape.Faces, 1) if type(face.Surface).__name__ != "Plane"][:3]
     form = desk.start(part, *sides)
     form.tabs.setCurrentWidget(form.jobTab)
-    desk.type(form.scallop, "0.2 mm")
+    desk.type(form.scallop, "0.05 mm")
     seen, titles = [], [f"Face {name.removeprefix('Face')} ({k} of {len(sides)})" for k, name in enumerate(sides, 1)]
     timer = desk.qt.QTimer()
     timer.setInterval(20)

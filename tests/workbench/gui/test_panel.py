@@ -190,7 +190,7 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
         desk.type(form.scallop, "0.0125 mm")
         assert form.scallop.property("rawValue") == pytest.approx(0.0125, rel=0.02)
         desk.shot(f"11-units-{schema}")
-        desk.type(form.scallop, "0.2 mm")
+        desk.type(form.scallop, "0.05 mm")
         desk.computed(form)
         assert any("in" in desk.text(form.results, row, 0).split() for row in (2, 3)) == inches
         desk.press(desk.standard_button("Ok"))
