@@ -1,4 +1,4 @@
-"""What every test may use: the long marker and the folder of parts made by others."""
+"""What every test may use: the long marker, a limit of time, and the folder of parts made by others."""
 
 import os
 from pathlib import Path
@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+# s; the slowest tests take a quarter of it on two noisy cores: what takes longer waits for what never comes
+LIMIT, LONG_LIMIT = 900, 5400
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -13,11 +15,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("--long"):
-        return
+    long, limited = config.getoption("--long"), config.pluginmanager.hasplugin("timeout")
     for item in items:
-        if "long" in item.keywords:
+        if "long" in item.keywords and not long:
             item.add_marker(pytest.mark.skip(reason="long: run with --long (make test-all)"))
+        if limited and isinstance(item, pytest.Function):  # what runs in FreeCAD has limits of its own
+            item.add_marker(pytest.mark.timeout(LONG_LIMIT if "long" in item.keywords else LIMIT))
 
 
 @pytest.fixture(scope="session")

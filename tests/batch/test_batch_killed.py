@@ -111,7 +111,7 @@ def test_a_batch_that_is_killed_goes_on(tmp_path: Path, domes: Made, contents: C
 def test_a_process_that_is_killed_costs_its_job_alone(tmp_path: Path, domes: Made,
                                                       started: Callable[[], list[int]]) -> None:
     out, told, jobs = tmp_path / "out", [], domes(4)
-    easy, jobs[0] = jobs[0], {**jobs[0], "scallop": 0.0002, "method": "sphere"}
+    easy, jobs[0] = jobs[0], {**jobs[0], "scallop": 0.0002, "method": "sphere", "timeout": 300}
 
     def kill(text: str) -> None:
         told.append(text)

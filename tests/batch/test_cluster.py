@@ -1,5 +1,6 @@
 """A batch on a real cluster, a scheduler with two workers on this machine: the same results, whoever is killed."""
 
+import gc
 import json
 import os
 import signal
@@ -44,6 +45,8 @@ class Cluster:
         assert self.address, "the scheduler did not start"
         self.workers = [self._start(folder, "worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard",
                                     "--local-directory", str(folder / f"worker-{k}")) for k in range(2)]
+        with cluster_module.connected(self.address) as client:
+            assert until(lambda: len(client.nthreads()) == 2), "the workers did not start"
 
     @staticmethod
     def _start(folder: Path, *words: str) -> "subprocess.Popen[bytes]":
@@ -98,6 +101,23 @@ def test_wrong_words_for_a_cluster_are_refused_and_write_nothing(domes: Made, tm
     assert list(tmp_path.iterdir()) == []
 
 
+def test_what_does_not_answer_leaves_nothing_that_is_closed_while_python_collects(
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    """Closing takes a lock, and the next connection would wait for it for ever."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster_module, "_PATIENCE", 1.0)
+    gc.collect()
+    gc.disable()
+    try:
+        for address in ("tcp://127.0.0.1:1", "nonsense://x", ""):
+            with pytest.raises(InvalidInput), cluster_module.connected(address):
+                pass
+        left = {one.status for one in gc.get_objects() if issubclass(type(one), distributed.Client)}
+        assert left <= {"closed"}
+    finally:
+        gc.enable()
+
+
 def test_the_same_as_on_this_machine_and_a_hang_costs_its_job_alone(cluster: Callable[[], Cluster], domes: Made,
                                                                     tmp_path: Path, contents: Contents) -> None:
     jobs, there = domes(4), cluster()
@@ -111,7 +131,7 @@ def test_the_same_as_on_this_machine_and_a_hang_costs_its_job_alone(cluster: Cal
 
 def test_a_stop_ends_the_jobs_on_the_cluster_too(cluster: Callable[[], Cluster], domes: Made, tmp_path: Path) -> None:
     there, told, (one, two) = cluster(), [], domes(2)
-    slow = [{**one, "name": f"slow-{k}", "scallop": 0.0002, "method": "sphere"} for k in range(3)]
+    slow = [{**one, "name": f"slow-{k}", "scallop": 0.0002, "method": "sphere", "timeout": 300} for k in range(3)]
     made = batch([two, *slow], tmp_path / "out", scheduler=there.address, told=told.append,
                  progress=Progress(cancelled=lambda: "job dome-001: complete" in told and len(there.hands()) == 2))
     assert made.cancelled and [row.outcome for row in made.rows] == ["complete", *["not done"] * 3]

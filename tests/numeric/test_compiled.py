@@ -80,6 +80,23 @@ def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
     assert [hits for _, hits in answers] == ["0", "1", "0"]
 
 
+def test_kept_code_for_other_arguments_is_not_taken(tmp_path: Path) -> None:
+    """Two processes that compile at the same time may both write the file of the first's code."""
+    pytest.importorskip("numba")
+    (tmp_path / "half_kernel.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+                                             "@compiled\ndef half(x):\n    return x[0] / 2\n")
+    script = ("import numpy as np\nfrom half_kernel import half\n"
+              "print(half(np.array([3.0])), half(np.array([3])), sum(half.stats.cache_hits.values()))")
+    answers = [run(script, tmp_path).split()]
+    one, two = sorted((tmp_path / "kept").rglob("*.nbc"))
+    first = one.read_bytes()
+    one.write_bytes(two.read_bytes())
+    two.write_bytes(first)
+    answers += [run(script, tmp_path).split() for _ in range(2)]
+    assert [answer[:2] for answer in answers] == [["1.5", "1.5"]] * 3
+    assert [answer[2] for answer in answers] == ["0", "0", "2"]
+
+
 def test_nothing_else_imports_numba() -> None:
     importing = re.compile(r"^\s*(import|from) numba\b", re.MULTILINE)
     guilty = [str(path.relative_to(CORE)) for path in CORE.rglob("*.py") if importing.search(path.read_text())]

@@ -22,7 +22,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = importlib.util.find_spec("FreeCAD") is not None
-MARK = "TOOLAXIS-INNER "
+MARK, FAILED, CRASHED = "TOOLAXIS-INNER ", "TOOLAXIS-FAILED ", "Fatal Python error"
 TIME_LIMIT, LONG_TIME_LIMIT = 1200.0, 5400.0
 TAIL = 40
 INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeCAD", "freecad-daily")
@@ -58,7 +58,7 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 
 class Teller:
-    """Inside FreeCAD: tells in one line what became of each test, then leaves at once, before FreeCAD crashes."""
+    """Inside FreeCAD: tells failures at once and in one line what became of all, and leaves before FreeCAD crashes."""
 
     def __init__(self):
         self.outcomes, self.status = {}, 1
@@ -66,6 +66,9 @@ class Teller:
     def pytest_runtest_logreport(self, report):
         if report.outcome != "passed" or (report.when == "call" and report.nodeid not in self.outcomes):
             self.outcomes[report.nodeid] = [report.outcome, _tail(str(report.longrepr or ""))]
+        if report.failed:
+            sys.__stdout__.write(f"\n{FAILED}{report.nodeid}\n{self.outcomes[report.nodeid][1]}\n")
+            sys.__stdout__.flush()
 
     def pytest_collectreport(self, report):
         if report.outcome != "passed":
@@ -221,7 +224,7 @@ def judge(output, ending):
     """Fail with what failed inside, or where nothing ran; skip where all was skipped."""
     line = next((line for line in reversed(output.splitlines()) if line.startswith(MARK)), None)
     if line is None:
-        raise InnerFailure(f"FreeCAD {ending} without telling what its tests did; its last lines:\n{_tail(output)}")
+        raise InnerFailure(f"FreeCAD {ending} without telling what its tests did; its last lines:\n{_told(output)}")
     outcomes = json.loads(line.removeprefix(MARK))
     failures = [f"{name} failed inside FreeCAD\n{text}" for name, (kind, text) in outcomes.items() if kind == "failed"]
     if failures:
@@ -231,6 +234,15 @@ def judge(output, ending):
         raise InnerFailure(f"no test failed inside FreeCAD, but it {ending}; its last lines:\n{_tail(output)}")
     if len(reasons) == len(outcomes):
         pytest.skip(f"all inside were skipped, the first because of {reasons[0]}")
+
+
+def _told(output):
+    """What failed before FreeCAD ended and where it crashed, else the last lines."""
+    lines = output.splitlines()
+    crash = next((k for k, line in enumerate(lines) if line.startswith(CRASHED)), len(lines))
+    failed = next((k for k, line in enumerate(lines[:crash]) if line.startswith(FAILED)), crash)
+    told = [*lines[failed:crash][:TAIL], *lines[crash:crash + TAIL]]
+    return "\n".join(told) if told else _tail(output)
 
 
 def _tail(text):

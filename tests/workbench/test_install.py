@@ -21,7 +21,7 @@ def started(code, *arguments, **environment):
         pytest.skip(f"{Path(sys.executable).name} holds Python in itself: a process of its own needs a plain one")
     script = f"import os, sys\nimport FreeCAD\n{code}\nsys.__stdout__.flush()\nos._exit(0)"
     outside = {name: value for name, value in os.environ.items() if name != "TOOLAXIS_INNER"}
-    run = subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, timeout=240,
+    run = subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, timeout=600,
                          check=True, stdin=subprocess.DEVNULL, env={**outside, **environment})
     return run.stdout.split()
 

@@ -42,14 +42,15 @@ def connected(address: str) -> "Iterator[Client]":
     """
     try:
         import dask
-        from distributed import Client
+
+        kind = _closing()
     except ImportError as reason:
         raise MissingBackend("a cluster needs dask.distributed: pip install 'toolaxis[cluster]'") from reason
     with ExitStack() as stack:
         stack.enter_context(_silent())
         stack.enter_context(dask.config.set({"distributed.comm.timeouts.connect": f"{_PATIENCE}s"}))
         try:
-            client = Client(address, timeout=_PATIENCE, set_as_default=False)
+            client = kind(address, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as reason:
             raise InvalidInput(f"no scheduler answers at {address!r}: start one with dask scheduler, or leave "
                                "--scheduler out") from reason
@@ -58,6 +59,26 @@ def connected(address: str) -> "Iterator[Client]":
         finally:
             with suppress(Exception):
                 client.close(timeout=1.0)
+
+
+def _closing() -> "type[Client]":
+    """Clients that are closed where they fail to start, and never while Python collects what nobody holds: then closing
+    waits for a lock that the next client holds while it starts, and that one for ever."""
+    from distributed import Client
+
+    class Closing(Client):
+        def start(self, **settings: Any) -> None:
+            try:
+                super().start(**settings)  # type: ignore[no-untyped-call]
+            except BaseException:
+                with suppress(Exception):
+                    self.close(timeout=1.0)  # type: ignore[no-untyped-call]
+                raise
+
+        def __del__(self) -> None:
+            pass
+
+    return Closing
 
 
 @contextmanager

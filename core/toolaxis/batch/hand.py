@@ -143,9 +143,10 @@ class Hand:
         self._task = None
         if self._process is None:
             return
-        for number in (*descendants(self._process.pid), self._process.pid):
-            with suppress(ProcessLookupError):
-                os.kill(number, signal.SIGKILL)
+        if self._process.poll() is None:  # else its number may be another's by now
+            for number in (*descendants(self._process.pid), self._process.pid):
+                with suppress(ProcessLookupError):
+                    os.kill(number, signal.SIGKILL)
         self._process.wait()
         if self._pipe is not None:
             self._pipe.close()

@@ -90,6 +90,25 @@ def _stamp(kernel: Any, options: str) -> None:
     kernel.source_stamp = hashlib.sha256(repr((own, options, sorted(called))).encode()).hexdigest()
     if own is not None:
         store._source_stamp = kernel.source_stamp
+        _check(store, kernel.source_stamp)
+
+
+def _check(store: Any, stamp: str) -> None:
+    """Let code kept on disk say for which arguments it is, and take none for others.
+
+    numba names the file in a list that it writes before the file.  Two processes that compile a kernel for different
+    arguments at the same time may choose the same file, and the code for the one is called with the other's arguments.
+    """
+    save, load = store.save, store.load
+
+    def marked(key: Any, code: Any) -> None:
+        save(key, (stamp, key, code))
+
+    def checked(key: Any) -> Any:
+        found = load(key)
+        return found[2] if isinstance(found, tuple) and found[:2] == (stamp, key) else None
+
+    store.save, store.load = marked, checked
 
 
 def compilations() -> Callable[[], int]:
