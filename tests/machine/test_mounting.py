@@ -110,6 +110,8 @@ def test_words() -> None:
     assert "45.00 deg beyond the rotary ranges" in Mounting(stepped()).why(-mounting.axis_at([0.0, radians(42.0)]))
     far = mounting.reaching([(500.0, 0, 0)])
     assert far.why((0, 0, 1)) == "X of stepped would leave its travel by 300.0 mm to reach the face"
+    near = mounting.reaching([(200.02, 0, 0)])
+    assert near.why((0, 0, 1)) == "X of stepped would leave its travel by 0.1 mm to reach the face"
     both = AllOf((Cone(np.array([0, 0, 1.0]), 0.1), far))
     assert "X of stepped" in refusal(both, (0, 0, 1)) and refusal(both.parts[0], (0, 0, 1)) == ""
     assert "deg outside the limits" in refusal(both.parts[0], (0, 1, 0))

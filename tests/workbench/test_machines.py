@@ -70,6 +70,14 @@ def test_what_speaks_against_a_solution_is_said(mounted):
     assert "beyond its range" in machines.ways_to_hold(tilted, [0.9, 0.0, 0.4], TIPS)[0].reason
     far = machines.mounting("machine:bc-table-table@900,0,20", TOOL)
     assert "leaves its travel by" in machines.ways_to_hold(far, AXES[0], TIPS)[0].reason
+    inside, outside = 20.0, 900.0
+    for _ in range(40):
+        middle = (inside + outside) / 2
+        one = machines.mounting(f"machine:bc-table-table@{middle!r},0,20", TOOL)
+        said = machines.ways_to_hold(one, AXES[0], TIPS)[0].reason
+        inside, outside = (inside, middle) if said else (middle, outside)
+    near = machines.mounting(f"machine:bc-table-table@{outside!r},0,20", TOOL)
+    assert machines.ways_to_hold(near, AXES[0], TIPS)[0].reason.endswith("leaves its travel by 0.1 mm")
     deep = machines.mounting("machine:bc-table-table@0,0,-60", TOOL)
     way = machines.ways_to_hold(deep, AXES[0], TIPS)[0]
     assert "the spindle meets the table by" in way.reason and way.meeting == ("spindle", "table")

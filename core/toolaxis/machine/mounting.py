@@ -273,7 +273,8 @@ class Mounting:
         best = int(np.argmax(apart.min(axis=1)))
         one, other = names[int(np.argmin(apart[best]))]
         least = float(apart[best].min())
-        how = f"meets the {other} by {-least:.1f} mm" if least < 0 else f"comes within {least:.1f} mm of the {other}"
+        met = f"meets the {other} by {max(-least, 0.1):.1f} mm"
+        how = met if least < 0 else f"comes within {least:.1f} mm of the {other}"
         return f"the {one} {how}{self.at(rows[best])}"
 
     def at(self, rotary: ArrayLike) -> str:
@@ -301,7 +302,8 @@ class Mounting:
         worst = int(np.argmax(out))
         if not out[worst] > 0:
             return ""
-        return f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by {out[worst]:.1f} mm"
+        far = max(out[worst], 0.1)
+        return f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by {far:.1f} mm"
 
 
 def machine_limits(machine: MachineLike, table_from_part: ArrayLike | None = None) -> AxisLimits:

@@ -205,7 +205,7 @@ def _against(mounted, rotary, within, tips):
     at = linear_coordinates(machine, tips, rotary, float(mounted.tool_length), mounted.table_from_part)
     out = [(float(axis.excess(at[:, k]).max()), axis.name) for k, axis in enumerate(machine.linear)]
     if max(out)[0] > 0:
-        return f"{max(out)[1]} leaves its travel by {max(out)[0]:.1f} mm", ()
+        return f"{max(out)[1]} leaves its travel by {max(max(out)[0], 0.1):.1f} mm", ()
     if not mounted.judges_bodies:
         return "", ()
     ends = np.unique(np.concatenate([tips.argmin(axis=0), tips.argmax(axis=0)]))
@@ -213,7 +213,8 @@ def _against(mounted, rotary, within, tips):
     meeting = [pair for pair, distance in zip(names, apart[0], strict=True) if distance < 0]
     if meeting:
         one, other = names[int(np.argmin(apart[0]))]
-        return f"the {one} meets the {other} by {-float(apart[0].min()):.1f} mm", tuple(sorted({*sum(meeting, ())}))
+        depth = max(-float(apart[0].min()), 0.1)
+        return f"the {one} meets the {other} by {depth:.1f} mm", tuple(sorted({*sum(meeting, ())}))
     return "", ()
 
 
