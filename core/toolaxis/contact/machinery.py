@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.machine.bodies import BED
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward, linear_coordinates
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.mounting import Mounting, in_tenths
 from toolaxis.machine.standing import Standing, beside_part, part_from_bed, standing
 from toolaxis.numeric.convex import Convex, boxes, places, segments, separation
 from toolaxis.numeric.vectors import as_rows, perpendicular
@@ -126,7 +126,7 @@ def words(mounting: Mounting, rotary: ArrayLike, found: Meeting, required: float
     """
     at = mounting.at(rotary)
     if found.distance < 0:
-        return f"the {found.one} meets the {found.other} by {max(-found.distance, 0.1):.1f} mm{at}"
+        return f"the {found.one} meets the {found.other} by {in_tenths(-found.distance)} mm{at}"
     return (f"the {found.one} comes within {found.distance:.2f} mm of the {found.other}, less than the required "
             f"{required:g} mm,{at}")
 

@@ -273,8 +273,9 @@ class Mounting:
         best = int(np.argmax(apart.min(axis=1)))
         one, other = names[int(np.argmin(apart[best]))]
         least = float(apart[best].min())
-        met = f"meets the {other} by {max(-least, 0.1):.1f} mm"
-        how = met if least < 0 else f"comes within {least:.1f} mm of the {other}"
+        how = f"comes within {least:.1f} mm of the {other}"
+        if least < 0:
+            how = f"meets the {other} by {in_tenths(-least)} mm"
         return f"the {one} {how}{self.at(rows[best])}"
 
     def at(self, rotary: ArrayLike) -> str:
@@ -302,8 +303,19 @@ class Mounting:
         worst = int(np.argmax(out))
         if not out[worst] > 0:
             return ""
-        far = max(out[worst], 0.1)
-        return f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by {far:.1f} mm"
+        return (f"{self.machine.linear[worst].name} of {self.machine.name} would leave its travel by "
+                f"{in_tenths(out[worst])} mm")
+
+
+def in_tenths(excess: float) -> str:
+    """How far something goes beyond what is allowed, mm as messages write it: "0.1" at least.
+
+    Parameters
+    ----------
+    excess : float
+        mm, above zero.
+    """
+    return f"{max(excess, 0.1):.1f}"
 
 
 def machine_limits(machine: MachineLike, table_from_part: ArrayLike | None = None) -> AxisLimits:

@@ -193,6 +193,7 @@ def _against(mounted, rotary, within, tips):
     import numpy as np
 
     from toolaxis.machine.kinematics import linear_coordinates
+    from toolaxis.machine.mounting import in_tenths
     from toolaxis.machine.standing import meeting_at
 
     machine = mounted.machine
@@ -205,16 +206,15 @@ def _against(mounted, rotary, within, tips):
     at = linear_coordinates(machine, tips, rotary, float(mounted.tool_length), mounted.table_from_part)
     out = [(float(axis.excess(at[:, k]).max()), axis.name) for k, axis in enumerate(machine.linear)]
     if max(out)[0] > 0:
-        return f"{max(out)[1]} leaves its travel by {max(max(out)[0], 0.1):.1f} mm", ()
+        return f"{max(out)[1]} leaves its travel by {in_tenths(max(out)[0])} mm", ()
     if not mounted.judges_bodies:
         return "", ()
     ends = np.unique(np.concatenate([tips.argmin(axis=0), tips.argmax(axis=0)]))
     apart, names = meeting_at(machine, rotary[None], tips[ends], float(mounted.tool_length), mounted.table_from_part)
     meeting = [pair for pair, distance in zip(names, apart[0], strict=True) if distance < 0]
     if meeting:
-        one, other = names[int(np.argmin(apart[0]))]
-        depth = max(-float(apart[0].min()), 0.1)
-        return f"the {one} meets the {other} by {depth:.1f} mm", tuple(sorted({*sum(meeting, ())}))
+        (one, other), depth = names[int(np.argmin(apart[0]))], -float(apart[0].min())
+        return f"the {one} meets the {other} by {in_tenths(depth)} mm", tuple(sorted({*sum(meeting, ())}))
     return "", ()
 
 

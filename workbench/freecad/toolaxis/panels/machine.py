@@ -286,8 +286,9 @@ class MachinePanel(Panel):
         linear = "  ".join(f"{axis.name} {x:.1f}" for axis, x in zip(mounted.machine.linear, joints[:3], strict=True))
         text = f"{linear}  {at}"
         if red:
-            names, told = ", ".join(sorted(red)), f"{max(depth, 0.1):.1f}"
-            text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(names, told)
+            from toolaxis.machine.mounting import in_tenths
+
+            text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(", ".join(sorted(red)), in_tenths(depth))
         if near is not None:
             text += f"\n{near.text}"
         tell(self.form.pointer, text, bool(red) or near is not None)
