@@ -104,6 +104,22 @@ def test_search_is_deterministic(make):
     assert (one.axes == other.axes).all() and (a[0].axis == b[0].axis).all() and a[0].value == b[0].value
 
 
+@pytest.mark.parametrize("name", ["saddle", "bowl", "flat"])
+def test_the_last_digits_of_a_surface_do_not_lead_the_search_elsewhere(make, name):
+    """Mirror images cost the same: the search looks at the same axes whatever the rounding."""
+    face = {"saddle": make.saddle, "bowl": lambda: make.bowl(-60.0),
+            "flat": lambda: make.flat([-15, -15, 0], [30, 0, 0], [0, 30, 0])}[name]()
+    surface = face.surface
+    one, found = searched(face)
+    for seed in range(3):
+        noise = np.random.default_rng(seed).uniform(-5e-15, 5e-15, surface.control.shape) * [1, 1, 1, 0]
+        near = Face(NurbsSurface(surface.knots_u, surface.knots_v, surface.control + noise, surface.degree))
+        other, again = searched(near)
+        assert len(one.axes) == len(other.axes)
+        np.testing.assert_allclose(other.axes, one.axes, atol=1e-9)
+        assert [c.value for c in again] == [c.value for c in found]
+
+
 def test_every_axis_of_a_ball_ties_and_the_mean_normal_wins(make):
     face = make.seeded(64)
     ledger, found = searched(face, Tool.ball(8))

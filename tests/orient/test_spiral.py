@@ -57,3 +57,13 @@ def test_own_frame_turns_with_the_normals_and_does_not_mirror():
 def test_own_frame_of_one_normal_is_a_frame():
     frame = own_frame(np.array([[0, 0, 1.0]] * 3), np.array([0, 0, 1.0]))
     np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-12)
+
+
+@pytest.mark.parametrize("spread", [(0.3, 0.3), (0.3, 0.1), (0.0, 0.0)])
+def test_own_frame_does_not_hang_on_the_last_digits_of_normals_that_spread_evenly(spread):
+    way = np.linspace(0, 2 * pi, 12, endpoint=False)
+    normals = unit(np.stack([spread[0] * np.cos(way), spread[1] * np.sin(way), np.ones(12)], axis=1))
+    frame = own_frame(normals, np.array([0, 0, 1.0]))
+    for seed in range(4):
+        noise = np.random.default_rng(seed).uniform(-1e-15, 1e-15, (13, 3))
+        np.testing.assert_allclose(own_frame(unit(normals + noise[:12]), unit([0, 0, 1] + noise[12])), frame, atol=1e-6)

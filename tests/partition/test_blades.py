@@ -92,6 +92,15 @@ def test_a_moved_impeller_has_the_same_blades(parts, found):
     assert abs(rotor.axis @ move[:3, 2]) == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.parametrize("turned", [np.eye(3), np.diag([1.0, -1, -1]), np.diag([-1.0, 1, -1])])
+def test_the_sense_of_the_axis_does_not_hang_on_how_it_is_found(turned, parts):
+    """The blades of one part are numbered alike, whichever kernel has read it."""
+    move = np.eye(4)
+    move[:3, :3] = turned
+    rotor = blades_of(parts["blisk"].transformed(move))
+    assert rotor.axis == pytest.approx([0, 0, -1], abs=1e-9)
+
+
 @pytest.mark.parametrize("moved", [True, False])
 def test_a_blade_missing_or_moved_is_refused_with_its_reason(moved, parts, found):
     part = parts["blisk"]

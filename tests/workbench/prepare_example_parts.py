@@ -26,6 +26,7 @@ PLANS = {
     "bosses": ("bosses", "torus:10x1", 0.3, {**WIDE}),
     "blisk": ("blisk", "torus:10x1", 0.2, {"regions": 1, **SLENDER}),
     "kj66": ("kj66_impeller", "tapered:2x1x3", 0.2, {"faces": [7, 9], **SLIM}),
+    "kj66-whole": ("kj66_impeller", "tapered:2x1x3", 0.2, {**SLIM}),
     "freeform-sturz": ("freeform", "torus:12x1", 0.5, {"strategy": "sturz", **TABLE}),
     "trimmed-sturz": ("trimmed", "torus:16x2", 0.5, {"strategy": "sturz", **TABLE}),
 }

@@ -114,9 +114,9 @@ def test_the_search_through_freecad_comes_to_the_same_plan(commands, again):
         assert (ours["face"], ours["label"], ours["kind"]) == (theirs["face"], theirs["label"], theirs["kind"])
         assert ours["area"] == pytest.approx(theirs["area"], rel=1e-9)
         assert ours["orientation"]["outcome"] == theirs["orientation"]["outcome"]
-        # Symmetric faces have two best axes; which one is found, and how closely, hangs on the kernel's last digits.
-        assert ours["orientation"]["length"] == pytest.approx(theirs["orientation"]["length"], rel=1e-3)
-        assert ours["travel"] == pytest.approx(theirs["travel"], rel=1e-3)
+        assert ours["orientation"]["axis"] == pytest.approx(theirs["orientation"]["axis"], abs=1e-6)
+        assert ours["orientation"]["length"] == pytest.approx(theirs["orientation"]["length"], rel=1e-6)
+        assert ours["travel"] == pytest.approx(theirs["travel"], rel=1e-6)
 
 
 def test_a_division_comes_to_the_same_through_the_document(prepared):

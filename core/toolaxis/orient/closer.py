@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.ties import settled
 from toolaxis.orient.contacts import Contacts
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.verdicts import FREE, GOUGE
@@ -42,7 +43,7 @@ def closer(feasibility: Feasibility, axis: Array, contacts: Contacts) -> Closer:
     reason, amount, _ = feasibility.verdict(trouble, contacts)
     hit = (trouble.reason != FREE) & (reason != FREE)
     bad = np.flatnonzero(hit & ~trouble.wall if (hit & ~trouble.wall).any() else hit)
-    bad = bad[np.argsort(-trouble.amount[bad], kind="stable")][:_MOST]
+    bad = bad[np.argsort(-settled(trouble.amount[bad]), kind="stable")][:_MOST]
     gouged = [i for i in bad if trouble.reason[i] == GOUGE and trouble.face[i] >= 0]
     skin = feasibility.groups[0].faces
     points = [nearest(skin[int(trouble.face[i])], trouble.point[i][None]).point for i in gouged]

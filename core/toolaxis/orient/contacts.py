@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.distances import judged, motions
+from toolaxis.numeric.ties import settled
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
@@ -85,6 +86,6 @@ def around(face: Face, count: int) -> Array:
         fine = np.vstack([fine, closed[-1:]])
         length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(fine).point, axis=0), axis=1))])
         wanted = max(8, round(count * length[-1] / total)) if total > 0 else 8
-        at = np.searchsorted(length, np.linspace(0, length[-1], wanted, endpoint=False))
+        at = np.searchsorted(settled(length), settled(np.linspace(0, length[-1], wanted, endpoint=False)))
         rows += [fine[at], loop] if len(loop) <= wanted // 2 else [fine[at]]
     return np.concatenate(rows)

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.distances import bounded, motions
 from toolaxis.contact.placing import tips
 from toolaxis.machine.limits import AxisLimits, refusal
+from toolaxis.numeric.ties import settled
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.orient.cloud import deepest
 from toolaxis.orient.contacts import Contacts, around, contacts_at
@@ -125,7 +126,7 @@ class Feasibility:
         """Contacts for screening: a coarse grid, points along the border, and the most concave places."""
         grid = self.face.grid(5, 5)
         fine = self.face.grid(24, 24)
-        bent = fine[np.argsort(-self.face.curvature(fine).k1, kind="stable")[:6]]
+        bent = fine[np.argsort(-settled(self.face.curvature(fine).k1), kind="stable")[:6]]
         rows = [grid, bent, around(self.face, 24)]
         return self._contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
 
@@ -234,12 +235,12 @@ class Feasibility:
         """
         left = trouble.wall & (trouble.reason != FREE)
         bad = (trouble.reason != FREE) & ~left
-        unreached = float(contacts.share[left].sum())
+        unreached = float(settled(contacts.share[left].sum()))
         if not bad.any() and ((left | (contacts.share == 0)).all() or unreached > MOST_LEFT):
             bad = left
         if not bad.any():
             return FREE, 0.0, unreached
-        i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
+        i = int(np.argmax(np.where(bad, settled(trouble.amount), -np.inf)))
         return int(trouble.reason[i]), float(trouble.amount[i]), unreached
 
     def trouble(self, axis: Array, contacts: Contacts, thorough: bool = True,
@@ -313,7 +314,7 @@ class Feasibility:
         """
         if not bad.any():
             return None
-        i = int(np.argmax(np.where(bad, trouble.amount, -np.inf)))
+        i = int(np.argmax(np.where(bad, settled(trouble.amount), -np.inf)))
         group, amount = self.groups[int(trouble.group[i])], float(trouble.amount[i])
         label = group.faces[int(trouble.face[i])].label if trouble.face[i] >= 0 else ""
         distance = float(group.required[max(int(trouble.reason[i]) - CUTTER, 0)]) - amount

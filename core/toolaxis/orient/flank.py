@@ -9,6 +9,7 @@ from math import cos, radians
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.ties import signed
 from toolaxis.orient.feasible import Feasibility
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ def flank_axes(feasibility: Feasibility) -> Array:
     """
     normals, mean = feasibility.normals.samples, feasibility.normals.mean
     size, directions = np.linalg.eigh(normals.T @ normals / len(normals))
-    along = directions[:, 0]
+    along = signed(directions[:, 0])
     out = mean - (mean @ along) * along
     if size[1] - size[0] < _APART or not (normals @ out > 0).all():
         return np.empty((0, 3))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.machine.limits import AxisLimits
+from toolaxis.numeric.ties import settled, settled_prices
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.closer import Closer
 from toolaxis.orient.feasible import Feasibility
@@ -37,7 +38,7 @@ class Ledger:
     passes, length : (n, 2) array
         For feed "u" and "v", what is left to a clean-up tool charged; as if the axis were free.
     values : (n, 2) array
-        What is to be least, for both feeds, charged, whether the axes are free or not.
+        What is to be least, for both feeds, charged, whether the axes are free or not; rounded.
     counts : int
         Exact counts made.
     closer : int
@@ -148,11 +149,11 @@ class Ledger:
         passes, length, values = prices
         self.axes = np.concatenate([self.axes, axes])
         self.reason = np.concatenate([self.reason, verdict.reason])
-        self.amount = np.concatenate([self.amount, verdict.amount])
+        self.amount = np.concatenate([self.amount, settled(verdict.amount)])
         self.unreached = np.concatenate([self.unreached, verdict.unreached])
         self.passes = np.concatenate([self.passes, passes])
         self.length = np.concatenate([self.length, length])
-        self.values = np.concatenate([self.values, values])
+        self.values = np.concatenate([self.values, settled_prices(values)])
 
     @property
     def price(self) -> Array:
@@ -213,7 +214,7 @@ class Ledger:
         self.reason[free], self.amount[free] = self.feasibility.quick(self.axes[free])
 
     def count(self, axis: Array, feed: int, unreached: float) -> tuple[float, float, float]:
-        """Exact value, passes and length of an axis for one feed; the value is charged for what stays.
+        """Exact value, passes and length of an axis for one feed; the value is charged for what stays, and rounded.
 
         Parameters
         ----------
@@ -226,7 +227,7 @@ class Ledger:
         self.counts += 1
         passes, length = self.worth.counted(axis, FEEDS[feed])
         value = self.worth.value(axis, feed, passes, length)
-        return value * self.worth.charge(length, unreached), passes, length
+        return float(settled_prices(value * self.worth.charge(length, unreached))), passes, length
 
     def map(self) -> AxisMap:
         """The axes as the result carries them."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import bounded, judged, segment_motions
 from toolaxis.contact.gouge import depth_from_distance
+from toolaxis.numeric.ties import settled
 from toolaxis.orient.setting import OTHER, SKIN, Group
 from toolaxis.orient.standing import COARSE, FINE
 from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
@@ -106,7 +107,7 @@ def _broken(tool: Tool, group: Group, moves: Array) -> Witness | None:
     fine = FINE if group.role != OTHER else COARSE
     found = bounded(group.cells, tool, moves[rows], group.required + 2 * fine, fine)
     amount = group.required - found.lower
-    i, c = np.unravel_index(int(np.argmax(amount)), amount.shape)
+    i, c = np.unravel_index(int(np.argmax(settled(amount))), amount.shape)
     code = GOUGE if group.role == SKIN and c == 0 else CUTTER + int(c)
     k = int(found.face[i, c])
     return Witness(code, max(float(amount[i, c]), 0.0), group.faces[k].label if k >= 0 else "", found.point[i, c],
@@ -118,7 +119,7 @@ def _least(tool: Tool, group: Group, moves: Array, components: tuple[int, ...], 
     if not components:
         return {}
     asked, best = _only(group, components), np.full(3, most + _ROUGH)
-    order = np.argsort(moves[:, 0] @ moves[0, 2], kind="stable")
+    order = np.argsort(settled(moves[:, 0] @ moves[0, 2]), kind="stable")
     for first in range(0, len(order), _BATCH):
         least = bounded(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH, asked).lower.min(axis=0)
         best = np.where(least < best - _ROUGH, least, best)

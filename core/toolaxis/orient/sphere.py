@@ -10,6 +10,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.ties import settled
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.orient.flank import flank_axes
 from toolaxis.orient.hunt import hunt
@@ -122,7 +123,7 @@ def ties(ledger: Ledger) -> list[Candidate]:
     ledger : Ledger
     """
     free = np.flatnonzero(np.isfinite(ledger.price))
-    away = angle_between(ledger.axes[free], ledger.feasibility.normals.mean)
+    away = settled(angle_between(ledger.axes[free], ledger.feasibility.normals.mean))
     free = free[np.argsort(away, kind="stable")][:48]
     room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
     order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
@@ -237,7 +238,7 @@ def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
     if len(tied) < 2:
         return found
     mean, judged = ledger.feasibility.normals.mean, ledger.feasibility
-    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES), float(angle_between(c.axis, mean))))
+    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES), float(settled(angle_between(c.axis, mean)))))
     return tied + found[len(tied):]
 
 

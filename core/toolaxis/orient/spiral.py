@@ -5,6 +5,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.numeric.ties import signed
 from toolaxis.numeric.vectors import perpendicular, unit
 
 Array = NDArray[np.float64]
@@ -12,6 +13,8 @@ Array = NDArray[np.float64]
 _GOLDEN = pi * (3.0 - 5.0**0.5)
 #: No axis of the cap is farther from the nearest one of the spiral than this many spacings (tested).
 COVER = 0.98
+#: Normals that spread alike to within this share, or as much to one side as to the other, tell no direction.
+_EVEN = 1e-9
 
 
 def spiral(frame: ArrayLike, spacing: float, most: float = pi / 2) -> Array:
@@ -61,7 +64,9 @@ def ring(axis: Array, angle: float, turn: float = 0.0, count: int = 6) -> Array:
 
 
 def own_frame(normals: Array, middle: Array) -> Array:
-    """A frame that moves with a set of normals: z in their middle, x where they spread most.
+    """A frame that moves with a set of normals: z in their middle, x where they spread most, towards the longer side.
+
+    Where they spread alike, the axes of space decide, not the last digits of the normals.
 
     Parameters
     ----------
@@ -76,9 +81,11 @@ def own_frame(normals: Array, middle: Array) -> Array:
     flat = normals - (normals @ middle)[:, None] * middle
     values, vectors = np.linalg.eigh(flat.T @ flat)
     x = vectors[:, 2] - (vectors[:, 2] @ middle) * middle
-    if values[2] <= 1e-12 * len(normals) or np.linalg.norm(x) < 0.5:
+    alike = values[2] <= 1e-12 * len(normals)
+    if alike or values[2] - values[1] <= _EVEN * values[2] or np.linalg.norm(x) < 0.5:
         x = perpendicular(middle)[0]
-    x = unit(x)
-    skew = float(((flat @ x) ** 3).sum())
-    x = -x if skew < 0 else x
+    x = signed(unit(x))
+    cubes = (flat @ x) ** 3
+    if not alike and cubes.sum() < -_EVEN * np.abs(cubes).sum():
+        x = -x
     return np.stack([x, np.cross(middle, x), middle])

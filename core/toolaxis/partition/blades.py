@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
+from toolaxis.numeric.ties import signed
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
@@ -77,7 +78,7 @@ class Bladed:
     Attributes
     ----------
     point, axis : (3,) array
-        A point of the axis, mm, and its direction.
+        A point of the axis, mm, and its direction, in the sense whose first component that is not zero is negative.
     blades : tuple of Blade
         In the order in which a right-handed turn about the axis meets them.
     hub : tuple of int
@@ -129,7 +130,8 @@ def blades_of(part: Part) -> Bladed:
     sculptured = [face.number for face in part.sculptured]
     if not sculptured:
         raise NoPattern("the part has no sculptured face: blades are looked for among those")
-    point, axis, count, strangers = _pattern(part, samples, sculptured)
+    point, line, count, strangers = _pattern(part, samples, sculptured)
+    axis = -signed(line)
     if strangers:
         raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
                                   f"{strangers[0]} the first): blades are missing or moved; choose faces by hand")
