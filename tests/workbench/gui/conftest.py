@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ElementTree
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from weakref import ref
 
 import pytest
 
@@ -61,6 +62,11 @@ def nothing_ends():
             gc.enable()
 
 
+def form_of(opened):
+    """The widget of a task panel, or a window itself."""
+    return getattr(opened, "form", opened)
+
+
 class Leaver:
     """Ends the process at once with the tests' status: the interpreter crashes while a window closes."""
 
@@ -106,7 +112,27 @@ class Desk:
         FreeCADGui.activateWorkbench("ToolAxisWorkbench")
         self.pump(0.3)
         self.errors, self.held, self.box = [], [], None
+        self.opened = []
+        self._record()
+        self.reports = [w for w in self.children(self.widgets.QTextEdit)  # the window keeps them to its end
+                        if "Report" in w.objectName() or "Report" in w.metaObject().className()]
         sys.excepthook = lambda kind, value, trace: self.errors.append(f"{kind.__name__}: {value}")
+
+    def _record(self):
+        """Let task panels and windows of pictures be known from when they are made until Qt deletes their forms."""
+        from freecad.toolaxis.panels.panel import Panel
+        from freecad.toolaxis.panels.pictures import PictureWindow
+
+        def recorded(usual):
+            def __init__(one, *given):
+                usual(one, *given)
+                known = ref(one)
+                self.opened.append(known)
+                form_of(one).destroyed.connect(lambda *_: self.opened.remove(known))
+            return __init__
+
+        for kind in (Panel, PictureWindow):
+            kind.__init__ = recorded(kind.__init__)
 
     def pump(self, seconds=0.05):
         """Let the window live for a while, and for some turns of its loop however busy the machine is."""
@@ -123,12 +149,6 @@ class Desk:
             assert time.monotonic() < end, f"waited {limit:.0f} s in vain until {what}"
             self.pump(0.02)
             time.sleep(PAUSE)
-
-    def find(self, name, kind=None):
-        """A visible widget by its name."""
-        found = [one for one in self.children(kind or self.widgets.QWidget) if one.objectName() == name]
-        assert found, f"there is no widget {name}"
-        return found[0]
 
     def is_a(self, widget, kind):
         """Whether a widget is of a class in Qt too: Python's object may be that of a dead one at the same address, and
@@ -149,22 +169,15 @@ class Desk:
             return [one for one in found if self.is_a(one, kind)]
 
     def form(self, name):
-        """The form of a task panel, or None."""
-        found = [w for w in self.children(self.widgets.QWidget) if w.objectName() == name and w.isVisible()]
-        if not found or type(found[-1]) is self.widgets.QWidget:
-            return found[-1] if found else None
-        # a dialog, or what PySide2 keeps of a deleted widget that stood at the same address
-        return self.form_of_panel(name) or found[-1]
+        """The form of an open task panel, or an open window of pictures, as the add-on itself holds it; or None.
 
-    @staticmethod
-    def form_of_panel(name):
-        """The form of an open panel, as the panel itself holds it."""
-        from freecad.toolaxis.panels.panel import Panel
-
-        for panel in (one for one in gc.get_objects() if issubclass(type(one), Panel)):
-            with suppress(RuntimeError):  # it is closed, and its form was deleted
-                if panel.form is not None and panel.form.objectName() == name and panel.form.isVisible():
-                    return panel.form
+        Qt is not asked for all its widgets, since some tests look ten times a second: an answer has Python's objects
+        of a thousand, now and then one of a dead widget among them.
+        """
+        for one in filter(None, [known() for known in self.opened]):
+            with suppress(RuntimeError):  # it was deleted
+                if form_of(one).objectName() == name and form_of(one).isVisible():
+                    return form_of(one)
         return None
 
     def press(self, button):
@@ -329,10 +342,7 @@ class Desk:
 
     def reported(self):
         """What stands in the report view that looks like an error, each with the lines after it."""
-        with nothing_ends():
-            texts = [w.toPlainText() for w in self.children(self.widgets.QTextEdit)
-                     if "Report" in w.objectName() or "Report" in w.metaObject().className()]
-        lines = [line for text in texts for line in text.splitlines()]
+        lines = [line for report in self.reports for line in report.toPlainText().splitlines()]
         bad = [k for k, line in enumerate(lines) if any(word in line for word in ("Traceback", "Error", "xception"))]
         return ["\n".join(lines[k:k + 12]) for k in bad]
 

@@ -198,7 +198,3 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
         assert rate == pytest.approx(1000, abs=1e-6), "not 1000.2, from 16.67 mm/s"
     finally:
         FreeCAD.Units.setSchema(before)
-
-
-def test_the_panel_is_found_without_the_widgets_of_the_window(desk, form):
-    assert desk.form_of_panel("ToolAxisPlan") is form and desk.form_of_panel("ToolAxisVerify") is None
