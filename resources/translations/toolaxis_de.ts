@@ -143,6 +143,10 @@
    <translation>Ordner für die Bilder</translation>
   </message>
   <message>
+   <source>FreeCAD has mixed up this panel with one that was closed: open it once more, or start FreeCAD anew</source>
+   <translation>FreeCAD hat dieses Fenster mit einem geschlossenen verwechselt: bitte noch einmal öffnen oder FreeCAD neu starten</translation>
+  </message>
+  <message>
    <source>Give a folder.</source>
    <translation>Bitte einen Ordner angeben.</translation>
   </message>

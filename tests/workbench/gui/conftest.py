@@ -112,7 +112,7 @@ class Desk:
         FreeCADGui.activateWorkbench("ToolAxisWorkbench")
         self.pump(0.3)
         self.errors, self.held, self.box = [], [], None
-        self.opened = []
+        self.opened, self.made = [], []
         self._record()
         self.reports = [w for w in self.children(self.widgets.QTextEdit)  # the window keeps them to its end
                         if "Report" in w.objectName() or "Report" in w.metaObject().className()]
@@ -128,6 +128,7 @@ class Desk:
                 usual(one, *given)
                 known = ref(one)
                 self.opened.append(known)
+                self.made.append(known)
                 form_of(one).destroyed.connect(lambda *_: self.opened.remove(known))
             return __init__
 
@@ -346,6 +347,11 @@ class Desk:
         bad = [k for k, line in enumerate(lines) if any(word in line for word in ("Traceback", "Error", "xception"))]
         return ["\n".join(lines[k:k + 12]) for k in bad]
 
+    def kept(self):
+        """What is still there of panels and windows of pictures that are closed: only Python holds it, without need."""
+        self.made = [known for known in self.made if known() is not None]
+        return [type(known()).__name__ for known in self.made]
+
     def tidy(self):
         """Close the panel and all documents, unsaved as they are."""
         import FreeCAD
@@ -378,13 +384,15 @@ def _desk(request):
 
 @pytest.fixture
 def desk(_desk):
-    """The desk; afterwards nothing may stand on the report view, and no exception may have been raised in a slot."""
+    """The desk; afterwards nothing may stand on the report view, no exception may have been raised in a slot, and
+    panels that were closed must be gone."""
     _desk.errors.clear()
     before = len(_desk.reported())
     yield _desk
     _desk.tidy()
     assert not _desk.errors, _desk.errors
     assert not _desk.reported()[before:], _desk.reported()[before:]
+    assert not _desk.kept(), _desk.kept()
 
 
 @pytest.fixture(scope="session")

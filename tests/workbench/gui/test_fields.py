@@ -47,6 +47,44 @@ def test_a_form_that_is_dead_is_loaded_again(desk, monkeypatch):
     assert form is loaded[1] and len(loaded) == 2
 
 
+@pytest.mark.parametrize("whole", [True, False], ids=["form", "widget"])
+def test_a_form_with_objects_of_dead_widgets_is_loaded_again_without_touching_them(desk, monkeypatch, whole):
+    from freecad.toolaxis.panels import fields
+
+    first, loaded = fields.FreeCADGui.PySideUic.loadUi(str(fields.RESOURCES / "ui" / "verify.ui")), []
+
+    class Loader:
+        @staticmethod
+        def loadUi(file, load=fields.FreeCADGui.PySideUic.loadUi):
+            form = load(file)
+            if not loaded:  # as the bindings hand out what was known at an address: of the right class and name
+                form.verify = first.verify
+            loaded.append(first if whole and not loaded else form)
+            return loaded[-1]
+
+    monkeypatch.setattr(fields.FreeCADGui, "PySideUic", Loader)
+    form = fields.load_form("verify")
+    assert form is loaded[1] and form is not first and form.verify is not first.verify and len(loaded) == 2
+
+
+def test_a_form_that_is_spoilt_each_time_is_not_shown(desk, monkeypatch):
+    from freecad.toolaxis.panels import fields
+
+    form = fields.FreeCADGui.PySideUic.loadUi(str(fields.RESOURCES / "ui" / "verify.ui"))
+    monkeypatch.setattr(fields.FreeCADGui, "PySideUic", type("Loader", (), {"loadUi": staticmethod(lambda _: form)}))
+    with pytest.raises(RuntimeError, match="open it once more"):
+        fields.load_form("verify")
+
+
+def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
+    desk.computed(form)
+    known = desk.opened[-1]
+    assert known().view.plan is not None
+    desk.press(desk.standard_button("Cancel"))
+    desk.tidy()
+    assert known() is None
+
+
 def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
     from freecad.toolaxis.panels import fields
     from PySide import QtWidgets

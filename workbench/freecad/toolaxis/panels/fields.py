@@ -8,6 +8,11 @@ import FreeCADGui
 from FreeCAD import Units
 from PySide import QtCore, QtWidgets
 
+try:
+    import shiboken6 as shiboken
+except ImportError:  # FreeCAD 1.0
+    import shiboken2 as shiboken
+
 from .. import RESOURCES
 from ..tasks import clear_away
 from . import palette
@@ -24,14 +29,20 @@ def load_form(name):
     """The widget of a layout file.
 
     Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
-    is of another class or raises when touched (seen: a QWidget instead of a slider or a layout, a dead box of buttons
-    instead of the form).  So these are collected first; where that does not do, the file is loaded again, elsewhere in
-    memory.  Panels take widgets and layouts by their names here, as they were looked at.
+    is of another class, raises when touched or ends FreeCAD (seen: a QWidget instead of a slider or a layout, a dead
+    box of buttons instead of the form, a former form with all its dead widgets).  So these are collected first; where
+    that does not do, the file is loaded again, elsewhere in memory.  Panels take widgets and layouts by their names
+    here, as they were looked at.
 
     Parameters
     ----------
     name : str
         Without its ending.
+
+    Raises
+    ------
+    RuntimeError
+        Where every loading met dead widgets.
     """
     file = RESOURCES / "ui" / f"{name}.ui"
     root = next(ElementTree.parse(file).iter("widget"))
@@ -41,10 +52,14 @@ def load_form(name):
     spoilt = []
     clear_away()
     for _ in range(_LOADINGS):
+        known = shiboken.getAllValidWrappers()  # held meanwhile: what is new cannot be mistaken for one of these
         form = FreeCADGui.PySideUic.loadUi(str(file))
-        if _sound(form, root.get("name"), {**widgets, **layouts}):
+        if _sound(form, root.get("name"), {**widgets, **layouts}, {id(one) for one in known}):
             break
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
+    else:
+        raise RuntimeError(translate("ToolAxis", "FreeCAD has mixed up this panel with one that was closed: open it "
+                                                 "once more, or start FreeCAD anew"))
     for name in widgets:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
         widget = getattr(form, name, None)
         if isinstance(widget, QtWidgets.QWidget) and not widget.whatsThis():
@@ -52,12 +67,19 @@ def load_form(name):
     return form
 
 
-def _sound(form, name, expected):
-    """Whether a form, its widgets and its layouts are what the file says, and none is the object of a dead one."""
+def _sound(form, name, expected, known):
+    """Whether a form, its widgets and its layouts are what the file says, and none has a dead one's Python object.
+
+    Objects that were there before, by their identities in `known`, are of dead widgets; these are not touched.
+    """
+    held = vars(form)
+    found = {child: held.get(child) for child in expected}
+    if any(id(one) in known for one in (form, *found.values())):
+        return False
     try:
         return form.objectName() == name and all(
-            isinstance(getattr(form, child, None), kind) and getattr(form, child).objectName() == child
-            and _parts_sound(getattr(form, child)) for child, kind in expected.items())
+            isinstance(one, expected[child]) and one.objectName() == child and _parts_sound(one)
+            for child, one in found.items())
     except RuntimeError:  # "Internal C++ object already deleted"
         return False
 

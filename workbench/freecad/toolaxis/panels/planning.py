@@ -128,7 +128,7 @@ class PlanPanel(Panel):
         form.stop.clicked.connect(self.stop)
         form.pictures.clicked.connect(self.draw)
         self.view.changed.connect(self._show_state)
-        self.view.told.connect(lambda text: self._tell(text, bad=True))
+        self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
 
     def _add_faces(self):
@@ -198,6 +198,10 @@ class PlanPanel(Panel):
 
     def _tell(self, text, bad=False):
         tell(self.form.message, text, bad)
+
+    def _warn(self, text):
+        """A slot of its own: the bindings hold a function without a name, and with it the panel, to the end."""
+        self._tell(text, bad=True)
 
     # computing
 
