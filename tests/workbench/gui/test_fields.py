@@ -76,15 +76,6 @@ def test_a_form_that_is_spoilt_each_time_is_not_shown(desk, monkeypatch):
         fields.load_form("verify")
 
 
-def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
-    desk.computed(form)
-    known = desk.opened[-1]
-    assert known().view.plan is not None
-    desk.press(desk.standard_button("Cancel"))
-    desk.tidy()
-    assert known() is None
-
-
 def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
     from freecad.toolaxis.panels import fields
     from PySide import QtWidgets

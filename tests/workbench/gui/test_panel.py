@@ -161,6 +161,15 @@ def test_a_change_after_computing_locks_ok(desk, form, remembered):
     assert not desk.standard_button("Ok").isEnabled() and "compute again" in form.message.text()
 
 
+def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
+    desk.computed(form)
+    known = desk.opened[-1]
+    assert known().view.plan is not None
+    desk.press(desk.standard_button("Cancel"))
+    desk.tidy()
+    assert known() is None
+
+
 def test_limits_that_leave_no_axis(desk, form):
     form.tabs.setCurrentWidget(form.limitsTab)
     form.limits.setCurrentIndex(1)

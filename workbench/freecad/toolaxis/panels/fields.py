@@ -60,9 +60,9 @@ def load_form(name):
     else:
         raise RuntimeError(translate("ToolAxis", "FreeCAD has mixed up this panel with one that was closed: open it "
                                                  "once more, or start FreeCAD anew"))
-    for name in widgets:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
-        widget = getattr(form, name, None)
-        if isinstance(widget, QtWidgets.QWidget) and not widget.whatsThis():
+    for child in widgets:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
+        widget = getattr(form, child)
+        if not widget.whatsThis():
             widget.setWhatsThis(widget.toolTip())
     return form
 
