@@ -1,7 +1,8 @@
 """`make bench`: run every benchmark of this folder, or those that are named, and print their tables.
 
 Each module has a `main()` that prints.  A module that cannot run says why, and the others go on.  With ``--short``
-those that have a `short()` run that instead, on fewer faces.
+those that have a `short()` run that instead, on fewer faces.  A benchmark with a `run_with()` takes words of its own
+where it is the first that is named: ``python -m benchmarks real_parts FOLDER --sample 5``.
 """
 
 import importlib
@@ -34,11 +35,19 @@ def _processor() -> str:
         return platform.processor() or platform.machine()
 
 
+def _names() -> list[str]:
+    return sorted(path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
+
+
 def main(chosen: list[str]) -> int:
     """Run the benchmarks and return 1 where one failed."""
+    if len(chosen) > 1 and chosen[0] in _names() and not set(chosen) <= {*_names(), "--short"}:
+        module = importlib.import_module(f"benchmarks.{chosen[0]}")
+        if hasattr(module, "run_with"):
+            return int(module.run_with(chosen[1:]))
     brief = "--short" in chosen
     chosen = [name for name in chosen if name != "--short"]
-    names = sorted(path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
+    names = _names()
     unknown = sorted(set(chosen) - set(names))
     if unknown:
         print(f"no benchmark is called {unknown[0]}: there are {', '.join(names)}", file=sys.stderr)
