@@ -119,7 +119,7 @@ def outcomes(areas: Mapping[int, float], plan: Document | None, planned: Ran, ve
             found = _without_plan(str(number), planned, begun)
             found["verified_area"] = 0.0
         rows.append({"face": number, "area": area, **found, "plan_seconds": took.get(str(number)),
-                     "judge_seconds": sum(judging.get(op["name"], 0.0) for op in some) if judging else None,
+                     "judge_seconds": sum(judging.get(op["name"], 0.0) for op in some) if some and judging else None,
                      "operations": [op["name"] for op in some]})
     return rows
 
