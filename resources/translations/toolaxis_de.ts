@@ -71,6 +71,10 @@
    <translation>Nach Kollisionen konnte nicht gesucht werden: {}</translation>
   </message>
   <message>
+   <source>Copy details</source>
+   <translation>Einzelheiten kopieren</translation>
+  </message>
+  <message>
    <source>Copy of {}</source>
    <translation>Kopie von {}</translation>
   </message>
@@ -437,6 +441,10 @@
   <message>
    <source>The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose.</source>
    <translation>Der Fräser berührt die Fläche an zwei Punkten, wo sie hohl ist. Braucht einen Schaft- oder Torusfräser.</translation>
+  </message>
+  <message>
+   <source>The document was not changed. Please report the error with the copied details and, if you can, the part.</source>
+   <translation>Das Dokument wurde nicht verändert. Bitte melden Sie den Fehler mit den kopierten Einzelheiten und, wenn möglich, dem Teil.</translation>
   </message>
   <message>
    <source>The map could not be drawn.</source>

@@ -82,6 +82,22 @@ def test_the_posted_program_lies_on_the_cl_data(stand, document, parts, posting)
     assert not [one.Name for one in document.Objects if "Invalid" in one.State]
 
 
+def test_a_program_of_a_tilted_plane_says_so_before_it_moves(document, parts, posting):
+    thing = parts.block(document)
+    operation, _ = planned(document, parts, thing, parts.sculptured_name(thing), (0.1, 0.2, 0.0))
+    job, = make_jobs(document, operation)
+    frame = frame_of(operation).Placement
+    axis = frame.Rotation.multVec(Vector(0, 0, 1))
+    before, _, _ = posting.posted(job).partition("\nG0 ")
+    assert "(TILTED PLANE - this program does not tilt it" in before
+    told = re.search(r"\(its Z, the tool axis, in the part: (\S+) (\S+) (\S+)\)", before)
+    assert Vector(*map(float, told.groups())).distanceToPoint(axis) < 2e-6
+
+
+def test_a_program_in_the_parts_own_plane_says_nothing_of_tilting():
+    assert cam_setup.plane_comments(Placement()) == []
+
+
 def test_each_orientation_is_a_job_and_shares_it(document, parts, posting):
     first, second = parts.block(document, "First"), parts.block(document, "Second")
     second.Placement.Base = Vector(0, 60, 0)

@@ -218,6 +218,10 @@ class Desk:
         self._key(line, self.qt.Qt.Key_Tab, "\t")
         self.pump(0.1)
 
+    def shown(self, widget):
+        """The text that a field shows."""
+        return widget.findChild(self.widgets.QLineEdit).text()
+
     def _key(self, widget, key, text):
         from PySide import QtGui
 

@@ -9,7 +9,7 @@ def test_panels_in_the_dark(desk, wavy):
         form.tabs.setCurrentWidget(getattr(form, f"{name}Tab"))
         desk.shot(f"{number}-{name}")
     form.tabs.setCurrentWidget(form.toolTab)
-    good = form.corner.property("text")
+    good = desk.shown(form.corner)
     desk.type(form.corner, "30 mm")
     desk.shot("9-refused")
     desk.type(form.corner, good)

@@ -144,7 +144,7 @@ def test_the_slider_moves_the_tool(desk, form, remembered):
 def test_impossible_values_lock_compute_with_the_reason(desk, form, field, text, words):
     widget = getattr(form, field)
     form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
-    good = widget.property("text")
+    good = desk.shown(widget)
     desk.type(widget, text)
     assert not form.compute.isEnabled() and words in form.message.text()
     if field == "corner":
@@ -180,6 +180,48 @@ def test_limits_that_leave_no_axis(desk, form):
     desk.shot("10-no-axis")
 
 
+@pytest.mark.parametrize(("typed", "shown"), [("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"),
+                                              ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"), ("0.1 kg", "0.02 mm"),
+                                              ("nonsense", "0.02 mm"), ("", "0.02 mm")])
+def test_a_bare_number_is_millimetres(desk, form, typed, shown):
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.02 mm")
+    desk.type(form.scallop, typed)
+    assert desk.shown(form.scallop) == shown
+
+
+def test_no_unit_system_shows_micrometres(desk, wavy, remembered):
+    import FreeCAD
+
+    before = FreeCAD.Units.getSchema()
+    try:
+        for number in range(len(FreeCAD.Units.listSchemas())):
+            FreeCAD.Units.setSchema(number)
+            form = desk.start(*wavy)
+            for field in (form.scallop, form.allowance, form.diameter, form.stickout):
+                assert desk.shown(field).split()[1] in ("mm", "in"), number
+            assert desk.shown(form.feedrate).split()[1] in ("mm/min", "in/min"), number
+            form.tabs.setCurrentWidget(form.jobTab)
+            desk.type(form.scallop, "0.1")
+            assert desk.shown(form.scallop).split() in (["0.10", "mm"], ["0.10", "in"]), number
+            desk.press(desk.standard_button("Cancel"))
+    finally:
+        FreeCAD.Units.setSchema(before)
+
+
+def test_the_wheel_changes_no_field_that_is_not_used(desk, form):
+    from PySide import QtCore, QtGui
+
+    form.tabs.setCurrentWidget(form.jobTab)
+    form.compute.setFocus()
+    before = desk.shown(form.scallop)
+    here = QtCore.QPointF(5, 5)
+    turn = QtGui.QWheelEvent(here, form.scallop.mapToGlobal(here), QtCore.QPoint(), QtCore.QPoint(0, 120),
+                             QtCore.Qt.NoButton, QtCore.Qt.NoModifier, QtCore.Qt.NoScrollPhase, False)
+    desk.app.sendEvent(form.scallop.focusProxy(), turn)
+    assert desk.shown(form.scallop) == before
+
+
 @pytest.mark.parametrize(("schema", "number"), [("ImperialDecimal", 3), ("MmMin", 6), ("Internal", 0)])
 def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
     import FreeCAD
@@ -191,13 +233,13 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
         form = desk.start(*wavy)
         inches = schema == "ImperialDecimal"
         form.tabs.setCurrentWidget(form.toolTab)
-        assert ("in" in form.diameter.property("text")) == inches
+        assert desk.shown(form.diameter).endswith(" in" if inches else " mm")
         desk.type(form.diameter, "0.25 in")
-        assert form.diameter.property("rawValue") == pytest.approx(6.35)
+        assert desk.shown(form.diameter) == ("0.25 in" if inches else "6.35 mm")
         assert ("in" in desk.text(form.holder, 0, 0)) == inches
         form.tabs.setCurrentWidget(form.jobTab)
         desk.type(form.scallop, "0.0125 mm")
-        assert form.scallop.property("rawValue") == pytest.approx(0.0125, rel=0.02)
+        assert desk.shown(form.scallop) == ("0.000492 in" if inches else "0.0125 mm")
         desk.shot(f"11-units-{schema}")
         desk.type(form.scallop, "0.05 mm")
         desk.computed(form)

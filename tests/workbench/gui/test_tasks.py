@@ -94,6 +94,21 @@ def test_errors_are_sentences(desk, reason, words):
     assert ears.heard[0][0] == "failed" and words in ears.heard[0][1]
 
 
+def test_an_error_inside_the_add_on_is_offered_to_copy(desk):
+    def compute(progress):
+        raise ValueError("odd")
+
+    _, ears = started(compute)
+    desk.wait(lambda: ears.heard, "it fails")
+    box = next(one for one in desk.children(desk.widgets.QMessageBox) if one.isVisible())
+    desk.press(next(button for button in box.buttons() if button.text().replace("&", "") == "Copy details"))
+    copied = desk.app.clipboard().text()
+    assert "toolaxis 0.1" in copied and "FreeCAD" in copied and "ValueError: odd" in copied
+    assert ears.heard[0][1] in copied and box.isVisible()
+    desk.shot("30-error-offered")
+    box.close()
+
+
 def test_an_error_of_the_library_is_its_own_sentence(desk):
     def compute(progress):
         from toolaxis.errors import InvalidInput

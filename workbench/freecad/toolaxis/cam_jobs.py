@@ -11,7 +11,7 @@ import FreeCAD
 
 from .arguments import document_of, operation_of, progress_of
 from .cam_offsets import offsets_for, tell_shared
-from .cam_setup import Passes, add_passes, bare_job, safe_height, tool_of
+from .cam_setup import Passes, add_passes, bare_job, plane_comments, safe_height, tool_of
 from .objects.belongings import child
 from .objects.copies import turned_copies
 from .objects.transaction import one_step
@@ -201,7 +201,7 @@ def _job(document, group, offset):
     job.Fixtures = offset
     height = safe_height(job, group, plane, plane)
     for one in group:
-        add_passes(job, controllers[tool_of(one)], one, (plane, height))
+        add_passes(job, controllers[tool_of(one)], one, (plane, height), plane_comments(plane))
     return job
 
 

@@ -229,7 +229,31 @@ def blocks(one, plane, height):
     return [*lines, top]
 
 
-def add_passes(job, controller, one, stands):
+def plane_comments(plane):
+    """What a program has to say before its first motion where FreeCAD's post-processors do not tilt the plane.
+
+    English, and without brackets inside: controls know no other letters.
+
+    Parameters
+    ----------
+    plane : FreeCAD.Placement
+        Frame that the coordinates stand in, in the document's space.
+
+    Returns
+    -------
+    list of str
+        Empty where the plane is the document's own.
+    """
+    if plane.isIdentity():
+        return []
+    matrix = matrix_of(plane)
+    along, axis, origin = ("{:.6f} {:.6f} {:.6f}".format(*(row + 0.0)) for row in matrix[:3, (0, 2, 3)].T)
+    return ["(TILTED PLANE - this program does not tilt it: set up part or head so before running)",
+            f"(its Z, the tool axis, in the part: {axis})", f"(its X in the part: {along})",
+            f"(its origin in the part: {origin})"]
+
+
+def add_passes(job, controller, one, stands, comments=()):
     """FreeCAD's own operation for given commands, with our passes.
 
     Parameters
@@ -238,6 +262,8 @@ def add_passes(job, controller, one, stands):
     one : Passes
     stands : (FreeCAD.Placement, float)
         Frame that the coordinates stand in, and the safe height there.
+    comments : sequence of str
+        What the program says before the first motion.
     """
     import Path.Op.Custom as Custom
 
@@ -250,7 +276,7 @@ def add_passes(job, controller, one, stands):
     made.OrientedFrom, made.MadeFor = one.operation, one.label
     made.ToolController = controller
     made.Source = "Text"
-    made.Gcode = blocks(one, plane, height)
+    made.Gcode = [*comments, *blocks(one, plane, height)]
     if made.ViewObject is not None:
         x, y, _ = _in_plane(one.path.cl[:1], plane)[0].tolist()
         _show_passes(made, FreeCAD.Vector(x, y, height))

@@ -23,7 +23,10 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
         from .commands import examples, register
+        from .panels.report import offer_report
+        from .tasks import hear_errors
 
+        hear_errors(offer_report)
         names = register()
         self.appendToolbar(QT_TRANSLATE_NOOP("Workbench", "Tool Axis"), names)
         menu = QT_TRANSLATE_NOOP("Workbench", "&Tool Axis")

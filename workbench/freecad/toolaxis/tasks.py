@@ -30,6 +30,8 @@ _PATIENCE = 3000
 #: How long a computation keeps the interpreter from the window that waits for it, and what it is without one, s.
 _TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
 
+#: Who hears of errors inside the add-on: callables that take the sentence and where it came from.
+_hearers: list[Callable[[str, str], Any]] = []
 #: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
 _running: set["_Thread"] = set()
 
@@ -45,7 +47,7 @@ class _Thread(QtCore.QThread):
         self.stop = Event()
         self.latest: tuple[str, float, float] | None = None
         self.result: Any = None
-        self.message = ""
+        self.message = self.trace = ""
         self.stopped = False
 
     def run(self) -> None:
@@ -68,11 +70,11 @@ class _Thread(QtCore.QThread):
             self.message = f"{reason}: install what is missing by the Addon Manager"
         except MemoryError:
             self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
-        except Exception as reason:  # our own bug: the panel says so, the traceback is for the log
+        except Exception as reason:  # our own bug: the panel says so, the traceback is for the report
             import traceback
 
             self.message = f"an error inside Tool Axis ({type(reason).__name__}: {sentence(reason)}); please report it"
-            FreeCAD.Console.PrintLog(traceback.format_exc())
+            self.trace = traceback.format_exc()
 
     def _report(self, stage: str, done: float, total: float) -> None:
         self.latest = (stage, done, total)
@@ -110,6 +112,30 @@ def clear_away() -> None:
     gc.collect()
     if _running:
         gc.freeze()
+
+
+def hear_errors(hearer: Callable[[str, str], Any]) -> None:
+    """Have a callable hear of every error inside the add-on, on the GUI thread.
+
+    Parameters
+    ----------
+    hearer : callable
+        Takes the sentence that the panel shows, and where the error came from.
+    """
+    if hearer not in _hearers:
+        _hearers.append(hearer)
+
+
+def tell_error(message: str, trace: str) -> None:
+    """Let those who hear of errors know of one; the log has it too.
+
+    Parameters
+    ----------
+    message, trace : str
+    """
+    FreeCAD.Console.PrintLog(trace)
+    for hearer in _hearers:
+        hearer(message, trace)
 
 
 def sentence(reason: BaseException) -> str:
@@ -198,6 +224,8 @@ class Work(QtCore.QObject):
         thread = self._thread
         if thread.message:
             self.failed.emit(thread.message)
+            if thread.trace:
+                tell_error(thread.message, thread.trace)
         elif thread.stopped or (thread.result is None and thread.stop.is_set()):
             self.cancelled.emit()
         else:

@@ -19,8 +19,9 @@ INPUTS = (
              True),
     Property("Length", "StickOut", _ASKED, "Length from the tip to the holder's lower face"),
     Property("Length", "FluteLength", _ASKED, "Length of the cutting edge from the tip; 0: two diameters"),
-    Property("Length", "Scallop", _ASKED, "Greatest scallop height"),
-    Property("Length", "Allowance", _ASKED, "Stock left on the face"),
+    # Set in the panel: FreeCAD's own editor of properties shows 0.02 mm as 20 µm, and takes 0.1 for 0.1 µm.
+    Property("Length", "Scallop", _ASKED, "Greatest scallop height; double-click the operation to change it", True),
+    Property("Length", "Allowance", _ASKED, "Stock left on the face; double-click the operation to change it", True),
     Property("String", "Limits", _ASKED, "Limits of the axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
     Property("LinkListGlobal", "Obstacles", _ASKED, "Bodies to avoid"),
     Property("Enumeration", "Objective", _ASKED, "What is to be least", False, False, ("length", "passes")),

@@ -21,6 +21,8 @@ def ensure(thing, properties):
     known, added = set(thing.PropertiesList), []
     for one in properties:
         if one.name in known:
+            if one.fixed and not one.hidden:  # an older version may have let the user edit it
+                thing.setEditorMode(one.name, ["ReadOnly"])
             continue
         thing.addProperty(f"App::Property{one.kind}", one.name, one.group, one.text, 0, one.fixed, one.hidden)
         if one.choices:

@@ -100,7 +100,7 @@ def missed(code, amount):
     amount : float
         mm or rad.
     """
-    from .fields import fine_text
+    from .quantity import fine_text
 
     if not (np.isfinite(amount) and amount > 0):
         return ""

@@ -5,6 +5,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from . import palette
 from .hemisphere import place_of
+from .quantity import length_text
 
 translate = FreeCAD.Qt.translate
 
@@ -99,8 +100,7 @@ class OrientationCurve(QtWidgets.QWidget):
         """
         first = self.cost(self.options[0])
         cost = self.cost(option)
-        text = translate("ToolAxis", "{:.0f} s").format(cost) if self.timed else FreeCAD.Units.Quantity(
-            float(cost), FreeCAD.Units.Length).UserString
+        text = translate("ToolAxis", "{:.0f} s").format(cost) if self.timed else length_text(cost, 0, 0)
         told = translate("ToolAxis", "Different axes: {}; sub-surfaces: {}; {}").format(
             option.orientations, option.sub_surfaces, text)
         if option is self.options[0] or not first > 0:
@@ -156,8 +156,7 @@ class OrientationCurve(QtWidgets.QWidget):
         for one in {max(costs), min(costs)}:
             option = next(option for option in self.options if self.cost(option) == one)
             box = QtCore.QRectF(0, self.position_of(option).y() - 7, _LEFT - 12, 14)
-            _, factor, unit = FreeCAD.Units.Quantity(float(one), FreeCAD.Units.Length).getUserPreferred()
-            text = f"{one:.0f} s" if self.timed else f"{one / factor:.4g} {unit}"
+            text = f"{one:.0f} s" if self.timed else length_text(one, 0, 0)
             painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
         box = QtCore.QRectF(_LEFT, _HEIGHT - 14, self.width() - _LEFT - _RIGHT, 14)
         painter.drawText(box, QtCore.Qt.AlignCenter, translate("ToolAxis", "different axes"))

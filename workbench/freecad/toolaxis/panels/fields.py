@@ -1,11 +1,9 @@
-"""Small fields of panels: quantities in FreeCAD's units, outlines of shank and holder."""
+"""Layouts of panels, their messages, and the outlines of shank and holder."""
 
-from math import ceil, floor, isclose, log10
 from xml.etree import ElementTree
 
 import FreeCAD
 import FreeCADGui
-from FreeCAD import Units
 from PySide import QtCore, QtWidgets
 
 try:
@@ -17,6 +15,7 @@ from .. import RESOURCES
 from ..tasks import clear_away
 from . import palette
 from .entries import data_of, put
+from .quantity import length_text, value_from_text
 
 translate = FreeCAD.Qt.translate
 
@@ -92,31 +91,6 @@ def _parts_sound(widget):
     return not isinstance(widget, QtWidgets.QAbstractItemView) or isinstance(widget.model(), QtCore.QAbstractItemModel)
 
 
-def length_text(value):
-    """A length as FreeCAD writes it.
-
-    Parameters
-    ----------
-    value : float
-        mm
-    """
-    return Units.Quantity(float(value), Units.Length).UserString
-
-
-def fine_text(value):
-    """A length that may be thousandths of a millimetre: in FreeCAD's unit, with four digits that count.
-
-    Parameters
-    ----------
-    value : float
-        mm
-    """
-    _, factor, unit = Units.Quantity(float(value), Units.Length).getUserPreferred()
-    number = float(value) / factor
-    digits = 2 if number == 0 else min(max(3 - floor(log10(abs(number))), 0), 7)
-    return f"{number:.{digits}f}" + ("" if unit == '"' else " ") + unit
-
-
 def tell(label, text, bad=False):
     """Show a sentence on a label, in a warning colour where it is bad; nothing is drawn anew without need.
 
@@ -133,64 +107,6 @@ def tell(label, text, bad=False):
     sentence = text if not text or text.endswith((".", "...")) else f"{text}."
     if label.text() != sentence:
         label.setText(sentence)
-
-
-class QuantityField:
-    """A Gui::QuantitySpinBox, read and set in one unit.
-
-    Parameters
-    ----------
-    widget : QWidget
-    unit : str
-        The unit of `value`, for instance "mm", "deg" or "mm/min".
-    decimals : int, optional
-        Digits behind the point at least, in that unit.
-    rounded : bool
-        Whether `value` has no more digits than these: 1000 mm/min have no end in mm/s.
-    """
-
-    def __init__(self, widget, unit="mm", decimals=None, rounded=False):
-        self.widget, self.unit, self.decimals, self.rounded = widget, unit, decimals, rounded
-        self._one = Units.Quantity(f"1 {unit}")
-        widget.setProperty("minimum", -1e9)
-        widget.setProperty("maximum", 1e9)
-
-    @property
-    def value(self):
-        """The number in the field's unit."""
-        number = float(self.widget.property("rawValue")) / self._one.Value
-        return round(number, self.decimals) if self.rounded else number
-
-    @value.setter
-    def value(self, number):
-        quantity = Units.Quantity(float(number) * self._one.Value, self._one.Unit)
-        form = quantity.Format
-        form["Precision"] = max(self._digits(), int(form["Precision"]))
-        quantity.Format = form  # the field keeps it, and rounds what is typed to as many digits
-        self.widget.setProperty("value", quantity)
-
-    def _digits(self):
-        """Digits behind the point that show as much in FreeCAD's unit as `decimals` do in the field's."""
-        if self.decimals is None:
-            return 0
-        factor = Units.Quantity(10.0 * self._one.Value, self._one.Unit).getUserPreferred()[1] / self._one.Value
-        return self.decimals + max(0, ceil(log10(factor)))
-
-    def on_change(self, slot):
-        """Call a slot without arguments whenever the value changes.
-
-        Parameters
-        ----------
-        slot : callable
-        """
-        seen = [self.value]
-
-        def told(_):
-            if not isclose(self.value, seen[0], rel_tol=1e-12, abs_tol=1e-12):  # 1.0 tells it when it is shown
-                seen[0] = self.value
-                slot()
-
-        self.widget.connect(self.widget, QtCore.SIGNAL("valueChanged(double)"), told)
 
 
 class OutlineTable:
@@ -254,17 +170,12 @@ class OutlineTable:
         known = data_of(self.table, row, column, _DATA)
         if known is not None and text == length_text(known):
             return float(known)
-        try:
-            quantity = Units.Quantity(text)
-            if quantity.Unit == Units.Unit():  # a bare number is in the unit that FreeCAD shows
-                quantity = Units.Quantity(text + " " + Units.Quantity(1.0, Units.Length).getUserPreferred()[2])
-            if not text or quantity.Unit != Units.Length:
-                raise ValueError
-        except Exception as reason:  # FreeCAD's parser raises an exception of its own kind
+        value = value_from_text(text, "mm")
+        if value is None:
             column_name = self.table.model().headerData(column, QtCore.Qt.Horizontal).lower()
             raise ValueError(translate("ToolAxis", "{} row {}: {} '{}' is not a length").format(
-                self.name, row + 1, column_name, text)) from reason
-        return float(quantity.Value)
+                self.name, row + 1, column_name, text))
+        return value
 
     def _add(self):
         count = self.table.rowCount()

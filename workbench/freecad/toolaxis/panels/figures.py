@@ -5,7 +5,7 @@ import numpy as np
 from PySide import QtWidgets
 
 from .entries import fit_rows, put
-from .fields import fine_text, length_text
+from .quantity import fine_text, length_text
 
 translate = FreeCAD.Qt.translate
 

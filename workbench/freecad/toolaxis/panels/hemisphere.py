@@ -8,6 +8,7 @@ from ..colours import coloured
 from . import palette
 from .axispicture import SIDE, missed, reason_name
 from .legend import draw_mark
+from .quantity import length_text
 
 translate = FreeCAD.Qt.translate
 
@@ -123,7 +124,7 @@ class HemisphereMap(QtWidgets.QWidget):
         lean = np.degrees(np.arccos(np.clip(picture.axes[row] @ picture.pole, -1, 1)))
         where = translate("ToolAxis", "{:.0f}° from the mean normal").format(lean)
         if picture.reason[row] == 0:
-            width = FreeCAD.Units.Quantity(float(picture.width[row]), FreeCAD.Units.Length).UserString
+            width = length_text(picture.width[row])
             return translate("ToolAxis", "strip width {}, about {:.0f} passes, {}").format(width, picture.passes[row],
                                                                                          where)
         amount = missed(picture.reason[row], picture.amount[row])

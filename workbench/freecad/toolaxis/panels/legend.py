@@ -7,6 +7,7 @@ from PySide import QtCore, QtGui, QtWidgets
 from ..colours import scale_colours
 from . import palette
 from .axispicture import reason_name
+from .quantity import length_text
 
 translate = FreeCAD.Qt.translate
 
@@ -153,7 +154,7 @@ class Legend(QtWidgets.QWidget):
             painter.drawText(QtCore.QRectF(0, 0, self.width(), 34), QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter,
                              translate("ToolAxis", "No axis is free."))
             return
-        low, high = (FreeCAD.Units.Quantity(float(v), FreeCAD.Units.Length).UserString for v in self.picture.span)
+        low, high = (length_text(width) for width in self.picture.span)
         bar = QtCore.QRectF(0, 2, self.width(), 12)
         painter.drawImage(bar, palette.image_of(scale_colours()[None]))
         painter.setBrush(QtCore.Qt.NoBrush)

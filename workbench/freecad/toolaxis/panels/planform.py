@@ -10,8 +10,9 @@ from PySide import QtWidgets
 from ..inputs import flute_of
 from ..machines import PREFIX, mounting
 from ..strategies import INDEXED, ROUGH, STRATEGIES, needs
-from .fields import OutlineTable, QuantityField
+from .fields import OutlineTable
 from .lists import BodyList, FaceList
+from .quantity import QuantityField
 
 translate = FreeCAD.Qt.translate
 
@@ -38,10 +39,11 @@ class PlanForm:
         self.shank, self.holder = OutlineTable(form, "shank"), OutlineTable(form, "holder")
         lengths = ("diameter", "corner", "fluteLength", "stickout")
         angles = ("taper", "cone", "tiltLow", "tiltHigh", "turnLow", "turnHigh")
-        self.quantities = {name: QuantityField(self._find(name), decimals=3) for name in lengths}
-        self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
-        self.quantities |= {name: QuantityField(self._find(name), decimals=4) for name in ("scallop", "allowance")}
-        self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", decimals=2, rounded=True)
+        self.quantities = {name: QuantityField(self._find(name)) for name in lengths}
+        self.quantities |= {name: QuantityField(self._find(name), "deg", (0, 4)) for name in angles}
+        self.quantities |= {name: QuantityField(self._find(name), decimals=(2, 5), step=0.005)
+                            for name in ("scallop", "allowance")}
+        self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.limits = self._find("limits", QtWidgets.QComboBox)
         self.spindle = self._find("spindle", QtWidgets.QSpinBox)

@@ -5,7 +5,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from ..colours import ABOVE, MISSED, scale_colours
 from . import palette
-from .fields import fine_text
+from .quantity import fine_text
 
 translate = FreeCAD.Qt.translate
 

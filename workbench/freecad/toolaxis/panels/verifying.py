@@ -12,11 +12,12 @@ from ..macros import record, thing_of
 from ..objects.belongings import child
 from ..objects.maps import drawn, shown_of
 from ..tasks import Work, sentence
-from .fields import fine_text, length_text, load_form, tell
+from .fields import load_form, tell
 from .figures import fill
 from .paint import WHAT, Paint, skins_of
 from .panel import Panel
 from .preview import view_of
+from .quantity import fine_text, length_text
 from .scale import Scale
 
 translate = FreeCAD.Qt.translate
