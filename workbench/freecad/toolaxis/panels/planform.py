@@ -40,7 +40,8 @@ class PlanForm:
         angles = ("taper", "cone", "tiltLow", "tiltHigh", "turnLow", "turnHigh")
         self.quantities = {name: QuantityField(self._find(name), decimals=3) for name in lengths}
         self.quantities |= {name: QuantityField(self._find(name), "deg") for name in angles}
-        self.quantities |= {name: QuantityField(self._find(name), decimals=4) for name in ("scallop", "allowance")}
+        heights = ("scallop", "tolerance", "allowance")
+        self.quantities |= {name: QuantityField(self._find(name), decimals=4) for name in heights}
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", decimals=2, rounded=True)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.limits = self._find("limits", QtWidgets.QComboBox)
@@ -252,7 +253,7 @@ class PlanForm:
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
         self.shank.rows, self.holder.rows = inputs.shank or (), inputs.holder or ()
-        for name in ("stickout", "scallop", "allowance", "feedrate"):
+        for name in ("stickout", "scallop", "tolerance", "allowance", "feedrate"):
             self.quantities[name].value = getattr(inputs, name) or 0.0
         self.quantities["fluteLength"].value = inputs.flute_length
         self.spindle.setValue(int(inputs.spindle))
@@ -278,7 +279,7 @@ class PlanForm:
         return {"faces": self.faces.faces, "tool": self.tool_text, "shank": self.shank.rows,
                 "holder": self.holder.rows, "stickout": self.quantities["stickout"].value,
                 "flute_length": self.quantities["fluteLength"].value,
-                "scallop": self.quantities["scallop"].value, "allowance": self.quantities["allowance"].value,
+                **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
