@@ -7,9 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
-LIMIT = 0.002
+#: Limits of the gouge, mm: a tight one, and the machining tolerance unless another is given; and for each how deep
+#: contacts are lowered, some of them only just beyond it.
+LIMITS = (0.002, Tolerance().gouge)
+LOWERED = {0.002: (0.0, 0.0, 0.007, 0.03), 0.01: (0.0, 0.007, 0.0102, 0.03)}
 POSES = 20
 COMPONENTS = ("cutter", "shank", "holder")
 

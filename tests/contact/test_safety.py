@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from dense import (
     COMPONENTS,
-    LIMIT,
+    LIMITS,
+    LOWERED,
     POSES,
     a_tool,
     a_turn,
@@ -27,8 +28,8 @@ SOME = range(20)
 
 # ---- the two statements --------------------------------------------------------------------------------------------
 
-def _judge_gouges(seed):
-    """Rows (true depth, told at most, bound, exceeds, rounded) of one scene: contacts, some lowered by 0.007 or 0.03.
+def _judge_gouges(seed, limit):
+    """Rows (true depth, told at most, bound, exceeds, rounded) of one scene: contacts, some of them lowered.
 
     A contact that was lowered is that deep; a sharp corner may be told to be deeper than the skin lies inside it.
     """
@@ -36,12 +37,12 @@ def _judge_gouges(seed):
     face = Face.from_bspline(bicubic(rng, rng.uniform(20, 80, 2), rng.uniform(0, 2)))
     tool, sampled = a_tool(rng), samples_of(face)
     tips, axis, n = contacts(rng, face, tool, rng.uniform(0.05, 0.5))
-    lowered = rng.choice([0.0, 0.0, 0.007, 0.03], POSES)
+    lowered = rng.choice(LOWERED[limit], POSES)
     tips = tips - lowered[:, None] * n
     least = [least_phi(tool, [sampled], tip, t, "cutter")[0] for tip, t in zip(tips, axis, strict=True)]
     inside = np.maximum(0.0, -np.array(least))
     return np.column_stack([np.maximum(inside, lowered), np.maximum(told_at_most(tool, inside), lowered),
-                            penetration(tool, tips, axis, (face,)), gouges(tool, tips, axis, (face,), LIMIT),
+                            penetration(tool, tips, axis, (face,)), gouges(tool, tips, axis, (face,), limit),
                             np.full(POSES, tool.corner_radius > 0)])
 
 
@@ -78,14 +79,14 @@ def _planted(tool, faces, pose, wanted):
     return tip, [least_phi(tool, faces, tip, axis, c)[0] for c in COMPONENTS]
 
 
-def _check_gouges(rows):
+def _check_gouges(rows, limit):
     depth, most, bound, exceeds, rounded = rows.T
     assert (bound >= depth - 1e-7).all()
     tight = bound <= most + 0.0005 + 0.05 * np.maximum(0, most - 0.1)
     assert tight[rounded == 1].mean() > 0.999
     assert tight[rounded == 0].mean() > 0.85  # the search above stops short in valleys of sharp edges
-    assert not (~exceeds.astype(bool) & (depth > LIMIT + 1e-7)).any()
-    shallow = most < LIMIT - 0.0005
+    assert not (~exceeds.astype(bool) & (depth > limit + 1e-7)).any()
+    shallow = most < limit - 0.0005
     assert exceeds[shallow].mean() < 0.01
     assert bound[(depth < 1e-5) & (rounded == 1)].max() < 0.001
     assert (bound[(depth < 1e-5) & (rounded == 0)] < 0.001).mean() > 0.98
@@ -106,8 +107,9 @@ def _check_collisions(rows):
     assert ((least > 0.015) & (least < 0.025)).mean() > 0.1
 
 
-def test_gouges_are_never_missed():
-    _check_gouges(np.vstack([_judge_gouges(seed) for seed in SOME]))
+@pytest.mark.parametrize("limit", LIMITS)
+def test_gouges_are_never_missed(limit):
+    _check_gouges(np.vstack([_judge_gouges(seed, limit) for seed in SOME]), limit)
 
 
 def test_collisions_are_never_missed():
@@ -115,8 +117,9 @@ def test_collisions_are_never_missed():
 
 
 @pytest.mark.long
-def test_gouges_are_never_missed_in_5000_cases():
-    _check_gouges(np.vstack([_judge_gouges(seed) for seed in range(250)]))
+@pytest.mark.parametrize("limit", LIMITS)
+def test_gouges_are_never_missed_in_5000_cases(limit):
+    _check_gouges(np.vstack([_judge_gouges(seed, limit) for seed in range(250)]), limit)
 
 
 @pytest.mark.long

@@ -7,7 +7,8 @@ import pytest
 import shapely
 from dense import (
     COMPONENTS,
-    LIMIT,
+    LIMITS,
+    LOWERED,
     POSES,
     Sampled,
     a_tool,
@@ -152,7 +153,7 @@ def _lowest(trimmed, tool, pose):
 
 # ---- the two statements --------------------------------------------------------------------------------------------
 
-def _contact_scene(seed):
+def _contact_scene(seed, limit):
     """A trimmed face, a tool and contacts on the face, most of them lowered."""
     rng = np.random.default_rng([3, seed])
     trimmed, tool = _trimmed(rng), a_tool(rng)
@@ -160,16 +161,16 @@ def _contact_scene(seed):
     uv = np.vstack([sampled.uv[rng.integers(len(sampled.uv), size=POSES // 2)] if len(sampled.uv) else np.empty((0, 2)),
                     *[_on(loop, rng.uniform(0, len(loop) - 1, POSES)) for loop in loops]])[:POSES]
     tips, axis, n = contacts_at(rng, sampled.face, tool, rng.uniform(0.05, 0.5), uv)
-    return trimmed, tool, tips - rng.choice([0.0, 0.0, 0.007, 0.03], len(uv))[:, None] * n, axis
+    return trimmed, tool, tips - rng.choice(LOWERED[limit], len(uv))[:, None] * n, axis
 
 
-def _judge_gouges(seed):
+def _judge_gouges(seed, limit):
     """Rows (true depth, told at most, bound, exceeds, rounded) of one scene."""
-    trimmed, tool, tips, axis = _contact_scene(seed)
+    trimmed, tool, tips, axis = _contact_scene(seed, limit)
     least = [_lowest(trimmed, tool, (tip, t, "cutter"))[0] for tip, t in zip(tips, axis, strict=True)]
     face, depth = (trimmed[0].face,), np.maximum(0.0, -np.array(least))
     return np.column_stack([depth, told_at_most(tool, depth), penetration(tool, tips, axis, face),
-                            gouges(tool, tips, axis, face, LIMIT), np.full(len(tips), tool.corner_radius > 0)])
+                            gouges(tool, tips, axis, face, limit), np.full(len(tips), tool.corner_radius > 0)])
 
 
 def _planted_scene(seed, poses=POSES):
@@ -199,14 +200,14 @@ def _judge_collisions(seed):
                             clears(tool, tips, axis, around).safe])
 
 
-def _check_gouges(rows):
+def _check_gouges(rows, limit):
     depth, most, bound, exceeds, rounded = rows.T
     assert (bound >= depth - 1e-7).all()
-    assert not (~exceeds.astype(bool) & (depth > LIMIT + 1e-7)).any()
+    assert not (~exceeds.astype(bool) & (depth > limit + 1e-7)).any()
     tight = bound <= most + 0.0005 + 0.05 * np.maximum(0, most - 0.1)
     assert tight[rounded == 1].mean() > 0.99
     assert tight[rounded == 0].mean() > 0.8
-    assert exceeds[most < LIMIT - 0.0005].mean() < 0.03
+    assert exceeds[most < limit - 0.0005].mean() < 0.03
     assert 0.05 < exceeds.mean() < 0.95
 
 
@@ -224,34 +225,37 @@ def _check_collisions(rows):
     assert ((least > 0.015) & (least < 0.025)).mean() > 0.05
 
 
-def test_gouges_of_trimmed_faces_are_never_missed():
-    _check_gouges(np.vstack([_judge_gouges(seed) for seed in GOUGES]))
+@pytest.mark.parametrize("limit", LIMITS)
+def test_gouges_of_trimmed_faces_are_never_missed(limit):
+    _check_gouges(np.vstack([_judge_gouges(seed, limit) for seed in GOUGES]), limit)
 
 
 def test_collisions_with_trimmed_faces_are_never_missed():
     _check_collisions(np.vstack([_judge_collisions(seed) for seed in COLLISIONS]))
 
 
-def test_plain_code_answers_alike(monkeypatch):
+@pytest.mark.parametrize("limit", LIMITS)
+def test_plain_code_answers_alike(monkeypatch, limit):
     """The twin without the compiler, on the same faces."""
     def ask(found):
         for seed in TWINS:
-            trimmed, tool, tips, axis = _contact_scene(seed)
+            trimmed, tool, tips, axis = _contact_scene(seed, limit)
             face = (trimmed[0].face,)
-            found.append((penetration(tool, tips, axis, face), gouges(tool, tips, axis, face, LIMIT)))
+            found.append((penetration(tool, tips, axis, face), gouges(tool, tips, axis, face, limit)))
         return found
 
     compiled = ask([])
     monkeypatch.setattr(distances._compiled, "available", False)
     for (one, exceeds), (other, also) in zip(compiled, ask([]), strict=True):
         assert np.abs(one - other).max() <= 0.001 + 0.05 * one.max()
-        assert (exceeds == also)[np.abs(one - LIMIT) > 0.001].all()
+        assert (exceeds == also)[np.abs(one - limit) > 0.001].all()
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("limit", LIMITS)
 @pytest.mark.parametrize("first", range(0, 250, 25))
-def test_gouges_of_trimmed_faces_are_never_missed_in_5000_cases(first):
-    _check_gouges(np.vstack([_judge_gouges(seed) for seed in range(first, first + 25)]))
+def test_gouges_of_trimmed_faces_are_never_missed_in_5000_cases(first, limit):
+    _check_gouges(np.vstack([_judge_gouges(seed, limit) for seed in range(first, first + 25)]), limit)
 
 
 @pytest.mark.long

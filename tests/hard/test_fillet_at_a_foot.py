@@ -14,7 +14,8 @@ def test_what_lies_beside_a_fillet_is_left_to_clean_up() -> None:
     part = ta.load(solid)
     floor = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(4, 4)).point[:, 2], 5))
     assert len(part.skin(floor.number)) > 1
-    plan = ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1, faces=[floor.number])
+    plan = ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1, faces=[floor.number],
+                   tolerance=0.002)
     (op,) = plan.operations
     assert op.done, op.orientation.reasons
     assert 0 < op.orientation.unreached < 0.4 and op.orientation.gouge <= 0.002

@@ -19,6 +19,6 @@ def test_a_floor_with_a_quarter_round_that_continues_it_has_a_vertical_axis() ->
         rows = np.array([[[x, y, 0], [x, y + side * r, 0], [x, y + side * r, r]] for x in (0.0, 12.0)])
         rounds.append(ta.Face.from_bspline(rows, degree=(1, 2), weights=np.array([[1, s, 1]] * 2), flip=side < 0))
     assert all(face.normal(face.grid(3, 3))[:, 2].min() > 0 for face in (floor, *rounds))
-    found = evaluate_axis(floor, ta.Tool.ball(diameter=5), [0, 0, 1], 0.2, skin=rounds)
+    found = evaluate_axis(floor, ta.Tool.ball(diameter=5), [0, 0, 1], 0.2, skin=rounds, tolerance=0.002)
     assert found.outcome == "feasible", found.reasons
     assert found.gouge <= 0.002

@@ -24,7 +24,7 @@ def test_the_step_is_named(step):
     far = [-1.0, 0.5, 1.0]
     groups = (Group(SKIN, (top,), np.array([-0.001, *far[1:]])), Group(TOUCHING, (side,), np.array([-0.001, *far[1:]])))
     found = Witness(CUTTER, 0.002, "2", np.array([20.0, 4.0, -0.1]), np.array([1.0, 0.4]), -0.003)
-    said = sentence(found, Feasibility(top, Tool.ball(6), groups, Tolerance()))
+    said = sentence(found, Feasibility(top, Tool.ball(6), groups, Tolerance(gouge=0.002)))
     assert said.startswith("the cutter meets face 2 by 0.003 mm at (20, 4, -0.1)")
     assert ("face 2 stands 0.003 mm out over face 1" in said) == (step > 0)
     assert ("0.002 mm of gouge are allowed; repair the edge" in said) == (step > 0)

@@ -94,8 +94,8 @@ def _proud(found: Witness, feasibility: Feasibility) -> str:
     if out < 0.5 * allowed:
         return ""
     return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: their edge is no more accurate "
-            f"than that, and {allowed:g} mm of gouge are allowed; repair the edge, or plan with a larger gouge in "
-            "tolerance")
+            f"than that, and {allowed:g} mm of gouge are allowed; repair the edge, or plan with a larger "
+            "machining tolerance")
 
 
 def tally(ledger: Ledger) -> str:
