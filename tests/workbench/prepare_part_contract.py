@@ -79,10 +79,10 @@ def write(folder, everything):
     shared = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"
     others = [path for path in sorted(shared.glob("*.st*p")) if everything or path.stem in SOME]
     for path in [*sorted((ROOT / "examples").glob("*.step")), *others]:
-        done, record, *_ = convert(str(path))
+        done, found, *_ = convert(str(path))
         if done == "done":
             shutil.copy(path, folder / f"{path.stem}.step")
-            (folder / f"{path.stem}.pickle").write_bytes(pickle.dumps(record))
+            (folder / f"{path.stem}.pickle").write_bytes(pickle.dumps(found.record))
     for name, face in made_faces():
         BRepTools.Write_s(face, str(folder / f"{name}.brep"))
         (folder / f"{name}.pickle").write_bytes(pickle.dumps(shape_record(face)))
