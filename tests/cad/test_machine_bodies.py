@@ -1,5 +1,6 @@
 """Machines whose head is a STEP file: each solid as its convex hull, in the check, in plans and in their files."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -66,3 +67,14 @@ def test_a_missing_file_is_one_sentence(machine_file: Path) -> None:
     assert "\n" not in str(refused.value)
     with pytest.raises(InvalidInput, match=r"body head is the file .*head\.step and was not read"):
         Mounting(machine_from_toml(machine_file.read_text(encoding="utf-8"), machine_file.parent))
+
+
+def test_a_body_that_lacks_a_face_is_refused(machine_file: Path) -> None:
+    """The hull of the other faces might not hold it."""
+    head = machine_file.parent / "head.step"
+    text = head.read_text()
+    surface = re.search(r"= CYLINDRICAL_SURFACE\('',#(\d+)", text).group(1)
+    point = re.search(rf"#{surface} = AXIS2_PLACEMENT_3D\('',#(\d+)", text).group(1)
+    head.write_text(re.sub(rf"(#{point} = CARTESIAN_POINT\('',\()[^,]*", r"\g<1>1.E+30", text))
+    with pytest.raises(InvalidInput, match=r"body head: .*head\.step: face \d+ \(#\d+\) was left out: its coordinate"):
+        ta.load_machine(str(machine_file))
