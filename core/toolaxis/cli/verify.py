@@ -10,6 +10,10 @@ from toolaxis.job.folder import read_plan, staged, write_json
 from toolaxis.job.judge import not_judged, passes, verdict_document, verify_plan
 from toolaxis.job.views import write_views
 from toolaxis.report.tables import verdict_table
+from toolaxis.verify.verdict import Verdict
+
+#: Operations that are named with what they leave; the others are counted.
+_TOLD = 10
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -43,10 +47,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         print_json(document)
     else:
         print_table(verdict_table(plan, verdict))
-    for op in plan.operations:
-        if op.done and op.orientation.unreached > 0:
-            say(f"toolaxis: {op.name}: the plan leaves {100 * op.orientation.unreached:.1f} % of the area, at "
-                "walls, to clean-up: that share was not asked for")
+    for line in set_aside(verdict):
+        say(f"toolaxis: {line}")
     missing = not_judged(plan, verdict)
     if missing:
         say(f"toolaxis: not checked: {', '.join(missing)}")
@@ -55,3 +57,19 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     if plan.outcome == "cancelled":
         say("toolaxis: the plan was cancelled before all sub-surfaces were done")
     return 0 if passes(plan, verdict) else 1
+
+
+def set_aside(verdict: Verdict) -> list[str]:
+    """Where the plan leaves zones to a clean-up tool, and how much that is: no scallop height was asked for there.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    """
+    some = [op for op in verdict.operations if op.declared > 0]
+    told = [f"{op.name}: {op.declared:.2f} mm2, {100 * op.declared / op.area:.2f} % of the area, lie in zones that the "
+            "plan leaves to clean-up: no scallop height was asked for there" for op in some[:_TOLD]]
+    if len(some) > _TOLD:
+        area = sum(op.declared for op in some[_TOLD:])
+        told.append(f"the same is true of {len(some) - _TOLD} further operations, {area:.2f} mm2 in all")
+    return told

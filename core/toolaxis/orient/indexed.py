@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +23,7 @@ from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held,
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.reasons import direction, sentence, tally, why_none
+from toolaxis.orient.reasons import direction, left_reasons, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
@@ -30,9 +31,12 @@ from toolaxis.orient.verdicts import BACK, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
+from toolaxis.path.left_over import OVERLOOKED, left_over
 from toolaxis.path.linking import Linking
+from toolaxis.path.mending import Made, completed
 from toolaxis.path.tracing import trace
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -48,8 +52,6 @@ RULES = ("roman", "normal")
 #: Height above everything at which links cross at least, mm.
 CROSSING = 5.0
 _ATTEMPTS = 4
-#: Share of a face that passes may miss, away from walls, before the next best axis is tried.
-_MISSED = 5e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +134,29 @@ class Task:
         axis : (3,) array
         feed : str
         """
-        return self.traced(self.laid(axis, feed))
+        return self.completed(self.laid(axis, feed)).path
+
+    def completed(self, placed: Layout) -> Made:
+        """Passes with the further ones that it takes to leave little on which the cutter may stand.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
+        axis = placed.cut.axis
+        return completed(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+
+    def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
+        """Zones that passes leave higher than the scallop limit, the largest first.
+
+        Parameters
+        ----------
+        path : ToolPath
+            With one fixed axis.
+        """
+        worth, axis = self.worth, path.axis[0]
+        return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
+                         lambda uv: ~self.feasibility.reach(uv, axis), self.progress)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -231,11 +255,12 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
                progress=progress)
-    return searched(job, method, starts)
+    return searched(job, method, starts)[0]
 
 
-def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None) -> Orientation:
-    """The axis that `best_axis` finds for a task.
+def searched(job: Task, method: str = "sphere",
+             starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
+    """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
 
     Parameters
     ----------
@@ -250,7 +275,7 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
-            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
+            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
         attempts = 1 if method in RULES else _ATTEMPTS
         result = settled(job, ledger, METHODS[method](ledger), attempts)
         if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
@@ -259,11 +284,12 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
         return better_of(result, settled(job, ledger, METHODS[method](ledger), attempts))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
-                           evaluations=ledger.evaluations, map=ledger.map())
+                           evaluations=ledger.evaluations, map=ledger.map()), None
 
 
-def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
-    """The best candidate that the proof accepts, or why there is none.
+def settled(job: Task, ledger: Ledger, found: list[Candidate],
+            attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+    """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
     ----------
@@ -276,18 +302,19 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     """
     refused: list[str] = []
     found = least_made(job.worth, held(ledger, found), job.made)
-    best: tuple[float, Orientation, int] | None = None
+    best: Finished | None = None
+    chosen = 0
     for k in range(len(found)):
-        accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
-        if accepted is not None and (best is None or missed < best[0]):
-            best = missed, accepted, k
-        if best is not None and best[0] <= _MISSED:
+        accepted = _accepted(job, ledger, found[k], refused, attempts)
+        if accepted is not None and (best is None or accepted.missed < best.missed):
+            best, chosen = accepted, k
+        if best is not None and best.missed <= OVERLOOKED:
             break
     if best is not None:
-        _, accepted, k = best
-        others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
-        return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
-                       evaluations=ledger.evaluations, lobes=others)
+        others = tuple(_other(job, one) for one in found[chosen + 1:] if _sound(job, one))
+        reasons = (*best.orientation.reasons, *refused, tally(ledger))
+        return replace(best.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations,
+                       lobes=others), best.path
     if ledger.proven:
         outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
     else:
@@ -295,39 +322,51 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     if not found:
         refused = [f"{lead}: {why_none(ledger)}"]
     return Orientation(None, outcome=outcome, reasons=(*refused, tally(ledger)), map=ledger.map(),
-                       evaluations=ledger.evaluations)
+                       evaluations=ledger.evaluations), None
 
 
 def _sound(job: Task, one: Candidate) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str],
-              attempts: int) -> tuple[Orientation | None, float]:
-    """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused.
+class Finished(NamedTuple):
+    """What became of a candidate.
 
-    With it the share of the face that its passes miss though nothing stands beside it.
+    orientation : Orientation
+    proof : Proof
+    missed : float, share of the face that the passes miss though nothing stands beside it; up to `OVERLOOKED`, no other
+    axis is tried for that
+    path : ToolPath or None, the very passes that were proven; None where none can be laid
     """
+
+    orientation: Orientation
+    proof: Proof
+    missed: float
+    path: ToolPath | None
+
+
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str], attempts: int) -> Finished | None:
+    """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: Candidate | None = one
     for attempt in range(attempts):
         if candidate is None:
-            return None, 0.0
+            return None
         witness = ledger.feasibility.witness(candidate.axis)
         if witness is None:
-            result, proof, missed = finished(job, candidate)
-            if proof.witness is None:
-                if missed > _MISSED:
-                    refused.append(f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face")
-                return result, missed
-            witness = proof.witness
+            done = finished(job, candidate)
+            if done.proof.witness is None:
+                if done.missed > OVERLOOKED:
+                    refused.append(f"the axis {direction(candidate.axis)} misses {100 * done.missed:.1f} % of the face")
+                return done
+            witness = done.proof.witness
         refused.append(f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
         make_room(ledger, candidate.axis, witness)
         candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
-    return None, 0.0
+    return None
 
 
-def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
-    """Passes made and proven for one candidate, and the share of the face that they miss, walls aside.
+def finished(job: Task, one: Candidate) -> Finished:
+    """Passes made and proven for one candidate.
 
     Parameters
     ----------
@@ -338,19 +377,30 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
     try:
         placed = job.laid(one.axis, feed)
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
-        return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0
-    path = job.traced(placed)
-    beyond = stopped(job.feasibility, path, job.groups)
-    proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,
-                                               progress=job.progress)
-    unreached, missed = job.feasibility.unreached(one.axis), placed.uncut
-    if unreached > 0:
-        unreached, missed = max(unreached, missed), 0.0
+        return Finished(Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0, None)
+    made = job.completed(placed)
+    proof = _proven(job, made.path)
+    if proof.witness is not None and made.placed is not placed:  # further passes are no reason to refuse an axis
+        path = job.traced(placed)
+        made = Made(placed, path, job.left_by(path))
+        proof = _proven(job, path)
+    path, area = made.path, job.worth.face.area
+    unreached = min(made.left / area, 1.0)
+    missed = sum(zone.area for zone in made.zones if not zone.at_wall) / area
     length = path.length(Motion.CUT)
-    area = job.worth.face.area * (1 - unreached)
-    notes = () if unreached == 0 else (f"{100 * unreached:.1f} % of the area lies at walls and is left to clean-up",)
-    return Orientation(one.axis, feed, path.passes, one.passes, length, area / length if length > 0 else 0.0,
-                       proof.gouge, proof.clearance, "feasible", notes, unreached=unreached), proof, missed
+    width = area * (1 - unreached) / length if length > 0 else 0.0
+    words = left_reasons(made.zones, job.worth.face)
+    found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
+                        "feasible", words, unreached=unreached)
+    return Finished(found, proof, missed, path)
+
+
+def _proven(job: Task, path: ToolPath) -> Proof:
+    """The proof of a path, after a look at whether its machine reaches all of it."""
+    beyond = stopped(job.feasibility, path, job.groups)
+    if beyond:
+        return Proof(beyond)
+    return prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
 
 
 def _other(job: Task, one: Candidate) -> Orientation:
@@ -396,10 +446,10 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
         witness = job.feasibility.witness(t)
         if witness is None:
             best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
-            result, proof, _ = finished(job, best)
-            if proof.witness is None:
-                return replace(result, evaluations=1 + len(feeds))
-            witness = proof.witness
+            done = finished(job, best)
+            if done.proof.witness is None:
+                return replace(done.orientation, evaluations=1 + len(feeds))
+            witness = done.proof.witness
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",))
     return Orientation(None, FEEDS[feeds[0]], outcome="infeasible", evaluations=ledger.evaluations + 1,

@@ -20,8 +20,6 @@ _BISECTIONS = 14
 #: Passes run out this much farther than the cutter reaches at scallop height.
 _RUN_OUT = 1.05
 _REACH_SAMPLES = 192
-#: Places along and across at which it is looked whether strips cover the face.
-_GRID = 240
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,28 +47,6 @@ class Layout:
     def steps(self) -> Array:
         """Step parameter of each pass, (k,)."""
         return self.spacing.steps
-
-    @property
-    def uncut(self) -> float:
-        """Share of the face's area that lies in no pass's strip, from places on a fine grid, 0 to 1."""
-        chart, spacing = self.chart, self.spacing
-        a0, a1, s0, s1 = chart.bounds
-        across = spacing.lines.along
-        along = a0 + (a1 - a0) * (np.arange(_GRID) + 0.5) / _GRID
-        step = s0 + (s1 - s0) * (np.arange(_GRID) + 0.5) / _GRID
-        covered = np.zeros((_GRID, _GRID), dtype=bool)
-        for number, (place, halves) in enumerate(zip(spacing.steps, spacing.halves, strict=True)):
-            low, high = (np.interp(along, across, side) for side in spacing.lines.spread(halves).T)
-            cut = np.zeros(_GRID, dtype=bool)
-            for first, last, _ in self.pieces[self.owner == number]:
-                cut |= (along >= first) & (along <= last)
-            band = (step[None] >= (place - low)[:, None]) & (step[None] <= (place + high)[:, None])
-            covered |= cut[:, None] & band
-        uv = chart.uv(*(part.ravel() for part in np.meshgrid(along, step, indexing="ij")))
-        own = chart.face.contains(uv)
-        d = chart.face.evaluate(uv[own])
-        share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-        return float(share[~covered.ravel()[own]].sum() / max(float(share.sum()), np.finfo(float).tiny))
 
     @property
     def used(self) -> float:
