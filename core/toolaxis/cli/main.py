@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from toolaxis import __version__
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+from toolaxis.work import LIMIT
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -93,6 +94,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="what is least: cutting length (default), number of passes, or the time that --machine takes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--limit", type=float, default=LIMIT, metavar="WORK",
+                     help="most work for one sub-surface, its axis and the proof of its passes, in thousands of bounds "
+                          f"of distances, so that the plan is the same on every run (default: {LIMIT:.0f}, some ten "
+                          "seconds)")
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",

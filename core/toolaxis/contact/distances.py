@@ -13,6 +13,7 @@ from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
 from toolaxis.shape.cells import Cells
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -20,6 +21,8 @@ Indices = NDArray[np.int64]
 _PIECES_AT_ONCE = 60
 #: Motions between two moments to stop.
 _MOTIONS_AT_ONCE = 256
+#: As many bounds as take as long as a question without any motion, and a motion without any bound.
+_QUESTION, _MOTION = 2000, 20
 
 
 class Found(NamedTuple):
@@ -145,6 +148,7 @@ def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tup
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
     room = scratch(cells.data) if _compiled.available else None
+    spend(_QUESTION)
     for first in range(0, len(moves), _MOTIONS_AT_ONCE):
         breathe()
         some = slice(first, first + _MOTIONS_AT_ONCE)
@@ -152,6 +156,7 @@ def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tup
             values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
         else:
             descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
+        spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
     return values, tags
 
 

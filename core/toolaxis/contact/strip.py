@@ -18,8 +18,12 @@ from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
+
+#: As many bounds of distances as take as long as the half widths of no contact, and of one.
+_QUESTION, _CONTACT = 3000, 10
 
 
 def _checked(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[Geometry, Sizes]:
@@ -57,6 +61,7 @@ def _fill(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: A
 
 def _fill_steps(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
     """Half widths in the step parameter of n contacts with k axes, likewise."""
+    spend(_QUESTION + _CONTACT * len(axes) * len(contacts))
     if _compiled.available:
         step_half_widths(geometry, contacts, axes, sizes, out)
         return
@@ -111,6 +116,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     contacts = contact_rows(uv, feed, True)
     axes = np.ascontiguousarray(axis_rows(axis, len(contacts)))
     out = np.empty((len(contacts), 2))
+    spend(_QUESTION + _CONTACT * len(contacts))
     _fill(geometry, contacts, axes, sizes, out)
     return out[:, ::-1].copy()
 

@@ -46,6 +46,7 @@ from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import Budget, OutOfWork, limited
 
 Array = NDArray[np.float64]
 
@@ -244,6 +245,11 @@ class Job:
                         for piece, axis in rows]) + alone, options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
+        """The operation of a sub-surface, with no more work than is allowed."""
+        with limited(Budget(self.inputs.limit)):
+            return self._with_axis(target, place, progress)
+
+    def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""
         face, axis, number = target.face, target.axis, place[0] + 1
         inner = progress.within(f"face {face.label} ({number} of {place[1]})")
@@ -264,6 +270,8 @@ class Job:
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
         except Cancelled:
             raise
+        except OutOfWork as reason:
+            return Operation(number, face, Orientation(None, outcome="not_found", reasons=(str(reason),)))
         except ToolAxisError as reason:  # this face cannot be done; the others can
             return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
         if found.outcome == "cancelled":

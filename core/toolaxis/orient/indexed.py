@@ -1,6 +1,7 @@
 """The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +26,7 @@ from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import direction, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
-from toolaxis.orient.sphere import repaired, search
+from toolaxis.orient.sphere import repaired, search, so_far
 from toolaxis.orient.verdicts import BACK, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
@@ -38,6 +39,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import OutOfWork, at_the_limit, up_to
 
 Array = NDArray[np.float64]
 
@@ -50,6 +52,8 @@ CROSSING = 5.0
 _ATTEMPTS = 4
 #: Share of a face that passes may miss, away from walls, before the next best axis is tried.
 _MISSED = 5e-4
+#: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
+_SEARCHED, _ORDERED = 0.6, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,19 +251,35 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
     """
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
     ledger = Ledger(job.feasibility, job.worth, job.progress, first)
+    result: Orientation | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
-        attempts = 1 if method in RULES else _ATTEMPTS
-        result = settled(job, ledger, METHODS[method](ledger), attempts)
+        result = _settled(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
             return result
         ledger = Ledger(ledger.feasibility, job.worth, job.progress, first)
-        return better_of(result, settled(job, ledger, METHODS[method](ledger), attempts))
+        return better_of(result, _settled(job, ledger, method))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
                            evaluations=ledger.evaluations, map=ledger.map())
+    except OutOfWork as reason:
+        return result or Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
+                                     evaluations=ledger.evaluations, map=ledger.map())
+
+
+def _settled(job: Task, ledger: Ledger, method: str) -> Orientation:
+    """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
+    attempts = 1 if method in RULES else _ATTEMPTS
+    try:
+        with up_to(_SEARCHED):
+            found = METHODS[method](ledger)
+    except OutOfWork:
+        ended = settled(job, ledger, so_far(ledger), attempts)
+        words = at_the_limit("not found" if ended.axis is None else "no better one found")
+        return replace(ended, reasons=(*ended.reasons, words) if ended.axis is not None else (words, *ended.reasons))
+    return settled(job, ledger, found, attempts)
 
 
 def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
@@ -273,19 +293,32 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
         The best of each lobe, best first.
     attempts : int
         How often each is tried, repaired between; 1 to take them as they are.
+
+    Raises
+    ------
+    OutOfWork
+        When the work that was allowed is done, and none was accepted.
     """
     refused: list[str] = []
-    found = least_made(job.worth, held(ledger, found), job.made)
+    found = held(ledger, found)
+    with suppress(OutOfWork), up_to(_ORDERED):
+        found = least_made(job.worth, found, job.made)
     best: tuple[float, Orientation, int] | None = None
-    for k in range(len(found)):
-        accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
-        if accepted is not None and (best is None or missed < best[0]):
-            best = missed, accepted, k
-        if best is not None and best[0] <= _MISSED:
-            break
+    others: tuple[Orientation, ...] = ()
+    try:
+        for k in range(len(found)):
+            accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
+            if accepted is not None and (best is None or missed < best[0]):
+                best = missed, accepted, k
+            if best is not None and best[0] <= _MISSED:
+                break
+        if best is not None:
+            others = tuple(_other(job, one) for one in found[best[2] + 1:] if _sound(job, one))
+    except OutOfWork:
+        if best is None:
+            raise
     if best is not None:
-        _, accepted, k = best
-        others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
+        accepted = best[1]
         return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
                        evaluations=ledger.evaluations, lobes=others)
     if ledger.proven:

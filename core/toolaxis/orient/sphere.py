@@ -225,6 +225,20 @@ def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
     return ranked(ledger, distinct(sorted(done, key=lambda c: c.value)))
 
 
+def so_far(ledger: Ledger) -> list[Candidate]:
+    """The best axis of each lobe among those that were looked at, counted but neither walked from nor proven.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Of a search that was ended.
+    """
+    price = ledger.price
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    found = [counted(ledger, i) for i in lobes(ledger.axes, price, order)[:_LOBES]]
+    return sorted(found, key=lambda c: c.value)
+
+
 def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
     """Candidates with ties at the top decided: the larger clearance first, then the smaller angle to the mean normal.
 
