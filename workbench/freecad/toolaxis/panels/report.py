@@ -40,7 +40,7 @@ def offer_report(message, trace):
     QMessageBox
     """
     text = report_text(message, trace)
-    box = QtWidgets.QMessageBox(QtWidgets.QMessageBox.Warning, "Tool Axis", message,
+    box = QtWidgets.QMessageBox(QtWidgets.QMessageBox.Warning, "Tool Axis", message[:1].upper() + message[1:],
                                 parent=FreeCADGui.getMainWindow())
     box.setInformativeText(translate("ToolAxis", "The document was not changed. Please report the error with the "
                                                  "copied details and, if you can, the part."))
