@@ -15,6 +15,7 @@ from toolaxis.machine.mounting import Mounting
 from toolaxis.orient.indexed import task
 from toolaxis.orient.laying import beyond
 from toolaxis.plan.plan import Plan
+from toolaxis.tolerances import Tolerance
 from toolaxis.verify.bodies import Rig
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])
@@ -30,7 +31,7 @@ def with_bodies(plan: Plan, *bodies: Body) -> Plan:
 def plan() -> Plan:
     x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 24, 5), indexing="ij")
     face = ta.Face.from_bspline(np.stack([x, y, 0.006 * (x - 20) ** 2 - 0.004 * (y - 12) ** 2], axis=-1))
-    made = ta.plan(face, TOOL, 0.1, strategy="sturz", workers=1)
+    made = ta.plan(face, TOOL, 0.1, strategy="sturz", workers=1, tolerance=Tolerance(gouge=0.002, chord=0.001))
     return timed(replace(made, machine=Mounting(ta.load_machine("bc-table-table"), PLACE)))
 
 

@@ -27,7 +27,7 @@ def _face() -> ta.Face:
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return ta.plan(_face(), TOOL, 0.05, strategy="sturz", workers=1)
+    return ta.plan(_face(), TOOL, 0.05, strategy="sturz", workers=1, tolerance=0.002)
 
 
 def test_the_judge_passes_a_constant_lead(plan) -> None:

@@ -10,13 +10,15 @@ from toolaxis.report.warnings import warnings_of
 
 def op(number: int, *, done: bool = True, left: bool = False, why: str = "", zones: tuple[Any, ...] = ()) -> Any:
     return SimpleNamespace(number=number, name=f"op{number:02d}-face{number}", done=done, left=left, zones=zones,
+                           failed=False,
                            face=SimpleNamespace(number=number),
                            orientation=SimpleNamespace(reasons=(why,) if why else (), outcome="not_found"))
 
 
 def plan(*operations: Any, outcome: str = "complete", copies: dict[int, int] | None = None, **more: Any) -> Any:
     blades = None if copies is None else SimpleNamespace(copies=copies, side_of=lambda number: "")
-    given = {"not_checked": (), "part": SimpleNamespace(warnings=()), "machine": None, "in_the_way": (), **more}
+    given = {"not_checked": (), "part": SimpleNamespace(warnings=()), "machine": None, "in_the_way": (), "faults": (),
+             **more}
     return SimpleNamespace(operations=operations, outcome=outcome, blades=blades, **given)
 
 

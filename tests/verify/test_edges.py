@@ -6,6 +6,7 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge
@@ -29,7 +30,7 @@ def cut_along_the_edge(tips, axis, target=TOP, **change):
     """A cutter that stands at a few tips, judged for gouge alone."""
     tips, axis = np.atleast_2d(tips), np.asarray(axis) / np.linalg.norm(axis)
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
-    given = {"touching": (SIDE,), **change}
+    given = {"touching": (SIDE,), "tolerance": Tolerance(gouge=0.002), **change}
     return judge(Task("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02, clean_up=1.0, **given),
                  spacing=0.2)
 

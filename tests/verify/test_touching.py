@@ -5,6 +5,7 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import OperationVerdict, verify
@@ -27,7 +28,8 @@ def judged(extra: list[list[float]], touching: tuple[Face, ...] = (SIDE,)) -> Op
     rows = [[x, y, 0.0] for k, y in enumerate(np.arange(-0.5, 10.6, 0.8)) for x in ((-6, 26) if k % 2 else (26, -6))]
     tips = np.array([*rows, *extra])
     axes, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.full(len(tips), Motion.CUT)
-    return verify([Task("top", tips, axes, kind, BALL, (TOP,), 0.02, touching=touching)], spacing=0.5).operations[0]
+    return verify([Task("top", tips, axes, kind, BALL, (TOP,), 0.02, touching=touching,
+                        tolerance=Tolerance(gouge=0.002))], spacing=0.5).operations[0]
 
 
 def test_running_out_over_the_edge_is_no_gouge() -> None:

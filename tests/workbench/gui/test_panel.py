@@ -216,9 +216,10 @@ def test_the_wheel_changes_no_field_that_is_not_used(desk, form):
     form.tabs.setCurrentWidget(form.jobTab)
     form.compute.setFocus()
     before = desk.shown(form.scallop)
-    here = QtCore.QPointF(5, 5)
-    turn = QtGui.QWheelEvent(here, form.scallop.mapToGlobal(here), QtCore.QPoint(), QtCore.QPoint(0, 120),
-                             QtCore.Qt.NoButton, QtCore.Qt.NoModifier, QtCore.Qt.NoScrollPhase, False)
+    here = QtCore.QPoint(5, 5)
+    turn = QtGui.QWheelEvent(QtCore.QPointF(here), QtCore.QPointF(form.scallop.mapToGlobal(here)), QtCore.QPoint(),
+                             QtCore.QPoint(0, 120), QtCore.Qt.NoButton, QtCore.Qt.NoModifier,
+                             QtCore.Qt.NoScrollPhase, False)
     desk.app.sendEvent(form.scallop.focusProxy(), turn)
     assert desk.shown(form.scallop) == before
 
