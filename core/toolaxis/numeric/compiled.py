@@ -67,6 +67,19 @@ def built_in(function: _Function) -> _Function:
     return _compile(function, {"contract"}, True)
 
 
+def inlined(function: _Function) -> _Function:
+    """Compile a small kernel as `compiled` does, and build it into the code of whatever calls it.
+
+    The results are those of `compiled` to the last bit; see `built_in` for why it is worth it.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, False, True)
+
+
 def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool = False) -> _Function:
     if _numba is None:
         return function

@@ -1,9 +1,9 @@
 """Room around the tool: the least distance of each of its components from faces, along all motions."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,10 +13,10 @@ from toolaxis.numeric.compiled import compiled
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes_numpy import clear_numpy
-from toolaxis.verify.blocks import balls, curve_order, in_chunks
-from toolaxis.verify.cells import Cells, face_cells, split
-from toolaxis.verify.motions import Motions, grouped, motions_from_cl
-from toolaxis.verify.solids import meridian, reach_of
+from toolaxis.verify.blocks import Blocks, blocks_of, in_chunks
+from toolaxis.verify.cells import Cells, ball_around, face_cells, joined, owned, split
+from toolaxis.verify.motions import Hierarchy, Tile, Tiles, floors, near_groups
+from toolaxis.verify.solids import reach_of
 from toolaxis.verify.sweep import LOOK, least_over_motion, moment
 
 Array = NDArray[np.float64]
@@ -25,6 +25,9 @@ Body: TypeAlias = tuple[Array, tuple[Array, Array, Array, Array]]
 
 #: Side of the cells at the start, mm; error at which the search ends, mm, or as a share of the distance.
 CELL, RESOLUTION, SHARE = 3.0, 5e-4, 1e-3
+
+#: Cells that are split at a time: what comes of them is held in memory together.
+TILE = 4_000
 
 #: Once cells are smaller than FINE, mm, only so many are split again, the closest first; most rounds.
 FINE, _BEAM, _ROUNDS = 0.5, 4_000, 12
@@ -64,41 +67,47 @@ class Clearance:
     uncertainty: float
 
 
+class Tables(NamedTuple):
+    """What is known of motions: groups, how far the tool goes on each, mm, and where each arrives."""
+
+    groups: Hierarchy
+    slack: Array
+    arrival: Index
+
+
 @compiled
-def _clear_block(body: Body, tables: tuple[Array, Index, Array], block: tuple[Array, int, int],
-                 out: tuple[Array, Index, Array], limit: float) -> None:
+def _clear_block(body: Body, tables: Tables, block: tuple[Array, int, int], out: tuple[Array, Index, Array],
+                 limit: float) -> None:
     """Distances of one block of points from all motions; those above the limit stay as they are."""
     solids, motion = body
-    groups, first, slack = tables
+    groups, slack = tables.groups, tables.slack
     ball, low, high = block
     value, by, point = out
-    bound = np.empty(groups.shape[0])
-    for g in range(groups.shape[0]):
-        w0, w1, w2 = ball[0] - groups[g, 0], ball[1] - groups[g, 1], ball[2] - groups[g, 2]
-        z = w0 * groups[g, 4] + w1 * groups[g, 5] + w2 * groups[g, 6]
-        rho = np.sqrt(max(w0 * w0 + w1 * w1 + w2 * w2 - z * z, 0.0))
-        nearest = np.inf
-        for j in range(solids.shape[0]):
-            nearest = min(nearest, meridian(solids[j], rho, z)[0])
-        bound[g] = nearest - groups[g, 3] - groups[g, 7] - ball[3]
-    for g in np.argsort(bound):
+    lever = -np.inf
+    for i in range(low, high):
+        lever = max(lever, value[i])
+    near, least = np.empty(groups.narrow.shape[0] + 1, dtype=np.int64), np.empty(groups.narrow.shape[0] + 1)
+    found = near_groups(solids, groups, ball, min(lever, limit), (near, least))
+    for n in np.argsort(least[:found]):
         lever = -np.inf
         for i in range(low, high):
             lever = max(lever, value[i])
         lever = min(lever, limit)
-        if bound[g] > lever:
+        if least[n] > lever:
             break
-        for k in range(first[g], first[g + 1]):
+        for k in range(groups.first[near[n]], groups.first[near[n] + 1]):
             for j in range(solids.shape[0]):
                 middle, _, _ = moment(solids[j], motion, (k, 0.5), (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0), 0.0)
                 if middle - slack[k] - ball[3] <= lever:
                     for i in range(low, high):
-                        _approach((solids[j], motion), k, point, (value, by), i)
+                        _approach((solids[j], motion), (k, tables.arrival[k]), point, (value, by), i)
 
 
 @compiled
-def _approach(body: Body, k: int, point: Array, out: tuple[Array, Index], i: int) -> None:
+def _approach(body: Body, which: tuple[int, int], point: Array, out: tuple[Array, Index], i: int) -> None:
+    """Distance of point i from motion which[0], which arrives at which[1], where it is less than what is known."""
     solid, motion = body
+    k, arrival = which
     value, by = out
     ray = (point[i, 0], point[i, 1], point[i, 2], 0.0, 0.0, 0.0)
     middle, slope, _ = moment(solid, motion, (k, 0.5), ray, 0.0)
@@ -106,52 +115,134 @@ def _approach(body: Body, k: int, point: Array, out: tuple[Array, Index], i: int
         least, _, _, _ = least_over_motion(solid, motion, k, ray, 0.0)
         if least < value[i]:
             value[i] = least
-            by[i] = k
+            by[i] = arrival
 
 
 @compiled
-def _clear(body: Body, tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
+def _clear(body: Body, tables: Tables, blocks: tuple[Array, Index, Index],
            out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
     """Distances of the points of blocks levels[2] up to levels[3], true where within a margin of the least so far."""
-    ball, first = blocks
+    ball, first, which = blocks
     value, by, point, counts = out
     best, margin, low, high = levels
-    for b in range(low, high):
+    for n in range(low, high):
+        b = which[n]
         _clear_block(body, tables, (ball[b], first[b], first[b + 1]), (value, by, point), best + margin)
         for i in range(first[b], first[b + 1]):
             if counts[i] and value[i] < best:
                 best = value[i]
 
 
+class _Found(NamedTuple):
+    """The least distance known: mm, index of the face, place on it, and where the motion arrives; -1 for none."""
+
+    distance: float
+    owner: int
+    point: Array
+    motion: int
+
+
 class _Search:
-    """Distances of points from one component along the motions."""
+    """Distances of cells of faces from one component along the motions, and the least of them.
 
-    def __init__(self, solids: Array, motions: Motions, workers: tuple[int, Callable[[float, float], None]]) -> None:
-        self.solids, self.motions, self.workers = solids, motions, workers
-        reach = reach_of(solids)
-        lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
-        slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
-        groups, first = grouped(motions)
-        groups[:, 7] *= reach
-        self.tables = (groups, first, slack)
+    Attributes
+    ----------
+    best : _Found
+    """
 
-    def distances(self, cells: Cells, best: float, margin: float) -> tuple[Array, Index]:
-        """Distance of each cell's centre, true where it is within the margin of the least, and the motion's index."""
-        order = curve_order(cells.point)
-        point = np.ascontiguousarray(cells.point[order])
+    def __init__(self, solids: Array, tiles: Tiles, faces: tuple[Face, ...],
+                 workers: tuple[int, Callable[[float, float], None]]) -> None:
+        self.solids, self.tiles, self.faces = solids, tiles, faces
+        self.workers = workers
+        self.best = _Found(FAR, -1, np.zeros(3), -1)
+
+    def floors(self, balls: Array) -> Array:
+        """Lower bounds of the distances of balls (b, 4) from the component."""
+        least = np.full(len(balls), np.inf)
+        for tile in self.tiles:
+            np.minimum(least, self._floors(tile, balls), out=least)
+        return least
+
+    def _floors(self, tile: Tile, balls: Array) -> Array:
+        """The same for one tile of motions; where nothing is compiled it is quicker not to ask."""
+        if not _compiled.available:
+            return np.full(len(balls), -np.inf)
+        least = np.full(len(balls), np.inf)
+        floors(self.solids, tile.groups, balls, least)
+        return least
+
+    def look(self, cells: Cells, blocks: Blocks, *, even_equal: bool = False) -> Cells:
+        """Measure cells; those that may stand for a place that is nearer than the least distance known then.
+
+        Parameters
+        ----------
+        cells : Cells
+        blocks : Blocks
+            Of their centres.
+        even_equal : bool
+            Whether an equal distance on a face that comes before the one known is taken for it.
+        """
+        value, by = self._distances(cells, blocks)
+        here = np.where(cells.on_face & (by >= 0), value, np.inf)
+        i = int(np.argmin(here))
+        found = _Found(float(here[i]), int(cells.owner[i]), cells.point[i], int(by[i]))
+        before = even_equal and found.distance == self.best.distance and found.owner < self.best.owner
+        if found.distance < self.best.distance or before:
+            self.best = found
+        rows = np.flatnonzero((value - cells.radius <= self.best.distance) & (by >= 0))
+        return replace(cells.rows(rows), value=value[rows])
+
+    def _distances(self, cells: Cells, blocks: Blocks) -> tuple[Array, Index]:
+        """Distance of each cell's centre, true where it may be near, and the location at which the motion arrives."""
+        order = blocks.order
         value, by = np.full(len(order), FAR), np.full(len(order), -1, dtype=np.int64)
-        motion = (self.motions.start, self.motions.step, self.motions.axis, self.motions.turn)
-        out = (value, by, point, np.ascontiguousarray(cells.on_face[order]))
+        out = (value, by, np.ascontiguousarray(cells.point[order]), np.ascontiguousarray(cells.on_face[order]))
+        for tile in self.tiles:
+            self._lower(tile, blocks, out, float(cells.radius.max()))
+        result, reached = np.empty_like(value), np.empty_like(by)
+        result[order], reached[order] = value, by
+        return result, reached
+
+    def _lower(self, tile: Tile, blocks: Blocks, out: tuple[Array, Index, Array, NDArray[np.bool_]],
+               margin: float) -> None:
+        """Lower distances to those from a tile of motions, as far as they may come within a margin of the least."""
+        motions = tile.motions
+        body = (self.solids, (motions.start, motions.step, motions.axis, motions.turn))
+        tables = Tables(tile.groups, tile.slack, motions.arrival)
+        least = self._floors(tile, blocks.ball)
+        which = np.argsort(least, kind="stable")  # the nearest first: with their distance most others are passed over
         kernel = _clear if _compiled.available else clear_numpy
-        blocks = balls(point)
 
         def work(part: tuple[int, int]) -> None:
-            kernel((self.solids, motion), self.tables, blocks, out, (best, margin, *part))
+            best = min(self.best.distance, float(out[0][out[3]].min(initial=np.inf)))
+            kernel(body, tables, (blocks.ball, blocks.first, which), out, (best, margin, *part))
 
-        in_chunks(work, len(blocks[0]), *self.workers)
-        result, which = np.empty_like(value), np.empty_like(by)
-        result[order], which[order] = value, by
-        return result, which
+        in_chunks(work, int((least <= self.best.distance + margin).sum()), *self.workers)
+
+    def first_look(self) -> Cells:
+        """Cells of whole faces, the nearest faces first, as long as one may come nearer than what is known."""
+        balls = np.array([ball_around(face, CELL) for face in self.faces])
+        least = self.floors(balls)
+        parts: dict[int, Cells] = {}
+        for owner in np.argsort(least, kind="stable"):
+            if parts and least[owner] > self.best.distance:
+                break
+            made = face_cells(self.faces[owner], CELL)
+            parts[int(owner)] = self.look(owned(made.cells, int(owner)), made.blocks, even_equal=True)
+        return self.near([parts[owner] for owner in sorted(parts)])
+
+    def near(self, parts: Sequence[Cells]) -> Cells:
+        """Of cells that were looked at those that still may stand for a nearer place."""
+        cells = joined(parts)
+        return cells.rows(np.flatnonzero(cells.value - cells.radius <= self.best.distance))
+
+    def closer_look(self, cells: Cells) -> Cells:
+        """The pieces of cells, measured some at a time."""
+        parts = []
+        for low in range(0, len(cells), TILE):
+            pieces = split(self.faces, cells.rows(np.arange(low, min(low + TILE, len(cells)))))
+            parts.append(self.look(pieces, blocks_of(pieces.point)))
+        return self.near(parts)
 
 
 def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
@@ -186,34 +277,25 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     2. Rigid motions and mirrors change nothing.
     """
     name, solids = component
-    motions = motions_from_cl(*cl, reach_of(solids))
-    nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, motions.uncertainty)
+    tiles = Tiles(cl, reach_of(solids))
+    nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, tiles.uncertainty)
     if not faces:
         return nothing
-    search = _Search(solids, motions, (threads, partial(progress.report, f"{name} clearance")))
-    cells = face_cells(faces, CELL)
-    best, found, error = FAR, None, 0.0
-    few = cells.rows(np.arange(0, len(cells), 16))
-    value, _ = search.distances(few, best, 0.0)
-    best = float(value[few.on_face].min(initial=FAR))
-    for _ in range(_ROUNDS):
-        margin = float(cells.radius.max())
-        value, by = search.distances(cells, best, margin)
-        here = np.where(cells.on_face, value, np.inf)
-        i = int(np.argmin(here))
-        if here[i] < best or (found is None and here[i] <= best and by[i] >= 0):
-            best = float(here[i])
-            found = (int(cells.owner[i]), cells.point[i], int(motions.arrival[by[i]]))
-        near = np.flatnonzero((value - cells.radius <= best) & (by >= 0))
-        radius = float(cells.radius[near].max(initial=0.0))
+    search = _Search(solids, tiles, faces, (threads, partial(progress.report, f"{name} clearance")))
+    error = 0.0
+    near = search.first_look()
+    for _ in range(_ROUNDS - 1):
+        best = search.best.distance
+        radius = float(near.radius.max(initial=0.0))
         error = min(radius, radius**2 / max(best, RESOLUTION))
         ample = AMPLE_SHARE if best - error > AMPLE * enough else SHARE
         if not len(near) or error <= max(RESOLUTION, ample * best):
             break
         if radius < FINE:
-            near = near[np.argsort(value[near], kind="stable")[:_BEAM]]
-        cells = split(faces, cells.rows(np.sort(near)))
-    if found is None:
+            near = near.rows(np.sort(np.argsort(near.value, kind="stable")[:_BEAM]))
+        near = search.closer_look(near)
+    found = search.best
+    if found.motion < 0:
         return nothing
-    x, y, z = (float(c) for c in found[1])
-    return Clearance(name, best, faces[found[0]].label, (x, y, z), found[2], motions.uncertainty + error)
+    x, y, z = (float(c) for c in found.point)
+    return Clearance(name, found.distance, faces[found.owner].label, (x, y, z), found.motion, tiles.uncertainty + error)

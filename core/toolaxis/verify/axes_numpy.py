@@ -1,5 +1,7 @@
 """The plain twin of the clearance kernel."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +14,7 @@ Index = NDArray[np.int64]
 _PAIRS = 200_000
 
 
-def clear_numpy(body: tuple[Array, Motion], tables: tuple[Array, Index, Array], blocks: tuple[Array, Index],
+def clear_numpy(body: tuple[Array, Motion], tables: tuple[Any, Array, Index], blocks: tuple[Array, Index, Index],
                 out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
     """Distances of blocks of points from all motions, as far as they may be among the least.
 
@@ -20,34 +22,36 @@ def clear_numpy(body: tuple[Array, Motion], tables: tuple[Array, Index, Array], 
     ----------
     body : (k, 7) array, and four (n, 3) arrays
         The solids; start, step, axis and turn of their motions.
-    tables : groups and their beginnings (not used here), slack (n,)
-    blocks : ball (b, 4), first (b + 1,)
+    tables : groups (not used here), slack (n,), arrival (n,)
+    blocks : ball (b, 4), first (b + 1,), and the order of the blocks
     out : value, by, point, counts; the first two are changed in place
     levels : least known distance, and margin above it within which distances are wanted, mm; blocks from and to
     """
-    ball, first = blocks
+    ball, first, which = blocks
+    _, slack, arrival = tables
     value, by, point, counts = out
     best, margin, low, high = levels
     solids, motion = body
     start, step, axis, turn = motion
     middle, lean = start + 0.5 * step, axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
-    for b in range(low, high):
+    for b in which[low:high]:
         w = ball[b, :3] - middle
         z = np.einsum("ij,ij->i", w, lean)
         rho = np.linalg.norm(w - z[:, None] * lean, axis=1)
         i = np.arange(first[b], first[b + 1])
         for solid in solids:
-            bound = meridian_numpy(solid, rho, z)[0] - tables[2] - ball[b, 3]
+            bound = meridian_numpy(solid, rho, z)[0] - slack - ball[b, 3]
             order = np.argsort(bound, kind="stable")
             for k in np.array_split(order, max(1, len(order) * len(i) // _PAIRS)):
                 k = k[bound[k] <= min(float(value[i].max()), best + margin)]
                 if len(k):
-                    _approach((solid, motion), (i, k), point, (value, by))
+                    _approach((solid, motion), (i, k), point, (value, by), arrival)
         best = min(best, float(value[i][counts[i]].min(initial=np.inf)))
 
 
-def _approach(body: tuple[Array, Motion], pair: tuple[Index, Index], point: Array, out: tuple[Array, Index]) -> None:
+def _approach(body: tuple[Array, Motion], pair: tuple[Index, Index], point: Array, out: tuple[Array, Index],
+              arrival: Index) -> None:
     i, k = pair
     solid, (start, step, axis, turn) = body
     row, column = np.repeat(i, len(k)), np.tile(k, len(i))
@@ -57,4 +61,4 @@ def _approach(body: tuple[Array, Motion], pair: tuple[Index, Index], point: Arra
     pick = np.argmin(least, axis=1)
     nearest = least[np.arange(len(i)), pick]
     better = nearest < out[0][i]
-    out[0][i[better]], out[1][i[better]] = nearest[better], k[pick[better]]
+    out[0][i[better]], out[1][i[better]] = nearest[better], arrival[k[pick[better]]]

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 #: Points in a block, and blocks that one call of a kernel works off.
 BLOCK, CHUNK = 32, 32
@@ -22,7 +24,7 @@ def _spread(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return spread
 
 
-def curve_order(points: Array) -> NDArray[np.int64]:
+def curve_order(points: Array) -> Index:
     """Order of points along a space-filling curve through their box (Morton's).
 
     Parameters
@@ -40,13 +42,15 @@ def curve_order(points: Array) -> NDArray[np.int64]:
     return np.argsort(code, kind="stable")
 
 
-def balls(points: Array) -> tuple[Array, NDArray[np.int64]]:
+def balls(points: Array, size: int = BLOCK) -> tuple[Array, Index]:
     """Balls around blocks of consecutive points.
 
     Parameters
     ----------
     points : (m, 3) array
-        In curve order.
+        Neighbours in the order are neighbours in space.
+    size : int
+        Points in a block.
 
     Returns
     -------
@@ -55,12 +59,41 @@ def balls(points: Array) -> tuple[Array, NDArray[np.int64]]:
     first : (b + 1,) array of int
         Where each block begins.
     """
-    first = np.append(np.arange(0, len(points), BLOCK), len(points)).astype(np.int64)
+    first = np.append(np.arange(0, len(points), size), len(points)).astype(np.int64)
     low, high = (f.reduceat(points, first[:-1], axis=0) for f in (np.minimum, np.maximum))
     centre = 0.5 * (low + high)
     owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
     far = np.maximum.reduceat(np.linalg.norm(points - centre[owner], axis=1), first[:-1])
     return np.ascontiguousarray(np.column_stack([centre, far])), first
+
+
+class Blocks(NamedTuple):
+    """Points sorted into blocks of neighbours.
+
+    Attributes
+    ----------
+    order : (m,) array of int
+        Rows of the points, block after block.
+    ball : (b, 4) array
+        Centre and radius of the ball around each block.
+    first : (b + 1,) array of int
+        Where each block begins in the order.
+    """
+
+    order: Index
+    ball: Array
+    first: Index
+
+
+def blocks_of(points: Array) -> Blocks:
+    """Points in blocks along a space-filling curve.
+
+    Parameters
+    ----------
+    points : (m, 3) array
+    """
+    order = curve_order(points)
+    return Blocks(order, *balls(points[order]))
 
 
 def in_chunks(work: Callable[[tuple[int, int]], None], blocks: int, threads: int,

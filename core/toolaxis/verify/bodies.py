@@ -34,8 +34,8 @@ _WIDE, _FINE, _HALVINGS = 0.1, 1e-4, 16
 _UPRIGHT = 1e-9
 #: Sine of the angle between spindle and Z above which programs approach along one straight line.
 _TILTED = 1e-6
-#: Lines of a grid on a face of the part.
-_GRID = 60
+#: Lines of a grid on a face of the part; points that are looked at together.
+_GRID, _TILE = 60, 50_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,12 +289,16 @@ def _apart(rig: Rig, cloud: Thing, body: Thing, joints: Array) -> tuple[float, i
     """The least distance of points from a body, mm, which one has it, and where that is in the part's frame."""
     assert body.inside is not None
     (turn, shift), (other, aside) = rig.placed(cloud, joints), rig.placed(body, joints)
-    there = cloud.points @ turn.T + shift
-    found = body.inside((there - aside) @ other)
-    k = int(np.argmin(found))
+    least, k, place = np.inf, 0, np.zeros(3)
+    for first in range(0, len(cloud.points), _TILE):
+        there = cloud.points[first:first + _TILE] @ turn.T + shift
+        found = body.inside((there - aside) @ other)
+        i = int(np.argmin(found))
+        if found[i] < least:
+            least, k, place = float(found[i]), first + i, there[i]
     turned, moved = rig.placed(rig.part, joints)
-    on_table = (there[k] - moved) @ turned
-    return float(found[k]), k, np.asarray((on_table - rig.place[:3, 3]) @ rig.place[:3, :3])
+    on_table = (place - moved) @ turned
+    return least, k, np.asarray((on_table - rig.place[:3, 3]) @ rig.place[:3, :3])
 
 
 def _then(turn: Array, shift: Array, axis: RotaryAxis, angle: float) -> tuple[Array, Array]:

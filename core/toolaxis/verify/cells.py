@@ -1,11 +1,16 @@
 """Faces as cells: points with the radius of what they stand for, split where a closer look is wanted."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
+from toolaxis.verify.blocks import Blocks, blocks_of
+from toolaxis.verify.kept import Kept
 
 Array = NDArray[np.float64]
 
@@ -31,6 +36,8 @@ class Cells:
         Distance within which the cell's part of the face lies, by the derivatives at the centre, mm.
     on_face : (m,) array of bool
         Whether the centre lies on the face.
+    value : (m,) array
+        Distance of the centre from what is looked for, mm; inf where it was not measured.
     """
 
     owner: NDArray[np.int64]
@@ -40,6 +47,7 @@ class Cells:
     point: Array
     radius: Array
     on_face: NDArray[np.bool_]
+    value: Array
 
     def __len__(self) -> int:
         return len(self.owner)
@@ -51,34 +59,74 @@ class Cells:
         ----------
         which : array of int
         """
-        return Cells(self.owner[which], self.uv[which], self.half[which], self.edge[which], self.point[which],
-                     self.radius[which], self.on_face[which])
+        return Cells(*(getattr(self, one.name)[which] for one in fields(self)))
 
 
-def face_cells(faces: tuple[Face, ...], size: float) -> Cells:
-    """Cells over faces and their borders.
+class FaceCells(NamedTuple):
+    """Cells over one face and its borders.
+
+    Attributes
+    ----------
+    cells : Cells
+        All of owner 0.
+    blocks : Blocks
+        Their centres in blocks of neighbours.
+    """
+
+    cells: Cells
+    blocks: Blocks
+
+
+_KEPT: Kept[FaceCells] = Kept(100_000_000, lambda one: 150 * len(one.cells))
+_AROUND: WeakKeyDictionary[Face, dict[float, Array]] = WeakKeyDictionary()
+
+
+def face_cells(face: Face, size: float) -> FaceCells:
+    """Cells over a face and its borders; those of the faces used last are kept.
 
     Parameters
     ----------
-    faces : tuple of Face
+    face : Face
     size : float
         Side of a cell aimed at, mm; larger on faces with more than `MOST` of them along a parameter.
     """
-    parts = []
-    for index, face in enumerate(faces):
-        u0, u1, v0, v1 = face.bounds
-        d = face.evaluate(face.grid(16, 16))
-        wide, tall = (float(np.linalg.norm(x, axis=1).max()) if len(x) else 1.0 for x in (d.su, d.sv))
-        nu = int(np.clip(np.ceil((u1 - u0) * wide / size), 4, MOST))
-        nv = int(np.clip(np.ceil((v1 - v0) * tall / size), 4, MOST))
-        u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
-        v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
-        inner = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-        half = np.tile([0.5 * (u1 - u0) / nu, 0.5 * (v1 - v0) / nv], (len(inner), 1))
-        line, way = _loop_pieces(face, size)
-        parts.append(_cells(faces, np.full(len(inner) + len(line), index), np.vstack([inner, line]),
-                            np.vstack([half, way]), np.arange(len(inner) + len(line)) >= len(inner)))
-    return _joined(parts)
+    return _KEPT.get((face, size), lambda: _made(face, size))
+
+
+def ball_around(face: Face, size: float) -> Array:
+    """Ball (x, y, z, radius) around all that the cells of a face stand for, (4,) mm.
+
+    Parameters
+    ----------
+    face : Face
+    size : float
+        As for `face_cells`.
+    """
+    known = _AROUND.setdefault(face, {})
+    if size not in known:
+        cells = face_cells(face, size).cells
+        low, high = (f(cells.point, axis=0) for f in (np.min, np.max))
+        centre = 0.5 * (low + high)
+        far = float((np.linalg.norm(cells.point - centre, axis=1) + cells.radius).max())
+        known[size] = np.append(centre, far)
+    return known[size]
+
+
+def _made(face: Face, size: float) -> FaceCells:
+    u0, u1, v0, v1 = face.bounds
+    d = face.evaluate(face.grid(16, 16))
+    wide, tall = (float(np.linalg.norm(x, axis=1).max()) if len(x) else 1.0 for x in (d.su, d.sv))
+    nu = int(np.clip(np.ceil((u1 - u0) * wide / size), 4, MOST))
+    nv = int(np.clip(np.ceil((v1 - v0) * tall / size), 4, MOST))
+    u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
+    v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
+    inner = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = np.tile([0.5 * (u1 - u0) / nu, 0.5 * (v1 - v0) / nv], (len(inner), 1))
+    line, way = _loop_pieces(face, size)
+    count = len(inner) + len(line)
+    cells = _cells((face,), np.zeros(count, dtype=np.int64), np.vstack([inner, line]), np.vstack([half, way]),
+                   np.arange(count) >= len(inner))
+    return FaceCells(cells, blocks_of(cells.point))
 
 
 def _loop_pieces(face: Face, size: float) -> tuple[Array, Array]:
@@ -118,7 +166,19 @@ def _cells(faces: tuple[Face, ...], owner: NDArray[np.int64], uv: Array, half: A
         around = (uv[inner][:, None] + corner * half[inner][:, None]).reshape(-1, 2)
         on_face[inner] = centre
         keep[inner] = centre | faces[index].contains(around).reshape(-1, 4).any(axis=1)
-    return Cells(owner, uv, half, edge, point, radius, on_face).rows(np.flatnonzero(keep))
+    return Cells(owner, uv, half, edge, point, radius, on_face, np.full(len(uv), np.inf)).rows(np.flatnonzero(keep))
+
+
+def owned(cells: Cells, owner: int) -> Cells:
+    """The same cells as those of another face.
+
+    Parameters
+    ----------
+    cells : Cells
+    owner : int
+        Index of the face.
+    """
+    return replace(cells, owner=np.full(len(cells), owner))
 
 
 def split(faces: tuple[Face, ...], cells: Cells) -> Cells:
@@ -139,6 +199,12 @@ def split(faces: tuple[Face, ...], cells: Cells) -> Cells:
     return _cells(faces, owner, np.vstack([uv, loop]), half, np.arange(len(owner)) >= len(uv))
 
 
-def _joined(parts: list[Cells]) -> Cells:
-    names = ("owner", "uv", "half", "edge", "point", "radius", "on_face")
-    return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Cells of several as one.
+
+    Parameters
+    ----------
+    parts : sequence of Cells
+        One at least.
+    """
+    return Cells(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Cells)))

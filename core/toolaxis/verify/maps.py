@@ -210,7 +210,8 @@ def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> P
     return Place(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
 
 
-def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: float | None = None) -> SurfaceMap:
+def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: float | None = None, *,
+                heights: bool = True) -> SurfaceMap:
     """Maps of one face.
 
     Parameters
@@ -220,11 +221,13 @@ def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: f
         `removal` with everything but points and normals given.
     spacing : float, optional
         Distance of neighbouring rays, mm.
+    heights : bool
+        Whether the greatest height is looked for more closely, as on what is machined.
     """
     rays = face_rays(face, spacing)
     left = judge(rays.point, rays.normal)
     finite = np.where(np.isfinite(left.remaining), left.remaining, -1.0)
-    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by))
+    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by)) if heights else None
     worst_gouge = _sharpened(face, rays, judge, ("gouge", left.gouge, left.gouged_by))
     return SurfaceMap(face, rays.uv, rays.point, rays.weight, rays.border, left.remaining, left.gouge, left.cut_by,
                       left.gouged_by, rays.spacing, worst_scallop, worst_gouge)
@@ -234,9 +237,9 @@ def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
                coarse: tuple[str, Array, NDArray[np.int64]]) -> Place | None:
     """The worst place, looked for in ever smaller patches around the worst rays."""
     what, value, by = coarse
-    rows = np.argsort(-value, kind="stable")[:_STARTS]
-    if value[rows[0]] <= 0:
+    if value.max() <= 0:
         return None
+    rows = np.argsort(-value, kind="stable")[:_STARTS]
     best = place_at(face, rays.uv[rows[0]], rays.point[rows[0]], (float(value[rows[0]]), int(by[rows[0]])))
     starts, size = rays.uv[rows[value[rows] > 0]], rays.spacing
     for _ in range(_ROUNDS):

@@ -1,7 +1,6 @@
 """Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more on the border."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from math import sqrt
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
+from toolaxis.verify.kept import Kept
 
 Array = NDArray[np.float64]
 
@@ -20,8 +20,8 @@ _R2 = (0.7548776662466927, 0.5698402909980532)
 
 _FINE = 129
 
-#: Faces whose rays are kept.
-_KEPT = 64
+#: Places of the grid that are tried at a time, whatever part of them lies on the face.
+_TRIED = 200_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +60,12 @@ def default_spacing(face: Face) -> float:
     return max(min(SPACING, size / 150), size / sqrt(MOST_RAYS))
 
 
-@lru_cache(maxsize=_KEPT)
+#: The rays of the faces used last, since operations side by side look at the same neighbours.
+_KEPT: Kept[Rays] = Kept(200_000_000, lambda rays: 89 * len(rays.uv))
+
+
 def face_rays(face: Face, spacing: float | None = None) -> Rays:
-    """Rays over a face; those of the last faces are kept, since operations side by side look at the same neighbours.
+    """Rays over a face; those of the faces used last are kept.
 
     Parameters
     ----------
@@ -84,9 +87,11 @@ def face_rays(face: Face, spacing: float | None = None) -> Rays:
         spacing = default_spacing(face)
     if not (np.isfinite(spacing) and spacing > 0):
         raise InvalidInput(f"ray spacing is {spacing} mm: it must be a finite number above zero")
+    return _KEPT.get((face, spacing), lambda: _made(face, spacing))
+
+
+def _made(face: Face, spacing: float) -> Rays:
     uv, cell = _cells(face, spacing)
-    inside = face.contains(uv)
-    uv, cell = uv[inside], cell[inside]
     edge = border_points(face, spacing)
     if not len(uv) and not len(edge):
         raise InvalidInput(f"face {face.label} has no inside at a ray spacing of {spacing} mm: use a finer one")
@@ -100,7 +105,10 @@ def face_rays(face: Face, spacing: float | None = None) -> Rays:
 
 
 def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
-    """One place in each cell of a grid of equal lengths over the face's range, and the cell's area in (u, v) there."""
+    """One place in each cell of a grid of equal lengths over the face's range, and the cell's area in (u, v) there.
+
+    Of the places only those on the face.
+    """
     u0, u1, v0, v1 = face.bounds
     u, v = np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE)
     grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -110,17 +118,21 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     middle = np.interp((np.arange(rows) + 0.5) / rows, length / length[-1], v)
     line = np.stack(np.meshgrid(middle, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
     speed_u = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(rows, _FINE)
-    uv, area, done = [], [], 0
+    found, tried, done = [], [], 0
     for row in range(rows):
         across = _lengths(u, speed_u[row])
         count = _parts(across, spacing)
         k = np.arange(done + 1, done + count + 1)
         at_u, step_u = _placed(u, across, (np.arange(count) + np.mod(0.5 + k * _R2[0], 1.0)) / count)
         at_v, step_v = _placed(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
-        uv.append(np.column_stack([at_u, at_v]))
-        area.append(step_u * step_v / (count * rows))
+        tried.append(np.column_stack([at_u, at_v, step_u * step_v / (count * rows)]))
         done += count
-    return np.concatenate(uv), np.concatenate(area)
+        if sum(map(len, tried)) >= _TRIED or row == rows - 1:
+            places = np.concatenate(tried)
+            found.append(places[face.contains(places[:, :2])])
+            tried = []
+    places = np.concatenate(found)
+    return places[:, :2], places[:, 2]
 
 
 def _lengths(t: Array, speed: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,25 +10,38 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.compiled import compiled, inlined
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.blocks import balls, curve_order, in_chunks
-from toolaxis.verify.motions import GROUP, Motions, grouped, motions_from_cl
+from toolaxis.verify.blocks import balls, blocks_of, in_chunks
+from toolaxis.verify.motions import GROUP, Hierarchy, Tile, Tiles, floors, near_groups
 from toolaxis.verify.removal_numpy import remove_numpy
-from toolaxis.verify.solids import cutter_solid, meridian, reach_of
-from toolaxis.verify.sweep import LOOK, first_entry, moment, sway
+from toolaxis.verify.solids import cutter_solid, reach_of
+from toolaxis.verify.sweep import LOOK, first_entry, gradient, moment
 
 Array = NDArray[np.float64]
-Counts: TypeAlias = NDArray[np.int64]
+Index: TypeAlias = NDArray[np.int64]
 Pieces: TypeAlias = tuple[Array, Array, Array, Array]
 Body: TypeAlias = tuple[Array, Pieces]
-Found: TypeAlias = tuple[Array, Array, Counts, Counts]
-Tables: TypeAlias = tuple[Array, Counts, Array, NDArray[np.bool_], Counts]
+Found: TypeAlias = tuple[Array, Array, Index, Index]
+Vector: TypeAlias = tuple[float, float, float]
 
 #: Bound of the rounding and root-finding errors of a height, mm.
 NUMERICAL = 1e-6
+
+#: Blocks of rays in a tile, which are held in memory together; rays that are passed over together where none is near.
+TILE, _RUN = 4_000, 256
+
+
+class Tables(NamedTuple):
+    """The cutter, and of its motions: groups, which of them cut, where each arrives, and how far its axis turns."""
+
+    solids: Array
+    groups: Hierarchy
+    cutting: NDArray[np.bool_]
+    arrival: Index
+    sway: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +62,8 @@ class Remains:
 
     remaining: Array
     gouge: Array
-    cut_by: Counts
-    gouged_by: Counts
+    cut_by: Index
+    gouged_by: Index
     uncertainty: float
 
 
@@ -61,7 +74,7 @@ def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, plac
     k, cutting, arrival = which
     i, start = place
     remaining, gouge, cut_by, gouged_by = out
-    level = _level(ray, out, i, cutting)
+    level = _level((remaining[i], gouge[i]), ray[i, 7], cutting)
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
     entry = first_entry(solid, motion, k, line, (start, level))
     if -entry > gouge[i]:
@@ -75,122 +88,288 @@ def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, plac
             cut_by[i] = arrival
 
 
-@compiled
-def _level(ray: Array, out: Found, i: int, cutting: bool) -> float:
-    """Height below which a motion would change ray i."""
-    if cutting and out[0][i] > 0.0:
-        return float(min(out[0][i], ray[i, 7]))
-    return float(-out[1][i])
+@inlined
+def _level(found: tuple[float, float], height: float, cutting: bool) -> float:
+    """Height below which a motion would change a ray: what remains on it, or minus its gouge where that is deeper."""
+    remaining, gouge = found
+    return min(remaining, height) if cutting and remaining > 0.0 else -gouge
+
+
+class Block(NamedTuple):
+    """A block of rays: rows of the table of rays, and what bounds them.
+
+    Attributes
+    ----------
+    low, high : int
+        Rows from and to.
+    centre : (float, float, float)
+        Middle of the feet, mm.
+    radius : float
+        Greatest distance of a foot from it, mm.
+    normal : (float, float, float)
+        Mean of the normals.
+    thick, wide : float
+        Greatest distance of a foot from the centre along the normal and across it, mm.
+    spread : float
+        Greatest distance of a normal from the mean one.
+    """
+
+    low: int
+    high: int
+    centre: Vector
+    radius: float
+    normal: Vector
+    thick: float
+    wide: float
+    spread: float
 
 
 @compiled
-def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[Counts, int, Array, int]) -> None:
-    """Let the motions near[0][:near[1]] act on ray near[3]: the closest first, then those it does not rule out.
+def _block(ray: Array, ball: Array, low: int, high: int) -> Block:
+    """What bounds the rays of a block."""
+    n0, n1, n2 = 0.0, 0.0, 0.0
+    for i in range(low, high):
+        n0, n1, n2 = n0 + ray[i, 3], n1 + ray[i, 4], n2 + ray[i, 5]
+    size = np.sqrt(n0 * n0 + n1 * n1 + n2 * n2)
+    if size < 1e-6:  # normals that cancel out: any direction will do
+        n0, n1, n2, size = 0.0, 0.0, 1.0, 1.0
+    n0, n1, n2 = n0 / size, n1 / size, n2 / size
+    thick, wide, spread = 0.0, 0.0, 0.0
+    for i in range(low, high):
+        d0, d1, d2 = ray[i, 0] - ball[0], ray[i, 1] - ball[1], ray[i, 2] - ball[2]
+        up = d0 * n0 + d1 * n1 + d2 * n2
+        thick = max(thick, abs(up))
+        wide = max(wide, d0 * d0 + d1 * d1 + d2 * d2 - up * up)
+        e0, e1, e2 = ray[i, 3] - n0, ray[i, 4] - n1, ray[i, 5] - n2
+        spread = max(spread, e0 * e0 + e1 * e1 + e2 * e2)
+    return Block(low, high, (ball[0], ball[1], ball[2]), ball[3], (n0, n1, n2), thick, np.sqrt(wide), np.sqrt(spread))
 
-    One look at the middle of each motion, at height t, tells that the solid's function over the whole motion and ray
-    is at least rest + along (t' - t); that rules most of them out, and bounds the root of the others from below.
+
+class Span(NamedTuple):
+    """Where a motion may change something on the rays of a block: greatest depth and height, mm."""
+
+    depth: float
+    level: float
+
+
+@compiled
+def _span(ray: Array, out: Found, low: int, high: int) -> Span:
+    depth, level = 0.0, 0.0
+    for i in range(low, high):
+        depth = max(depth, ray[i, 6])
+        level = max(level, min(out[0][i], ray[i, 7]))
+    return Span(depth, level)
+
+
+@inlined
+def _misses(body: Body, which: tuple[int, float], block: Block, span: Span) -> bool:
+    """Whether motion which[0], whose axis turns by which[1], surely stays off all rays of a block in a span.
+
+    The solid's function is convex: over the whole block it lies above its tangent at one point, taken where the mean
+    ray leaves the span.
     """
     solid, motion = body
-    which, count, look, i = near
-    cutting, arrival = tables[3], tables[4]
+    start, (k, sway) = motion[0], which
+    c, n, t = block.centre, block.normal, span.level
+    w = (c[0] + t * n[0] - start[k, 0], c[1] + t * n[1] - start[k, 1], c[2] + t * n[2] - start[k, 2])
+    value, slope, g0, g1, g2 = gradient(solid, motion, (k, 0.5), w)
+    along = g0 * n[0] + g1 * n[1] + g2 * n[2]
+    across = np.sqrt(max(g0 * g0 + g1 * g1 + g2 * g2 - along * along, 0.0))
+    length = span.depth + span.level
+    least = value - 0.5 * abs(slope) - LOOK - abs(along) * block.thick - across * block.wide
+    least -= max(along, 0.0) * length + max(span.depth, span.level) * block.spread
+    return bool(least - sway * (block.radius + length) > 0.0)
+
+
+@compiled
+def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[Index, int, Array],
+                place: tuple[int, float]) -> None:
+    """Let the motions near[0][:near[1]] act on ray place[0]: the closest first, then those it does not rule out.
+
+    One look at the middle of each motion, at height t, tells that the solid's function over the whole motion and ray
+    is at least rest + along (t' - t); that rules most of them out, and bounds the root of the others from below.  It
+    tells most near the height at which the ray will be cut in the end: place[1] is a guess.
+    """
+    solid, motion = body
+    which, count, look = near
+    i, guess = place
+    cutting, arrival = tables.cutting, tables.arrival
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
+    found, bottom = (out[0][i], out[1][i]), -ray[i, 6]
     best, first = np.inf, -1
     for n in range(count):
-        level = _level(ray, out, i, cutting[which[n]])
-        value, slope, along = moment(solid, motion, (which[n], 0.5), line, level)
-        look[n, 0], look[n, 1], look[n, 2] = value - 0.5 * abs(slope) - LOOK, along, level
+        height = min(_level(found, ray[i, 7], cutting[which[n]]), guess)
+        value, slope, along = moment(solid, motion, (which[n], 0.5), line, height)
+        look[n, 0], look[n, 1], look[n, 2] = value - 0.5 * abs(slope) - LOOK, along, height
         if value < best:
             best, first = value, n
     for turn in range(-1, count):
         n = first if turn < 0 else turn
         if turn == first:
             continue
-        level = _level(ray, out, i, cutting[which[n]])
-        change, along, start = sway(motion, which[n]), look[n, 1], -ray[i, 6]
-        rest = look[n, 0] + along * (level - look[n, 2]) - change * (look[n, 2] - level)
-        if rest > max(along + change, 0.0) * (level - start):
+        k, along = which[n], look[n, 1]
+        level, change = _level(found, ray[i, 7], cutting[k]), tables.sway[k]
+        rest = look[n, 0] + along * (level - look[n, 2]) - change * abs(level - look[n, 2])
+        if rest > max(along + change, 0.0) * (level - bottom):
             continue
-        if along < -change:
-            start = max(start, level - rest / (along + change))
-        _meet(body, (which[n], cutting[which[n]], arrival[which[n]]), ray, out, (i, start))
+        start = max(bottom, level - rest / (along + change)) if along < -change else bottom
+        _meet(body, (k, cutting[k], arrival[k]), ray, out, (i, start))
+        found = (out[0][i], out[1][i])
 
 
 @compiled
-def _bounds(solid: Array, groups: Array, ball: Array, reach: float, bound: Array) -> None:
-    """Lower bound of the distance between a block of points and all motions of each group."""
-    for g in range(groups.shape[0]):
-        w0, w1, w2 = ball[0] - groups[g, 0], ball[1] - groups[g, 1], ball[2] - groups[g, 2]
-        z = w0 * groups[g, 4] + w1 * groups[g, 5] + w2 * groups[g, 6]
-        rho = np.sqrt(max(w0 * w0 + w1 * w1 + w2 * w2 - z * z, 0.0))
-        value, _, _ = meridian(solid, rho, z)
-        bound[g] = value - groups[g, 3] - groups[g, 7] * reach - ball[3]
-
-
-@compiled
-def _remove_block(body: Body, tables: Tables, ray: Array, out: Found, block: tuple[Array, int, int]) -> None:
+def _remove_block(body: Body, tables: Tables, ray: Array, out: Found, place: tuple[Array, int, int]) -> None:
     """Let all motions act on one block of rays, nearest groups first."""
-    solid, motion = body
-    ball, low, high = block
-    groups, first, slack, _, _ = tables
-    bound = np.empty(groups.shape[0])
-    _bounds(solid, groups, ball, np.sqrt(solid[5] ** 2 + max(solid[0] + solid[1], solid[6]) ** 2), bound)
-    centre = (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0)
+    ball, low, high = place
+    span = _span(ray, out, low, high)
+    groups = tables.groups
+    near, least = np.empty(groups.narrow.shape[0] + 1, dtype=np.int64), np.empty(groups.narrow.shape[0] + 1)
+    found = near_groups(tables.solids, groups, ball, max(span.depth, span.level), (near, least))
+    if found == 0:
+        return
+    block = _block(ray, ball, low, high)
     which, look = np.empty(GROUP, dtype=np.int64), np.empty((GROUP, 3))
-    for g in np.argsort(bound):
-        lever = 0.0
-        for i in range(low, high):
-            lever = max(lever, ray[i, 6], min(out[0][i], ray[i, 7]))
-        if bound[g] > lever:
+    for b in np.argsort(least[:found]):
+        span = _span(ray, out, low, high)
+        if least[b] > max(span.depth, span.level):
             break
         count = 0
-        for k in range(first[g], first[g + 1]):
-            value, _, _ = moment(solid, motion, (k, 0.5), centre, 0.0)
-            if value - slack[k] <= ball[3] + lever:
+        for k in range(groups.first[near[b]], groups.first[near[b] + 1]):
+            if not _misses(body, (k, tables.sway[k]), block, span):
                 which[count] = k
                 count += 1
         if count:
+            guess = np.inf
             for i in range(low, high):
-                _meet_group(body, tables, ray, out, (which, count, look, i))
+                _meet_group(body, tables, ray, out, (which, count, look), (i, guess))
+                guess = out[0][i]
 
 
 @compiled
-def _remove(body: Body, tables: Tables, rays: tuple[Array, Array, Counts], out: Found, part: tuple[int, int]) -> None:
+def _remove(body: Body, tables: Tables, rays: tuple[Array, Array, Index], out: Found, part: tuple[int, int]) -> None:
     ray, ball, first = rays
     for b in range(part[0], part[1]):
         _remove_block(body, tables, ray, out, (ball[b], first[b], first[b + 1]))
 
 
-def _checked_rays(points: ArrayLike, normals: ArrayLike, depth: ArrayLike, height: ArrayLike) -> Array:
+def _checked_rays(points: ArrayLike, normals: ArrayLike, spans: tuple[ArrayLike, ArrayLike],
+                  ) -> tuple[Array, Array, Array, Array]:
+    """Feet, directions, depths and heights of rays, one of each for every ray."""
     foot, direction = as_rows(points, 3, "ray point"), as_rows(normals, 3, "ray normal")
     if len(direction) != len(foot):
         raise InvalidInput(f"{len(foot)} ray points come with {len(direction)} normals: one of each is needed")
-    span = np.empty((len(foot), 2))
-    for column, (name, value) in enumerate((("depth", depth), ("height", height))):
-        span[:, column] = value
-        if not (np.isfinite(span[:, column]).all() and (span[:, column] > 0).all()):
+    depth, height = (np.broadcast_to(np.asarray(value, dtype=float), len(foot)) for value in spans)
+    for name, value in (("depth", depth), ("height", height)):
+        if not (np.isfinite(value).all() and (value > 0).all()):
             raise InvalidInput(f"ray {name} must be finite and above zero, mm")
-    return np.ascontiguousarray(np.hstack([foot, unit(direction), span]))
+    if not len(foot):
+        raise InvalidInput("there is no ray: give at least one point of the face")
+    return foot, direction, depth, height
 
 
-def _run(solid: Array, motions: Motions, tables: tuple[Array, NDArray[np.bool_]], rays: tuple[Array, Array, Counts],
-         workers: tuple[int, Progress]) -> Found:
-    """Hand blocks of rays to the kernel, or to its twin."""
-    slack, cutting = tables
-    count, (threads, progress) = len(rays[0]), workers
-    out = (np.full(count, np.inf), np.zeros(count), np.full(count, -1, dtype=np.int64),
-           np.full(count, -1, dtype=np.int64))
-    body = (solid, (motions.start, motions.step, motions.axis, motions.turn))
-    full = (*grouped(motions), slack, cutting, motions.arrival)
+class Removal:
+    """A cutter along cutter location data, ready to be met with rays.
 
-    def work(part: tuple[int, int]) -> None:
-        if _compiled.available:
-            _remove(body, full, rays, out, part)
-        else:
-            some = (rays[0], rays[1][slice(*part)], rays[2][part[0]:part[1] + 1])
-            remove_numpy(body, (slack, cutting, motions.arrival), some, out)
+    Parameters
+    ----------
+    cl : tips (n, 3), axes (n, 3), kind (n,)
+        Tool tips, mm, tool axes, and the `Motion` that arrives at each point.  Between two points the tip moves
+        straight and the axis is interpolated linearly and normalised.
+    profile : Profile
+        Generatrix of the cutter.
+    among : tuple of int, optional
+        Kinds of motion that are looked at; all of them unless given.
+    threads : int
+        Threads of the compiled kernel; the result does not depend on it.
+    progress : Progress
 
-    in_chunks(work, len(rays[1]), threads, partial(progress.report, "material removal"))
-    return out
+    Raises
+    ------
+    InvalidInput
+        When there is no cutter location, a number is not finite, or shapes do not fit.
+    """
+
+    def __init__(self, cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, *,
+                 among: tuple[int, ...] | None = None, threads: int = 1, progress: Progress = NO_PROGRESS) -> None:
+        self._solid = cutter_solid(profile)
+        self._tiles = Tiles(cl, reach_of(self._solid), among)
+        self._threads, self._report = threads, partial(progress.report, "material removal")
+
+    @property
+    def uncertainty(self) -> float:
+        """Bound of the error of a height or a depth, mm."""
+        return NUMERICAL + self._tiles.uncertainty
+
+    def along(self, rays: tuple[ArrayLike, ArrayLike], *, depth: ArrayLike = 1.0, height: ArrayLike = 10.0,
+              cutting: tuple[int, ...] = (Motion.CUT,)) -> Remains:
+        """Remove material and measure what is left along rays.
+
+        Parameters
+        ----------
+        rays : points (m, 3), normals (m, 3)
+            Feet of the rays, mm, and directions out of the material.
+        depth, height : float or (m,) array_like
+            How far to look inwards and outwards, mm.
+        cutting : tuple of int
+            Kinds of motion that count for what remains; all kinds count for gouges.
+
+        Raises
+        ------
+        InvalidInput
+            When there is no ray, a number is not finite, or shapes do not fit.
+        """
+        foot, direction, low, high = _checked_rays(*rays, (depth, height))
+        found = _nothing(len(foot))
+        near = self._within(foot, max(float(low.max()), float(high.max())))
+        if len(near):
+            order, ball, first = blocks_of(foot[near])
+            order = near[order]
+            for start in range(0, len(ball), TILE):
+                some = slice(start, start + TILE)
+                rows = order[first[start]:first[min(start + TILE, len(ball))]]
+                table = np.column_stack([foot[rows], unit(direction[rows]), low[rows], high[rows]])
+                blocks = (np.ascontiguousarray(table), ball[some], first[start:start + TILE + 1] - first[start])
+                self._act(cutting, blocks, rows, found)
+        return Remains(*found, self.uncertainty)
+
+    def _within(self, foot: Array, lever: float) -> Index:
+        """Rows of the rays whose feet may lie within a distance of the cutter on any motion, mm."""
+        if not _compiled.available:
+            return np.arange(len(foot))
+        ball, first = balls(foot, _RUN)
+        least = np.full(len(ball), np.inf)
+        for tile in self._tiles:
+            floors(self._solid, tile.groups, ball, least)
+        return np.flatnonzero(np.repeat(least <= lever, np.diff(first)))
+
+    def _act(self, cutting: tuple[int, ...], rays: tuple[Array, Array, Index], rows: Index, out: Found) -> None:
+        """Let all motions act on blocks of rays, which stand in some rows of what is found."""
+        found = _nothing(len(rows))
+        for tile in self._tiles:
+            self._meet(tile, cutting, rays, found)
+        for values, some in zip(out, found, strict=True):
+            values[rows] = some
+
+    def _meet(self, tile: Tile, cutting: tuple[int, ...], rays: tuple[Array, Array, Index], out: Found) -> None:
+        """Hand blocks of rays to the kernel, or to its twin."""
+        motions = tile.motions
+        body = (self._solid[0], (motions.start, motions.step, motions.axis, motions.turn))
+        tables = Tables(self._solid, tile.groups, np.isin(motions.kind, cutting), motions.arrival, tile.sway)
+
+        def work(part: tuple[int, int]) -> None:
+            if _compiled.available:
+                _remove(body, tables, rays, out, part)
+            else:
+                some = (rays[0], rays[1][slice(*part)], rays[2][part[0]:part[1] + 1])
+                remove_numpy(body, (tile.slack, tables.cutting, tables.arrival), some, out)
+
+        in_chunks(work, len(rays[1]), self._threads, self._report)
+
+
+def _nothing(count: int) -> Found:
+    """What is found on rays that nothing has met."""
+    return (np.full(count, np.inf), np.zeros(count), np.full(count, -1, dtype=np.int64),
+            np.full(count, -1, dtype=np.int64))
 
 
 def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: tuple[ArrayLike, ArrayLike], *,
@@ -232,24 +411,5 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
     2. Rigid motions and mirrors change nothing; nor does the number of threads.
     3. A ball's heights do not depend on its axes.
     """
-    solid = cutter_solid(profile)
-    reach = reach_of(solid)
-    motions = motions_from_cl(*cl, reach)
-    if among is not None:
-        motions = motions.rows(np.isin(motions.kind, among))
-    ray = _checked_rays(*rays, depth, height)
-    if not len(ray):
-        raise InvalidInput("there is no ray: give at least one point of the face")
-    order = curve_order(ray[:, :3])
-    sorted_ray = np.ascontiguousarray(ray[order])
-    lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
-    slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
-    if not len(motions):
-        nothing = np.full(len(ray), -1, dtype=np.int64)
-        return Remains(np.full(len(ray), np.inf), np.zeros(len(ray)), nothing, nothing.copy(), NUMERICAL)
-    cuts = np.isin(motions.kind, cutting)
-    out = _run(solid[0], motions, (slack, cuts), (sorted_ray, *balls(sorted_ray[:, :3])), (threads, progress))
-    back = np.empty_like(order)
-    back[order] = np.arange(len(order))
-    remaining, gouge, cut_by, gouged_by = out
-    return Remains(remaining[back], gouge[back], cut_by[back], gouged_by[back], NUMERICAL + motions.uncertainty)
+    made = Removal(cl, profile, among=among, threads=threads, progress=progress)
+    return made.along(rays, depth=depth, height=height, cutting=cutting)

@@ -11,7 +11,8 @@ Index = NDArray[np.int64]
 Motion = tuple[Array, Array, Array, Array]
 Pairs = tuple[Array, Motion, Array]
 
-_BLOCKS = 128
+#: Pairs of a block of rays and a motion, and of a ray and a motion, that are looked at together.
+_BLOCK_PAIRS, _PAIRS = 2_000_000, 200_000
 _NEAREST = 4
 
 
@@ -38,6 +39,16 @@ def _rows(pairs: Pairs, which: NDArray[np.bool_]) -> Pairs:
     return solid, (start[which], step[which], axis[which], turn[which]), ray[which]
 
 
+def _zero_numpy(width: Array, slope: tuple[Array, Array], other: tuple[Array, Array]) -> Array:
+    """`sweep._zero` on arrays."""
+    (da, db), (c, dc) = slope, other
+    three = (dc != da) & (dc != db)
+    safe = np.where(three, dc, 2 * db + 1.0)
+    part = width * da * safe / ((db - da) * (db - safe)) + c * da * db / ((safe - da) * (safe - db))
+    chord = -da / (db - da) * width
+    return np.asarray(np.where(three & (0.0 < part) & (part < width), part, chord))
+
+
 def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array]:
     """Least of the solid's function over the motion, for each pair of a motion and a ray's point.
 
@@ -59,7 +70,8 @@ def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array
     low, along = np.where(at_end, vb, va), np.where(at_end, tb, ta)
     value = low.copy()
     open_ = ~(at_start | at_end)
-    for turn in range(80):
+    c, dc = a.copy(), da.copy()
+    for turn in range(120):
         if not open_.any():
             break
         width, gap = b - a, np.where(open_, db - da, 1.0)
@@ -68,12 +80,19 @@ def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array
         value = np.where(open_, np.minimum(va, vb), value)
         open_ &= value - low > LEAST
         i = np.flatnonzero(open_)
-        part = (-da[i] / gap[i] * width[i], (low[i] - va[i]) / da[i], 0.5 * width[i])[turn % 3]
+        if turn % 4 < 3:
+            part = _zero_numpy(width[i], (da[i], db[i]), (c[i] - a[i], dc[i]))
+        elif turn % 8 == 3:
+            part = (low[i] - va[i]) / da[i]
+        else:
+            part = 0.5 * width[i]
         s = a[i] + np.clip(part, 1e-3 * width[i], 0.999 * width[i])
         v, d, slope = _moment(_rows(pairs, open_), s, t[i])
-        down, up = i[d <= 0], i[d > 0]
-        a[down], va[down], da[down], ta[down] = s[d <= 0], v[d <= 0], d[d <= 0], slope[d <= 0]
-        b[up], vb[up], db[up], tb[up] = s[d > 0], v[d > 0], d[d > 0], slope[d > 0]
+        below = d <= 0
+        down, up = i[below], i[~below]
+        c[down], dc[down], c[up], dc[up] = a[down], da[down], b[up], db[up]
+        a[down], va[down], da[down], ta[down] = s[below], v[below], d[below], slope[below]
+        b[up], vb[up], db[up], tb[up] = s[~below], v[~below], d[~below], slope[~below]
     return value, np.minimum(low, value), along
 
 
@@ -154,8 +173,9 @@ def remove_numpy(body: tuple[Array, Motion], tables: tuple[Array, NDArray[np.boo
     middle, lean = start + 0.5 * step, axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
     kinds = (cutting, arrival)
-    for b in range(0, len(ball), _BLOCKS):
-        part = ball[b:b + _BLOCKS]
+    together = max(1, _BLOCK_PAIRS // len(start))
+    for b in range(0, len(ball), together):
+        part = ball[b:b + together]
         w = part[:, None, :3] - middle
         z = np.einsum("bkj,kj->bk", w, lean)
         rho = np.linalg.norm(w - z[..., None] * lean, axis=2)
@@ -167,6 +187,6 @@ def remove_numpy(body: tuple[Array, Motion], tables: tuple[Array, NDArray[np.boo
                 i = np.arange(first[b + j], first[b + j + 1])
                 lever = np.maximum(ray[i, 6], np.minimum(out[0][i], ray[i, 7])).max()
                 k = np.flatnonzero(chosen[j] & (bound[j] <= lever))
-                if len(k):
-                    pair = (np.repeat(i, len(k)), np.tile(k, len(i)))
+                for some in np.array_split(k, len(i) * len(k) // _PAIRS + 1):
+                    pair = (np.repeat(i, len(some)), np.tile(some, len(i)))
                     _update(body, pair, ray, out, kinds)

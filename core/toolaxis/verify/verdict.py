@@ -15,8 +15,7 @@ from toolaxis.verify.edges import depth_at_edges
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
-from toolaxis.verify.rays import Rays, face_rays
-from toolaxis.verify.removal import Remains, removal
+from toolaxis.verify.removal import Remains, Removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
 from toolaxis.verify.task import Task, motion_of, spot
 from toolaxis.verify.walls import wall_depth
@@ -25,6 +24,9 @@ Array = NDArray[np.float64]
 
 #: An operation passes when this share of the area is left no higher than this multiple of the scallop limit.
 SHARE, FACTOR = 0.999, 1.02
+
+#: Rays laid bare too deep that are looked at together: near edges each of them is told by a hundred more.
+DEEP = 2_048
 
 NOT_CHECKED = "not checked"
 
@@ -176,41 +178,47 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
         As for `verify`.
     """
     cl = (task.tips, task.axes, task.kind)
-    cut = partial(removal, cl, task.profile, height=_standing(task), threads=threads, progress=progress)
-    seen: list[float] = []
-    samples: list[Rays] = []
+    cutter = Removal(cl, task.profile, threads=threads, progress=progress)
+    cut = partial(cutter.along, height=_standing(task))
 
     def measure(face: Face, point: Array, normal: Array) -> Remains:
-        foot = point + task.allowance * normal
-        left = cut((foot, normal), depth=task.depth)
-        seen.append(left.uncertainty)
+        left = cut((point + task.allowance * normal, normal), depth=task.depth)
         deep = np.flatnonzero(left.gouge > task.tolerance.gouge)
-        if not len(deep):
-            return left
-        if not samples:
-            samples.extend(face_rays(one) for one in (*task.targets, *task.skin))
-        limit = wall_depth(foot[deep], normal[deep], tuple(samples), task.depth)
-        thin = limit < task.depth
-        if thin.any():
-            rows = deep[thin]
-            less = cut((foot[rows], normal[rows]), depth=np.maximum(limit[thin], 1e-3))
-            left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
-        left.gouge[deep] = depth_at_edges(
-            face, (point[deep], normal[deep], left.gouge[deep]), (task.touching, beyond(face)),
-            lambda feet, ways: cut((feet + task.allowance * ways, ways), depth=task.depth).gouge)
+        for start in range(0, len(deep), DEEP):
+            _deepen(task, face, (point, normal), (left, deep[start:start + DEEP]), cut)
         return left
 
-    def beyond(face: Face) -> tuple[Face, ...]:
-        return tuple(one for one in (*task.targets, *task.skin, *task.surroundings) if one is not face)
-
     targets = tuple(surface_map(face, partial(measure, face), spacing) for face in task.targets)
-    skin = tuple(surface_map(face, partial(measure, face), spacing) for face in task.skin)
-    link_cut = _link_cut(task, targets, partial(cut, cutting=(Motion.LINK,), among=(Motion.LINK,)))
+    skin = [_kept_of(surface_map(face, partial(measure, face), spacing, heights=False)) for face in task.skin]
+    links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
+    link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
     edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
                      enough=task.tolerance.gouge, threads=threads, progress=progress)
-    uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
+    uncertainty = cutter.uncertainty + max(face.tolerance for face in (*task.targets, *task.skin))
     rooms = {**_rooms(task, threads, progress), **machine_rooms(task, progress)}
     return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
+
+
+def _deepen(task: Task, face: Face, rays: tuple[Array, Array], found: tuple[Remains, NDArray[np.int64]],
+            cut: Callable[..., Remains]) -> None:
+    """Replace the depths of some rays by those below the part's surface: less in thin walls and near edges."""
+    left, deep = found
+    point, normal = rays[0][deep], rays[1][deep]
+    foot = point + task.allowance * normal
+    limit = wall_depth(foot, normal, (*task.targets, *task.skin), task.depth)
+    thin = limit < task.depth
+    if thin.any():
+        less = cut((foot[thin], normal[thin]), depth=np.maximum(limit[thin], 1e-3))
+        left.gouge[deep[thin]], left.gouged_by[deep[thin]] = less.gouge, less.gouged_by
+    beyond = tuple(one for one in (*task.targets, *task.skin, *task.surroundings) if one is not face)
+    left.gouge[deep] = depth_at_edges(
+        face, (point, normal, left.gouge[deep]), (task.touching, beyond),
+        lambda feet, ways: cut((feet + task.allowance * ways, ways), depth=task.depth).gouge)
+
+
+def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
+    """What is kept of the map of a face of the skin: the rays that something cut or gouged, and how many there were."""
+    return one.touched(), len(one.uv)
 
 
 def _needed(task: Task, name: str) -> float:
@@ -254,9 +262,10 @@ def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[Place
     return tuple(sorted(places, key=lambda place: -place.value)[:10])
 
 
-def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, ...]],
+def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[SurfaceMap, int]]],
             room: tuple[dict[str, Clearance | str], Clearance, Place | None], uncertainty: float) -> OperationVerdict:
-    targets, skin = found
+    targets, skin = found[0], tuple(one for one, _ in found[1])
+    count = sum(len(one.uv) for one in targets) + sum(rays for _, rays in found[1])
     rooms, edge, link_cut = room
     limit, maps = FACTOR * task.scallop, (*targets, *skin)
     area = sum(one.area for one in targets)
@@ -276,9 +285,9 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], tuple[SurfaceMap, .
     return OperationVerdict(
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
         reached_max, share, gouge_max, task.tolerance.gouge, rooms,
-        _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, sum(len(one.uv) for one in maps),
+        _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        (*targets, *(one.touched() for one in skin)))
+        maps)
 
 
 def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
