@@ -32,6 +32,11 @@ CLOSED = ("SPHERICAL_SURFACE", "TOROIDAL_SURFACE")
 LOOPS = ("EDGE_LOOP", "VERTEX_LOOP", "POLY_LOOP")
 BOUNDS = ("FACE_BOUND", "FACE_OUTER_BOUND")
 PLACEMENTS = ("AXIS2_PLACEMENT_3D", "AXIS1_PLACEMENT")
+#: What moves one representation into another.
+PLACING = ("NEXT_ASSEMBLY_USAGE_OCCURRENCE", "MAPPED_ITEM", "REPRESENTATION_MAP", "ITEM_DEFINED_TRANSFORMATION",
+           "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "AXIS2_PLACEMENT_3D")
+#: Curves that come with others on the surfaces beside them, which a kernel finds by itself.
+DOUBLED = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
 
 Found = Iterator[tuple[int, str]]
 
@@ -106,6 +111,25 @@ def _unbalanced(entities: Entities) -> str:
     return ""
 
 
+def lost_places(entities: Entities) -> str:
+    """What of an assembly stands at a place that the text lacks; empty where nothing does.
+
+    Parameters
+    ----------
+    entities : Entities
+    """
+    if not entities.dangling:
+        return ""
+    moving = entities.complex_of("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION")
+    for entity in chain(entities.of(*PLACING), moving):
+        for number in entities.references(entity):
+            if number in entities.dangling:
+                what = entity.keyword or "REPRESENTATION_RELATIONSHIP"
+                return (f"places its pieces by {what} #{entity.number}, which refers to #{number}, and that is not "
+                        "defined; export the part again")
+    return ""
+
+
 def damaged_entities(entities: Entities) -> dict[int, str]:
     """Entities that are not what their standard asks, and the rule that each breaks.
 
@@ -113,7 +137,7 @@ def damaged_entities(entities: Entities) -> dict[int, str]:
     ----------
     entities : Entities
     """
-    found: dict[int, str] = {}
+    found = {number: f"#{number} is not defined in the file" for number in entities.dangling}
     for number, why in chain(_faces(entities), _topology(entities), _splines(entities), _radii(entities),
                              _directions(entities)):
         found.setdefault(number, why)
@@ -174,12 +198,18 @@ def _needed(entities: Entities, face: int) -> Iterator[int]:
         seen.add(number)
         yield number
         entity = entities.table.get(number)
-        if entity is None:
-            continue
-        referred = entities.references(entity)
-        if entity.keyword == "PCURVE" and referred[:1] != last:
-            continue
-        front += reversed(referred)
+        if entity is not None:
+            front += reversed(_followed(entities, entity, last))
+
+
+def _followed(entities: Entities, entity: Entity, surface: list[int]) -> list[int]:
+    """What an entity stands on, for a face on a surface."""
+    referred = entities.references(entity)
+    if entity.keyword == "PCURVE" and referred[:1] != surface:
+        return []
+    if entity.keyword in DOUBLED:
+        return referred[:1] + [number for number in referred[1:] if number not in entities.dangling]
+    return referred
 
 
 def _refers(entities: Entities, entity: Entity, members: Sequence[int], right: Callable[[str], bool],

@@ -14,7 +14,7 @@ _DEFINITION = re.compile(rb"#(\d+)\s*=")
 _REFERENCE = re.compile(rb"#(\d+)")
 _STATEMENT = re.compile(rb"#(\d+)\s*=\s*(!?[A-Z_0-9]*)\s*\(([^;]*);")
 _KEYWORD = re.compile(rb"([A-Z_0-9]+)\s*\(")
-_TOKEN = re.compile(rb"[()]|[^(),\s]+")
+_TOKEN = re.compile(rb"'[^']*'|[()]|[^(),\s]+")
 
 Nested = list["bytes | Nested"]
 
@@ -86,6 +86,11 @@ class Entities:
     def referred(self) -> set[int]:
         """Numbers that stand anywhere in the data."""
         return {int(number) for number in set(_REFERENCE.findall(self.bare, self.data))}
+
+    @cached_property
+    def dangling(self) -> frozenset[int]:
+        """Numbers that are referred to and not defined."""
+        return frozenset(self.referred.difference(self.definitions))
 
     @cached_property
     def table(self) -> dict[int, Entity]:

@@ -9,7 +9,7 @@ BOM = b"\xef\xbb\xbf"
 #: How other files begin, and what they are.
 FOREIGN = (
     (b"\x1f\x8b", "packed with gzip: unpack it first"),
-    (b"PK\x03\x04", "a zip archive: unpack it first"),
+    (b"pk\x03\x04", "a zip archive: unpack it first"),
     (b"7z\xbc\xaf", "a 7-Zip archive: unpack it first"),
     (b"version https://git-lfs", "a pointer of Git LFS: fetch the file itself with git lfs pull"),
     (b"<!doctype html", "a web page: download the file itself"),

@@ -62,8 +62,8 @@ class _Loose:
         if kind in SETS:
             return self._of_set(number)
         keyword = model_of_shell(kind)
-        if keyword and number not in self.held:
-            return [self._model("shells", number, keyword)]
+        if keyword:  # One that a solid has stands there already.
+            return [] if number in self.held else [self._model("shells", number, keyword)]
         if is_bounded_surface(self.entities, number):
             return [self._model("surfaces", number, "GEOMETRIC_SET")]
         return [number]
@@ -108,14 +108,14 @@ def some(what: str, numbers: list[int]) -> str:
     return f"{len(numbers)} {what[:-1] if one else what} ({named}) {'stands' if one else 'stand'}"
 
 
-def give_products(mending: Mending, left: Iterable[int]) -> frozenset[int]:
+def give_products(mending: Mending, faces: Iterable[int]) -> frozenset[int]:
     """Representations that no product has get one, and so do faces in no representation.
 
     Parameters
     ----------
     mending : Mending
-    left : iterable of int
-        Entity numbers of faces that are not wanted.
+    faces : iterable of int
+        Entity numbers of the faces that are wanted.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def give_products(mending: Mending, left: Iterable[int]) -> frozenset[int]:
         Faces in no product that get none: where the file has an assembly or is not whole, their place is not certain.
     """
     entities = mending.entities
-    homeless = {face.number for face in entities.of(*FACES)} - set(left)
+    homeless = {number for number in faces if entities.kind(number) in FACES}
     used = _used_representations(entities)
     lonely: list[tuple[Entity, set[int]]] = []
     for holder in entities.of(*REPRESENTATIONS):
@@ -133,7 +133,7 @@ def give_products(mending: Mending, left: Iterable[int]) -> frozenset[int]:
         else:
             lonely.append((holder, own))
     told = sorted(homeless)
-    if told and (any(True for _ in entities.of(*PLACING)) or entities.referred - set(entities.definitions)):
+    if told and (any(True for _ in entities.of(*PLACING)) or entities.dangling):
         return frozenset(told)
     for holder, own in lonely:
         if own & homeless:

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from toolaxis.cad.stepdamage import broken_text, damaged_entities, faces_with, far_entities
+from toolaxis.cad.stepdamage import broken_text, damaged_entities, faces_with, far_entities, lost_places
 from toolaxis.cad.stepentities import Entities
 from toolaxis.cad.stepfaces import FaceLists, FaceOrder, face_lists
 from toolaxis.cad.stepfile import EXPORT, file_bytes, plain_text
@@ -74,19 +74,22 @@ def read_text(path: Path, accept_lost_faces: bool = False) -> StepText:
     raw = file_bytes(path)
     content, notes = plain_text(path, raw)
     entities = _entities(path, content)
-    fault = broken_text(entities) or unit_fault(entities)
+    fault = broken_text(entities)
     if fault:
         raise InvalidInput(f"{path} {fault}")
     promised, links = face_lists(entities), linked_files(entities)
     if not promised.faces:
         raise InvalidInput(f"{path} {_nothing(entities, links)}")
     left = _left_out(path, entities, promised, accept_lost_faces)
+    fault = unit_fault(entities) or lost_places(entities)
+    if fault:
+        raise InvalidInput(f"{path} {fault}")
     mending = Mending(entities)
     leave_out(mending, left)
     give_models(mending)
-    homeless = give_products(mending, left)
+    homeless = give_products(mending, promised.faces.difference(left))
     mended = Entities(mending.content()) if mending.changed else entities
-    dangling = tuple(sorted(mended.referred - set(mended.definitions)))
+    dangling = tuple(sorted(mended.dangling))
     unit = _unit(entities)
     notes += [*mending.notes, *_reservations(unit, links)]
     order = FaceOrder(mended.definitions, promised.lists, left)

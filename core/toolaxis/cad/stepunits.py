@@ -3,6 +3,7 @@
 import re
 
 from toolaxis.cad.stepentities import Entities, Entity
+from toolaxis.cad.stepfaces import REPRESENTATIONS
 
 _CONTEXT = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^)]*)\)")
 _REFERENCE = re.compile(rb"#(\d+)")
@@ -46,11 +47,17 @@ def unit_fault(entities: Entities) -> str:
     ----------
     entities : Entities
     """
-    for number in length_units(entities):
-        fault = _fault(entities, number, ())
-        if fault:
-            return fault
-    return ""
+    units = length_units(entities)
+    fault = next(filter(None, (_fault(entities, number, ()) for number in units)), "")
+    return fault or ("" if units else _lost(entities))
+
+
+def _lost(entities: Entities) -> str:
+    """Which entity may have been the length unit, where the text lacks some."""
+    contexts = [number for holder in entities.of(*REPRESENTATIONS) for number in entities.references(holder)[-1:]]
+    units = [int(number) for members in _CONTEXT.findall(entities.bare) for number in _REFERENCE.findall(members)]
+    gone = [number for number in (*contexts, *units) if number in entities.dangling]
+    return f"lacks #{gone[0]}, by which it declares its length unit; {REMEDY}" if gone else ""
 
 
 def _fault(entities: Entities, number: int, above: tuple[int, ...]) -> str:
