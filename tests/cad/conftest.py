@@ -1,7 +1,10 @@
 """Real parts for the adapters, and the kernel's own answers about them."""
 
 import importlib.util
+import json
 import os
+import subprocess
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -76,3 +79,49 @@ def kernel_record(kernel_shape):
     from toolaxis.cad.ocp import shape_record
 
     return shape_record(kernel_shape)
+
+
+SERVER = """
+import json, os, signal, sys, time
+import toolaxis.cad.ocp, toolaxis.cad.transfer as transfer
+for line in sys.stdin:
+    given = json.loads(line)
+    child = os.fork()
+    if child == 0:
+        silence = os.open(os.devnull, os.O_RDWR)
+        for stream in (0, 1, 2):
+            os.dup2(silence, stream)
+        os._exit(transfer.main(given["arguments"]))
+    end, found = time.monotonic() + given["limit"], 0
+    while not found and time.monotonic() < end:
+        found, status = os.waitpid(child, os.WNOHANG)
+        time.sleep(0.005)
+    if not found:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+    print(json.dumps(os.waitstatus_to_exitcode(status) if found else "hangs"), flush=True)
+"""
+
+
+@pytest.fixture(scope="session")
+def kernel_server():
+    """A process that has loaded the kernel and forks one for each file: as apart as in use, and quicker."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "core"), "TOOLAXIS_NUMBA": "0"}
+    with subprocess.Popen([sys.executable, "-c", SERVER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                          env=environment) as server:
+        yield server
+        server.stdin.close()
+
+
+@pytest.fixture
+def quick_kernel(kernel_server, monkeypatch):
+    """Let that process read STEP files; what hangs the kernel for half a minute fails the test."""
+
+    def run(arguments, file, limit):
+        kernel_server.stdin.write(json.dumps({"arguments": arguments, "limit": 30.0}) + "\n")
+        kernel_server.stdin.flush()
+        code = json.loads(kernel_server.stdout.readline())
+        assert code != "hangs", f"{file} hangs the kernel"
+        return subprocess.CompletedProcess(arguments, code, b"", b"")
+
+    monkeypatch.setattr("toolaxis.cad.step._run", run)

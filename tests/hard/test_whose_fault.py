@@ -12,7 +12,7 @@ def _outcome(monkeypatch: pytest.MonkeyPatch, reason: Exception) -> tuple:
     def _raise(path: str) -> None:
         raise reason
 
-    monkeypatch.setattr(transfer, "read_shape", _raise)
+    monkeypatch.setattr(transfer, "read_file", _raise)
     return transfer.convert("part.step")
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cad.borders import borders_of
 from toolaxis.cad.kernel import Box, KernelBody, KernelFace, KernelSurface
-from toolaxis.cad.records import FaceRecord, ShapeRecord
+from toolaxis.cad.records import FaceRecord, ShapeRecord, left_out
 from toolaxis.cad.surfaces import PlainSurface, convert, grid, map_of
 from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
@@ -22,6 +22,12 @@ ENDLESS = 1e50
 NATURAL = 1e-7
 
 
+#: Open shells that are named one by one.
+MANY = 3
+
+#: mm.  A part of 5 m in a unit that is wrong by 1000 is half as large; what is larger is damaged.
+FARTHEST = 1e7
+
 #: Chord of loops, mm, that even large faces keep: a face that ends beyond its true border meets the cutter there.
 GREATEST_CHORD = 2e-4
 
@@ -30,8 +36,8 @@ class EndlessFace(UnsupportedGeometry):
     """A face of endless extent without trim loops: in a file, one that lost them."""
 
 
-def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
-                    tolerance: Tolerance | None = None) -> ShapeRecord:
+def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody], tolerance: Tolerance | None = None,
+                    numbers: Sequence[int] = (), failures: tuple[type[Exception], ...] = ()) -> ShapeRecord:
     """Everything toolaxis needs of a kernel shape.
 
     Parameters
@@ -41,6 +47,10 @@ def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
     bodies : sequence of KernelBody
     tolerance : Tolerance, optional
         Its `trim` is the chord tolerance of loops and edges, as a share of the face's diagonal.
+    numbers : sequence of int
+        Of the faces; from 1 unless given.
+    failures : tuple of exceptions
+        What the kernel raises where it fails on a face.
 
     Raises
     ------
@@ -53,21 +63,26 @@ def record_of_shape(faces: Sequence[KernelFace], bodies: Sequence[KernelBody],
         raise InvalidInput("the CAD shape has no faces: give a solid, a shell or a face")
     record = ShapeRecord()
     share = (tolerance or Tolerance()).trim
-    for number, face in enumerate(faces, 1):
+    numbers = numbers or range(1, len(faces) + 1)
+    for number, face in zip(numbers, faces, strict=True):
         breathe()
         try:
             converted, warnings = record_of_face(face, number, share)
         except UnsupportedGeometry as reason:
             record.endless += isinstance(reason, EndlessFace)
-            record.warnings.append(f"face {number} was left out: {reason}; until then it is neither machined nor "
-                                   "kept clear of")
+            record.warnings.append(left_out(f"face {number}", str(reason)))
+        except failures as reason:
+            why = f"the CAD kernel fails on it ({type(reason).__name__}): repair the face in the CAD system"
+            record.warnings.append(left_out(f"face {number}", why))
         else:
             record.faces.append(converted)
             record.warnings += [f"face {number}: {text}" for text in warnings]
+    record.faces.sort(key=lambda face: face.number)
     if not record.faces:
         raise UnsupportedGeometry(f"none of the part's {len(faces)} faces can be used; {record.warnings[0]}")
-    _add_bodies(record, bodies)
-    record.borders, record.free = borders_of((item, faces[item.number - 1]) for item in record.faces)
+    _add_bodies(record, [body._replace(faces=tuple(numbers[index - 1] for index in body.faces)) for body in bodies])
+    by_number = dict(zip(numbers, faces, strict=True))
+    record.borders, record.free = borders_of((item, by_number[item.number]) for item in record.faces)
     return record
 
 
@@ -89,8 +104,10 @@ def record_of_face(face: KernelFace, number: int = 1, share: float = 1e-5) -> tu
     surface = face.surface
     if surface is None:
         raise UnsupportedGeometry("it has a mesh but no surface: export the part with exact geometry")
-    loops, box = _kernel_loops(face, surface, share)
-    plain = convert(surface, box)
+    with np.errstate(all="ignore"):  # What is not finite is told below.
+        loops, box = _kernel_loops(face, surface, share)
+        plain = convert(surface, box)
+        _check_reach(plain)
     low, high = _domain(plain)
     polygons = tuple(_kept_inside(plain.map.to_ours(polygon), low, high) for polygon in loops.polygons)
     if _covers_domain(polygons, low, high):
@@ -98,6 +115,17 @@ def record_of_face(face: KernelFace, number: int = 1, share: float = 1e-5) -> tu
     record = FaceRecord(number, plain.knots_u, plain.knots_v, plain.control, plain.degree, polygons, face.flip,
                         loops.reversed, plain.kind, plain.tolerance, plain.map)
     return record, loops.warnings
+
+
+def _check_reach(plain: PlainSurface) -> None:
+    """That a surface is finite and lies where a part can lie."""
+    points = plain.control[..., :3] / plain.control[..., 3:]
+    reach = float(np.abs(points).max())
+    if not np.isfinite(reach):
+        raise UnsupportedGeometry("its geometry is not finite: repair the face in the CAD system")
+    if reach > FARTHEST:
+        raise UnsupportedGeometry(f"it reaches {reach:.3g} mm from the origin, and no part lies farther than "
+                                  f"{FARTHEST:g} mm: repair the face in the CAD system, or check the part's unit")
 
 
 def _kernel_loops(face: KernelFace, surface: KernelSurface, share: float) -> tuple[Loops, Box]:
@@ -150,6 +178,7 @@ def _covers_domain(polygons: tuple[Array, ...], low: Array, high: Array) -> bool
 def _add_bodies(record: ShapeRecord, bodies: Sequence[KernelBody]) -> None:
     """Bodies as they are, of usable faces; solids that are inside out are turned over."""
     usable = {face.number for face in record.faces}
+    shells: list[tuple[int, int]] = []
     for body in bodies:
         own = tuple(number for number in body.faces if number in usable)
         if body.kind == "faces" and not own:
@@ -159,5 +188,11 @@ def _add_bodies(record: ShapeRecord, bodies: Sequence[KernelBody]) -> None:
             record.warnings.append(f"the solid with face {own[0]} is inside out: its faces were turned over")
             record.faces = [replace(face, flip=not face.flip) if face.number in own else face for face in record.faces]
         if body.kind == "shell" and not body.closed and own:
-            which = f"faces {own[0]} to {own[-1]} form" if len(own) > 1 else f"face {own[0]} forms"
-            record.warnings.append(f"{which} an open shell: which side the material is on was taken from the file")
+            shells.append((min(own), max(own)))
+    if len(shells) > MANY:
+        record.warnings.append(f"{len(shells)} shells are open, among them that with face {shells[0][0]}: which side "
+                               "the material is on was taken from the file")
+        return
+    for first, last in shells:
+        which = f"faces {first} to {last} form" if last > first else f"face {first} forms"
+        record.warnings.append(f"{which} an open shell: which side the material is on was taken from the file")

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import FreeCAD
@@ -14,8 +13,9 @@ from numpy.typing import NDArray
 from toolaxis.cad.faces import record_of_shape
 from toolaxis.cad.freecad_geometry import FreecadSurface, rows
 from toolaxis.cad.kernel import KernelBody
-from toolaxis.cad.records import ShapeRecord
-from toolaxis.cad.steptext import StepText, declared_unit
+from toolaxis.cad.records import ShapeRecord, Transfer
+from toolaxis.cad.stepfaces import numbered, transferred
+from toolaxis.cad.steptext import StepText
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.tolerances import Tolerance
 
@@ -49,7 +49,8 @@ class Numbering:
         return next((n for other, n in self.buckets.get(shape.hashCode(), ()) if other.isSame(shape)), 0)
 
 
-def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance | None = None) -> ShapeRecord:
+def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance | None = None,
+                 numbers: Sequence[int] = ()) -> ShapeRecord:
     """Everything toolaxis needs of a shape of the Part module.
 
     Parameters
@@ -59,6 +60,8 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
         Faces of the shape that the caller picked.
     tolerance : Tolerance, optional
         Its `trim` is the chord tolerance of loops and edges, as a share of the face's diagonal.
+    numbers : sequence of int
+        Of the faces in FreeCAD's order; from 1 unless given.
 
     Raises
     ------
@@ -71,19 +74,20 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
         raise InvalidInput("the CAD shape is empty: nothing was selected or computed")
     faces, edges = Numbering(shape.Faces), Numbering()
     readers = [FreecadFace(face, edges) for face in shape.Faces]
-    record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance)
-    record.selected = tuple(sorted({faces.find(face) for face in selected} - {0}))
+    record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance, numbers, (Part.OCCError,))
+    picked = {faces.find(face) for face in selected} - {0}
+    record.selected = tuple(sorted(numbers[index - 1] if numbers else index for index in picked))
     return record
 
 
-def step_record(path: Path, text: StepText) -> tuple[ShapeRecord, int]:
-    """What FreeCAD makes of a STEP file, in mm, and how many different faces came out, copies counted once.
+def step_record(path: Path, text: StepText) -> Transfer:
+    """What FreeCAD makes of a STEP file, in mm.
 
     Parameters
     ----------
     path : Path
+        With the text as it was mended.
     text : StepText
-        Of the file.
 
     Raises
     ------
@@ -92,21 +96,18 @@ def step_record(path: Path, text: StepText) -> tuple[ShapeRecord, int]:
     UnsupportedGeometry
         When not one face can be converted.
     """
-    with TemporaryDirectory(prefix="toolaxis-") as folder:
-        source = path
-        if text.marked:
-            source = Path(folder) / "without-mark.step"
-            source.write_bytes(text.content)
-        try:
-            shape = Part.read(str(source))
-        except (Part.OCCError, OSError, RuntimeError) as reason:
-            raise InvalidInput("the CAD kernel cannot parse its text: export the part again") from reason
-    record = shape_record(shape)
-    record.unit = declared_unit(text.content)
+    try:
+        shape = Part.read(str(path))
+    except (Part.OCCError, OSError, RuntimeError) as reason:
+        raise InvalidInput("the CAD kernel cannot parse its text: export the part again") from reason
     faces = shape.Faces
     for face in faces:
         face.Placement = FreeCAD.Placement()
-    return record, Numbering(faces).count - record.endless
+    origins = text.order.guessed(len(faces))
+    numbers = numbered(text.order, origins)
+    record = shape_record(shape, numbers=numbers.made)
+    record.unit = text.unit
+    return transferred(record, Numbering(faces).count, text.order, numbers, origins)
 
 
 class FreecadFace:

@@ -12,6 +12,7 @@ from OCP.BRepClass3d import BRepClass3d_SolidClassifier
 from OCP.BRepTools import BRepTools_WireExplorer
 from OCP.GeomAbs import GeomAbs_CurveType, GeomAbs_Shape
 from OCP.ShapeFix import ShapeFix_Edge
+from OCP.Standard import Standard_Failure
 from OCP.TopAbs import (
     TopAbs_EDGE,
     TopAbs_FACE,
@@ -42,7 +43,8 @@ def face_map(shape: Any) -> TopTools_IndexedMapOfShape:
     return faces
 
 
-def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance | None = None) -> ShapeRecord:
+def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance | None = None,
+                 numbers: Sequence[int] = ()) -> ShapeRecord:
     """Everything toolaxis needs of a kernel shape.
 
     Parameters
@@ -52,6 +54,8 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
         Faces of the shape that the caller picked.
     tolerance : Tolerance, optional
         Its `trim` is the chord tolerance of loops and edges, as a share of the face's diagonal.
+    numbers : sequence of int
+        Of the faces in the kernel's order; from 1 unless given.
 
     Raises
     ------
@@ -63,9 +67,10 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
     if shape is None or shape.IsNull():
         raise InvalidInput("the CAD shape is empty: nothing was selected or transferred")
     faces, edges = face_map(shape), TopTools_IndexedMapOfShape()
-    readers = [OcpFace(TopoDS.Face_s(faces.FindKey(number + 1)), edges) for number in range(faces.Extent())]
-    record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance)
-    record.selected = tuple(sorted({faces.FindIndex(face) for face in selected} - {0}))
+    readers = [OcpFace(TopoDS.Face_s(faces.FindKey(index + 1)), edges) for index in range(faces.Extent())]
+    record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance, numbers, (Standard_Failure,))
+    picked = {faces.FindIndex(face) for face in selected} - {0}
+    record.selected = tuple(sorted(numbers[index - 1] if numbers else index for index in picked))
     return record
 
 

@@ -12,6 +12,9 @@ from toolaxis.shape.part import Body
 
 Array = NDArray[np.float64]
 
+#: How the warning about a face that cannot be used goes on after its name.
+LEFT_OUT = "was left out"
+
 
 @dataclass(frozen=True, eq=False)
 class FaceRecord:
@@ -77,3 +80,37 @@ class ShapeRecord:
     unit: str = "mm"
     selected: tuple[int, ...] = ()
     endless: int = 0
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """What a kernel has made of a STEP file.
+
+    Attributes
+    ----------
+    record : ShapeRecord
+    distinct : int
+        How many different faces with an end, copies in several places counted once.
+    lost : dict of int to int
+        Faces that were not made: entity number to the face's number.  Empty too where the kernel does not tell.
+    split : dict of int to int
+        Entities of which several faces were made, and how many.
+    """
+
+    record: ShapeRecord
+    distinct: int
+    lost: dict[int, int] = field(default_factory=dict)
+    split: dict[int, int] = field(default_factory=dict)
+
+
+def left_out(face: str, why: str) -> str:
+    """The warning about a face that cannot be used.
+
+    Parameters
+    ----------
+    face : str
+        What it is called.
+    why : str
+        With the remedy.
+    """
+    return f"{face} {LEFT_OUT}: {why}; until then it is neither machined nor kept clear of"

@@ -6,6 +6,8 @@ import pickle
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
@@ -13,8 +15,8 @@ from typing import Any
 
 import toolaxis
 from toolaxis.cad.assembling import part_from_record
-from toolaxis.cad.records import ShapeRecord
-from toolaxis.cad.steptext import StepText, read_text
+from toolaxis.cad.records import Transfer
+from toolaxis.cad.steptext import ACCEPT, StepText, read_text
 from toolaxis.cad.units import unit_warnings
 from toolaxis.errors import InvalidInput, MissingBackend, UnsupportedGeometry
 from toolaxis.shape.part import Part
@@ -31,32 +33,52 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     time_limit : float, optional
         s for the CAD kernel; a minute and another 20 s for each megabyte unless given.
     accept_lost_faces : bool
-        Go on, with a warning, when faces of the file did not survive the transfer.
+        Go on, with a warning, when faces of the file are damaged or did not survive the transfer.
 
     Raises
     ------
     InvalidInput
-        When the file is missing, empty, cut short, not STEP, holds numbers that are not finite, hangs or crashes
-        the kernel, or lost faces.
+        When the file is missing, empty, cut short, not STEP, holds numbers that are not finite or entities twice, only
+        refers to other files, hangs or crashes the kernel, or has damaged or lost faces.
     UnsupportedGeometry
         When none of its faces can be used.
     MissingBackend
         When no CAD kernel is installed.
     """
     file = Path(path)
-    text = read_text(file)
-    record, transferred = _transferred(file, text, time_limit)
-    lost = _lost(file, text, transferred)
+    text = read_text(file, accept_lost_faces)
+    found = _transferred(file, text, time_limit)
+    lost = _lost(file, text, found)
     if lost and not accept_lost_faces:
-        raise InvalidInput(f"{lost}; repair it in the CAD system and export it again, or accept_lost_faces")
-    record.warnings += [lost] if lost else _dangling(text)
+        raise InvalidInput(f"{lost}; {ACCEPT}")
+    record = found.record
+    record.warnings += [*text.notes, *([lost] if lost else _dangling(text)), *_split(text, found)]
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
     part = part_from_record(record, str(file), digest)
     return part.with_warnings(*unit_warnings(part))
 
 
-def _transferred(file: Path, text: StepText, time_limit: float | None) -> tuple[ShapeRecord, int]:
-    """What the kernel makes of a file, and how many different faces came out."""
+@contextmanager
+def readable(file: Path, text: StepText) -> Iterator[Path]:
+    """A file that a kernel can read: the one given, or one for the time being with its text as it was mended.
+
+    Parameters
+    ----------
+    file : Path
+    text : StepText
+        Of the file.
+    """
+    if not text.changed:
+        yield file
+        return
+    with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
+        mended = Path(folder) / "mended.step"
+        mended.write_bytes(text.content)
+        yield mended
+
+
+def _transferred(file: Path, text: StepText, time_limit: float | None) -> Transfer:
+    """What the kernel makes of a file."""
     if find_spec("OCP") is not None:
         return _in_child(file, text, 60.0 + 20.0 * len(text.content) / 1e6 if time_limit is None else time_limit)
     if "FreeCAD" not in sys.modules:
@@ -64,21 +86,21 @@ def _transferred(file: Path, text: StepText, time_limit: float | None) -> tuple[
     from toolaxis.cad.freecad_shapes import step_record
 
     try:
-        return step_record(file, text)
+        with readable(file, text) as source:
+            return step_record(source, text)
     except (InvalidInput, UnsupportedGeometry) as reason:
         raise type(reason)(f"{file}: {reason}") from reason
 
 
-def _in_child(file: Path, text: StepText, limit: float) -> tuple[ShapeRecord, int]:
-    with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
-        source, target = file, Path(folder) / "outcome"
-        if text.marked:
-            source = Path(folder) / "without-mark.step"
-            source.write_bytes(text.content)
-        outcome = _outcome(_run([str(source.resolve()), str(target)], file, limit), target, file)
+def _in_child(file: Path, text: StepText, limit: float) -> Transfer:
+    with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder, readable(file, text) as source:
+        order, target = Path(folder) / "order", Path(folder) / "outcome"
+        order.write_bytes(pickle.dumps(text.order, protocol=pickle.HIGHEST_PROTOCOL))
+        outcome = _outcome(_run([str(source.resolve()), str(target), str(order)], file, limit), target, file)
     if outcome[0] == "failed":
-        raise outcome[1](f"{file}: {outcome[2]}")
-    return outcome[1], outcome[2]
+        raise outcome[1](f"{file}: {outcome[2]}{_cause(text) if outcome[1] is InvalidInput else ''}")
+    assert isinstance(outcome[1], Transfer)
+    return outcome[1]
 
 
 def _run(arguments: list[str], file: Path, limit: float) -> "subprocess.CompletedProcess[bytes]":
@@ -104,12 +126,31 @@ def _outcome(child: "subprocess.CompletedProcess[bytes]", target: Path, file: Pa
     raise InvalidInput(f"{file} crashed the CAD kernel ({why}): repair the geometry and export it again")
 
 
-def _lost(file: Path, text: StepText, transferred: int) -> str:
-    missing = len(text.faces) - transferred
+def _lost(file: Path, text: StepText, found: Transfer) -> str:
+    """A sentence about the faces that the kernel was given and has not made."""
+    promised, cause = text.order.promised, _cause(text, found.lost)
+    missing = len(found.lost) or promised - found.distinct
     if missing <= 0:
         return ""
-    cause = f" (its text refers to #{text.dangling[0]}, which is not defined)" if text.dangling else ""
-    return f"{file} lost {missing} of its {len(text.faces)} faces in transfer{cause}"
+    named = ", ".join(f"{number} (#{entity})" for entity, number in list(found.lost.items())[:3])
+    which = f": face{'s' * (missing > 1)} {named}{', ...' * (missing > 3)}" if named else ""
+    return f"{file} lost {missing} of its {promised} faces in transfer{cause}{which}"
+
+
+def _cause(text: StepText, lost: Iterable[int] = ()) -> str:
+    """What the text lacks, in brackets behind what went wrong."""
+    if text.dangling:
+        return f" (its text refers to #{text.dangling[0]}, which is not defined)"
+    alone = text.homeless.intersection(lost)
+    return f" (#{min(alone)} stands in no product of the file)" if alone else ""
+
+
+def _split(text: StepText, found: Transfer) -> list[str]:
+    """A sentence where a kernel has made more faces than there are in the file."""
+    if not found.split:
+        return []
+    entity, count = next(iter(found.split.items()))
+    return [f"the CAD kernel made {count} faces of #{entity}: it mended what it found inconsistent there"]
 
 
 def _dangling(text: StepText) -> list[str]:

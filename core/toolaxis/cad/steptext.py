@@ -1,25 +1,24 @@
-"""What the text of a STEP file says before any kernel sees it: is it whole, and how many faces must come out."""
+"""What the text of a STEP file says before any kernel sees it: is it whole, and which faces must come out."""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from toolaxis.cad.stepdamage import broken_text, damaged_entities, faces_with, far_entities, lost_places
+from toolaxis.cad.stepentities import Entities
+from toolaxis.cad.stepfaces import FaceLists, FaceOrder, face_lists
+from toolaxis.cad.stepfile import EXPORT, file_bytes, plain_text
+from toolaxis.cad.stephomes import give_models, give_products
+from toolaxis.cad.steplinks import linked_files, named, with_geometry
+from toolaxis.cad.stepmending import Mending, leave_out
+from toolaxis.cad.stepunits import length_units, unit_fault
 from toolaxis.errors import InvalidInput
 
-BOM = b"\xef\xbb\xbf"
-_NOISE = re.compile(rb"'(?:[^']|'')*'|/\*.*?\*/", re.DOTALL)
 _START = re.compile(rb"\s*ISO-10303-21\s*;")
-_END = re.compile(rb"END-ISO-10303-21\s*;")
-_DATA = re.compile(rb"\bDATA\s*(?:\([^;]*\))?;")
-_NOT_FINITE = re.compile(rb"(?<=[(,\s])[+-]?(?:nan|inf|infinity|\d+\.#(?:ind|inf|qnan|snan)\w*)(?=[\s,)])", re.I)
-_DEFINITION = re.compile(rb"#(\d+)\s*=")
-_REFERENCE = re.compile(rb"#(\d+)")
-_FACE = re.compile(rb"#(\d+)\s*=\s*(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
-_SHELL = re.compile(rb"=\s*(?:CLOSED_SHELL|OPEN_SHELL|CONNECTED_FACE_SET)\s*\(([^;]*)\)\s*;")
-_CONTEXT = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^)]*)\)")
-_LENGTH = re.compile(rb"#(\d+)\s*=\s*\(([^;]*?\bLENGTH_UNIT\b[^;]*)\)\s*;")
-_BASED = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'")
-_METRIC = re.compile(rb"SI_UNIT\s*\(\s*(?:\$|\.(\w+)\.)\s*,\s*\.(\w+)\.")
+_END = re.compile(rb"(ENDSEC\s*;\s*)?END-ISO-10303-21\s*;")
+_NAMED_DATA = re.compile(rb"\bDATA\s*\([^;]*\)\s*;")
+
+ACCEPT = "repair it in the CAD system and export it again, or pass accept_lost_faces=True in Python"
 
 
 @dataclass(frozen=True)
@@ -29,58 +28,73 @@ class StepText:
     Attributes
     ----------
     content : bytes
-        Of the file, without byte-order mark.
-    marked : bool
-        A byte-order mark was there.
+        As a kernel is to read it.
+    changed : bool
+        It is not what the file holds.
     faces : frozenset of int
         Entity numbers of the faces.
+    order : FaceOrder
+        Which of them a kernel's faces are; those that it does not get, and why.
     dangling : tuple of int
         Entity numbers that are referred to but not defined.
+    unit : str
+        The declared length units, such as "millimetre" or "inch"; "not declared".
+    notes : tuple of str
+        Sentences about what was mended, or is not as it should be.
+    homeless : frozenset of int
+        Faces that stand in no product of the file: kernels do not read them.
     """
 
     content: bytes
-    marked: bool
+    changed: bool
     faces: frozenset[int]
+    order: FaceOrder
     dangling: tuple[int, ...]
+    unit: str
+    notes: tuple[str, ...]
+    homeless: frozenset[int] = frozenset()
 
 
-def read_text(path: Path) -> StepText:
-    """Read a STEP file and check its text.
+def read_text(path: Path, accept_lost_faces: bool = False) -> StepText:
+    """Read a STEP file, check its text and mend it where its faces are not in doubt.
 
     Parameters
     ----------
     path : Path
+    accept_lost_faces : bool
+        Leave out faces that are damaged instead of refusing the file.
 
     Raises
     ------
     InvalidInput
-        When the file is missing, a directory, empty, not readable, not STEP, cut short, without data or faces, or
-        holds numbers that are not finite.
+        When the file is missing, a directory, empty, not readable, not STEP, cut short, without data or faces, only
+        refers to other files, or holds numbers that are not finite, numbers of entities twice, unknown units or
+        faces that are damaged.
     """
-    content = _content(path)
-    marked = content.startswith(BOM)
-    content = content[len(BOM):] if marked else content
-    bare = _NOISE.sub(b"' '", content)
-    if not _START.match(bare):
-        raise InvalidInput(f"{path} is not a STEP file: it does not begin with ISO-10303-21; "
-                           "export the part as STEP (AP203, AP214 or AP242)")
-    data = _DATA.search(bare)
-    if not _END.search(bare):
-        raise InvalidInput(f"{path} is cut short: END-ISO-10303-21 is missing at its end; copy or export it again")
-    definitions = {int(n) for n in _DEFINITION.findall(bare, data.end())} if data else set()
-    if data is None or not definitions:
-        raise InvalidInput(f"{path} has a header but no data: export the part again")
-    broken = _NOT_FINITE.search(bare, data.end())
-    if broken:
-        entity = _DEFINITION.findall(bare, data.end(), broken.start())[-1:]
-        raise InvalidInput(f"{path} holds {broken.group().decode()} in entity #{int(entity[0]) if entity else '?'}: "
-                           "every number must be finite; repair the geometry and export it again")
-    faces = _faces(content)
-    if not faces:
-        raise InvalidInput(f"{path} holds no faces with exact geometry: export solids or surfaces, not meshes, "
-                           "wires or drawings")
-    referred = {int(n) for n in _REFERENCE.findall(bare, data.end())}
-    return StepText(content, marked, faces, tuple(sorted(referred - definitions)))
+    raw = file_bytes(path)
+    content, notes = plain_text(path, raw)
+    entities = _entities(path, content)
+    fault = broken_text(entities)
+    if fault:
+        raise InvalidInput(f"{path} {fault}")
+    promised, links = face_lists(entities), linked_files(entities)
+    if not promised.faces:
+        raise InvalidInput(f"{path} {_nothing(entities, links)}")
+    left = _left_out(path, entities, promised, accept_lost_faces)
+    fault = unit_fault(entities) or lost_places(entities)
+    if fault:
+        raise InvalidInput(f"{path} {fault}")
+    mending = Mending(entities)
+    leave_out(mending, left)
+    give_models(mending)
+    homeless = give_products(mending, promised.faces.difference(left))
+    mended = Entities(mending.content()) if mending.changed else entities
+    dangling = tuple(sorted(mended.dangling))
+    unit = _unit(entities)
+    notes += [*mending.notes, *_reservations(unit, links)]
+    order = FaceOrder(mended.definitions, promised.lists, left)
+    changed = mended.content != raw
+    return StepText(mended.content, changed, promised.faces, order, dangling, unit, tuple(notes), homeless)
 
 
 def declared_unit(content: bytes) -> str:
@@ -90,37 +104,71 @@ def declared_unit(content: bytes) -> str:
     ----------
     content : bytes
     """
-    lengths = {int(number): body for number, body in _LENGTH.findall(content)}
-    names = []
-    for members in _CONTEXT.findall(content):
-        names += [_unit_name(lengths[n]) for n in map(int, _REFERENCE.findall(members)) if n in lengths]
-    return ", ".join(dict.fromkeys(filter(None, names))) or "not declared"
+    return _unit(Entities(content))
 
 
-def _unit_name(body: bytes) -> str:
-    based, metric = _BASED.search(body), _METRIC.search(body)
-    if based:
-        return based.group(1).decode(errors="replace").lower()
-    return b"".join(word or b"" for word in metric.groups()).decode().lower() if metric else ""
+def _unit(entities: Entities) -> str:
+    return ", ".join(dict.fromkeys(length_units(entities).values())) or "not declared"
 
 
-def _content(path: Path) -> bytes:
-    if not path.exists():
-        raise InvalidInput(f"{path} does not exist: check the path")
-    if not path.is_file():
-        raise InvalidInput(f"{path} is a folder: name a STEP file in it")
-    try:
-        content = path.read_bytes()
-    except OSError as reason:
-        raise InvalidInput(f"{path} cannot be read: {reason.strerror}") from reason
-    if not content.strip():
-        raise InvalidInput(f"{path} is empty: export the part again")
-    return content
+def _reservations(unit: str, links: list[str]) -> list[str]:
+    """What is not certain about a file that can be read."""
+    found = ["the file declares no length unit: its numbers were taken for mm"] if unit == "not declared" else []
+    elsewhere = with_geometry(links)
+    if elsewhere:
+        found.append(f"the file also refers to {named(elsewhere)}; what stands there is not read: export everything as "
+                     "one STEP file")
+    return found
 
 
-def _faces(content: bytes) -> frozenset[int]:
-    """Entities that are faces, or stand where a shell needs one; strings too, as a lost quote swaps in and out."""
-    faces = {int(n) for n in _FACE.findall(content)}
-    for members in _SHELL.findall(content):
-        faces |= {int(n) for n in _REFERENCE.findall(members)}
-    return frozenset(faces)
+def _entities(path: Path, content: bytes) -> Entities:
+    """The entities of a text that is whole, from its first line to its last."""
+    entities = Entities(content)
+    if not _START.match(entities.bare):
+        raise InvalidInput(f"{path} is not a STEP file: it does not begin with ISO-10303-21; {EXPORT}")
+    end = _END.search(entities.bare)
+    if not end:
+        raise InvalidInput(f"{path} is cut short: END-ISO-10303-21 is missing at its end; copy or export it again")
+    if not entities.definitions:
+        raise InvalidInput(f"{path} has a header but no data: export the part again")
+    if not end.group(1):
+        raise InvalidInput(f"{path} is cut short: ENDSEC is missing before END-ISO-10303-21; copy or export it again")
+    if not _NAMED_DATA.search(entities.bare):
+        return entities
+    # Named sections came with a later edition of the format, and the kernel's parser knows none.
+    plain = bytearray(content)
+    for section in _NAMED_DATA.finditer(entities.bare):
+        plain[section.start():section.end()] = b"DATA;".ljust(section.end() - section.start())
+    return Entities(bytes(plain))
+
+
+def _nothing(entities: Entities, links: list[str]) -> str:
+    """Why a text holds no faces, and what to do."""
+    if links:
+        return (f"holds no geometry itself: it refers to other files, {named(links)}; open it in the CAD system and "
+                "export everything as one STEP file")
+    other = {"TESSELLATED": "a mesh", "TRIANGULATED": "a mesh", "POLY_LOOP": "a mesh", "CURVE": "curves"}
+    kinds = {entity.keyword for entity in entities.table.values()}
+    found = dict.fromkeys(what for word, what in other.items() if any(word in kind for kind in kinds))
+    only = f" but {' and '.join(found)}" if found else ""
+    return f"holds no faces with exact geometry{only}: export solids or surfaces, not meshes, wires or drawings"
+
+
+def _left_out(path: Path, entities: Entities, promised: FaceLists, accept: bool) -> dict[int, str]:
+    """Faces that no kernel is to see, and why: with absurd lengths, and damaged ones where that is accepted."""
+    faces = [number for group in promised.lists for number in group]
+    far = faces_with(entities, faces, far_entities(entities))
+    damaged = faces_with(entities, [number for number in faces if number not in far], damaged_entities(entities))
+    if damaged and not accept:
+        first, *others = damaged
+        more = f", and {len(others)} more face{'s' * (len(others) > 1)}: first," if others else ":"
+        raise InvalidInput(f"{path}: {_face_name(promised, first)} is damaged{more} {damaged[first]}; {ACCEPT}")
+    left = {face: f"{why}: repair the face in the CAD system" for face, why in {**far, **damaged}.items()}
+    if len(left) == len(faces):
+        raise InvalidInput(f"{path} has no face that can be used; {_face_name(promised, faces[0])}: {left[faces[0]]}")
+    return left
+
+
+def _face_name(promised: FaceLists, number: int) -> str:
+    """What people call a face: by its number where it is certain before a kernel has numbered the whole."""
+    return f"face {promised.lists[0].index(number) + 1} (#{number})" if len(promised.lists) == 1 else f"face #{number}"

@@ -1,15 +1,37 @@
-"""The child process that lets the kernel read a STEP file: ``python -m toolaxis.cad.transfer IN OUT``.
+"""The child process that lets the kernel read a STEP file: ``python -m toolaxis.cad.transfer IN OUT ORDER``.
 
-The outcome goes to OUT as a pickle: ("done", ShapeRecord, distinct faces transferred) or ("failed", kind, message).
+ORDER is a pickled FaceOrder.  The outcome goes to OUT as a pickle: ("done", Transfer) or ("failed", kind, message).
 """
 
 import pickle
 import sys
 import traceback
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from toolaxis.cad.records import Transfer
+from toolaxis.cad.stepfaces import FaceOrder, numbered, transferred
 from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+
+#: How many faces times entities the kernel is asked for the origin of each: always, and where faces are missing.
+ASKED, ASKED_OF_MISSING = 1e7, 1e9
+
+
+class Reading(NamedTuple):
+    """What the kernel has read.
+
+    Attributes
+    ----------
+    shape : TopoDS_Shape
+        In mm.
+    unit : str
+        The length unit that the file declares.
+    reader : STEPControl_Reader
+    """
+
+    shape: Any
+    unit: str
+    reader: Any
 
 
 def read_shape(path: str) -> tuple[Any, str]:
@@ -31,6 +53,22 @@ def read_shape(path: str) -> tuple[Any, str]:
     InvalidInput
         When the kernel refuses the file or makes nothing of it.
     """
+    reading = read_file(path)
+    return reading.shape, reading.unit
+
+
+def read_file(path: str) -> Reading:
+    """Let the kernel read a file, and keep what knows where each piece of the shape comes from.
+
+    Parameters
+    ----------
+    path : str
+
+    Raises
+    ------
+    InvalidInput
+        When the kernel refuses the file or makes nothing of it.
+    """
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
     from OCP.TColStd import TColStd_SequenceOfAsciiString
@@ -45,7 +83,30 @@ def read_shape(path: str) -> tuple[Any, str]:
     shape = reader.OneShape()
     if shape is None or shape.IsNull():
         raise InvalidInput("the CAD kernel made no shape of it: export the part again")
-    return shape, ", ".join(units) or "not declared"
+    return Reading(shape, ", ".join(units) or "not declared", reader)
+
+
+def ranks_of_faces(reading: Reading, faces: Any) -> list[int]:
+    """The place in the text of the entity that each face was made of, from 1; 0 where the kernel does not know.
+
+    Parameters
+    ----------
+    reading : Reading
+    faces : TopTools_IndexedMapOfShape
+    """
+    from OCP.TopLoc import TopLoc_Location
+
+    session = reading.reader.WS()
+    results, model = session.TransferReader(), session.Model()
+    ranks = {model.Value(rank): rank for rank in range(1, model.NbEntities() + 1)}
+    found = []
+    for k in range(1, faces.Extent() + 1):
+        face = faces.FindKey(k)
+        origin = results.EntityFromShapeResult(face, 1)
+        if origin is None:  # A copy in another place
+            origin = results.EntityFromShapeResult(face.Located(TopLoc_Location()), 1)
+        found.append(ranks.get(origin, 0))
+    return found
 
 
 def distinct_faces(shape: Any) -> int:
@@ -61,20 +122,17 @@ def distinct_faces(shape: Any) -> int:
     return int(distinct.Extent())
 
 
-def convert(path: str) -> tuple[Any, ...]:
+def convert(path: str, order: FaceOrder | None = None) -> tuple[Any, ...]:
     """The outcome for one file, ready to be pickled.
 
     Parameters
     ----------
     path : str
+    order : FaceOrder, optional
+        Which faces the file has.
     """
     try:
-        from toolaxis.cad.ocp import shape_record
-
-        shape, unit = read_shape(path)
-        record = shape_record(shape)
-        record.unit = unit
-        return "done", record, distinct_faces(shape) - record.endless
+        return "done", _converted(path, order or FaceOrder((), ()))
     except ImportError as reason:
         return "failed", MissingBackend, (f"the CAD kernel that is installed is not one that toolaxis knows ({reason})"
                                           ": pip install 'toolaxis[cadquery]' or 'toolaxis[build123d]'")
@@ -88,6 +146,24 @@ def convert(path: str) -> tuple[Any, ...]:
         return "failed", *_blamed(reason)
 
 
+def _converted(path: str, order: FaceOrder) -> Transfer:
+    from toolaxis.cad.ocp import face_map, shape_record
+
+    reading = read_file(path)
+    if not face_map(reading.shape).Extent():
+        raise InvalidInput(f"the CAD kernel made none of its {order.promised} faces: export the part again")
+    faces, distinct = face_map(reading.shape), distinct_faces(reading.shape)
+    entities = len(order.definitions)
+    missing = order.left or distinct != order.promised
+    asked = order.lists and faces.Extent() * entities <= (ASKED_OF_MISSING if missing else ASKED)
+    ranks = ranks_of_faces(reading, faces) if asked else [0] * faces.Extent()
+    origins = order.origins(ranks, reading.reader.WS().Model().NbEntities())
+    numbers = numbered(order, origins)
+    record = shape_record(reading.shape, numbers=numbers.made)
+    record.unit = reading.unit
+    return transferred(record, distinct, order, numbers, origins)
+
+
 def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
     """The kernel's own exceptions are the file's fault; every other one is a fault of ours."""
     what = f"{type(reason).__name__}: {str(reason).strip() or 'no message'}"
@@ -99,8 +175,8 @@ def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
 
 
 def main(arguments: list[str]) -> int:
-    """Read arguments[0], write the outcome to arguments[1]."""
-    outcome = convert(arguments[0])
+    """Read arguments[0] with the pickled order in arguments[2], write the outcome to arguments[1]."""
+    outcome = convert(arguments[0], pickle.loads(Path(arguments[2]).read_bytes()))
     Path(arguments[1]).write_bytes(pickle.dumps(outcome, protocol=pickle.HIGHEST_PROTOCOL))
     return 0
 

@@ -2,6 +2,8 @@
 
 from math import sqrt
 
+import numpy as np
+
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
@@ -11,6 +13,8 @@ NARROWEST = 0.2
 """mm: least width, on average, of a face that runs along half the part or more."""
 FINEST, FINENESS = 0.5, 200.0
 """Least distance of control points, mm, or as how many to the part's diagonal, of such a face."""
+STRAY = 100.0
+"""How many times as large as all others together a face is that does not belong there."""
 OTHER_UNITS = (("m", 1000.0), ("inch", 25.4), ("cm", 10.0))
 
 
@@ -25,6 +29,9 @@ def unit_warnings(part: Part) -> tuple[str, ...]:
     part : Part
     """
     size = part.diagonal
+    stray = _stray(part) if size > LARGEST else ""
+    if stray:
+        return (stray,)
     if size > LARGEST:
         return (f"the part is {size:.4g} mm across in the unit that the file declares ({part.unit}): check the unit "
                 f"({size / 1000:.4g} mm if its numbers were micrometres)",)
@@ -35,6 +42,19 @@ def unit_warnings(part: Part) -> tuple[str, ...]:
     otherwise = " or ".join(f"{_length(size * factor)} if its numbers were {name}" for name, factor in OTHER_UNITS)
     across = "" if size < SMALLEST else f"the part is {size:.4g} mm across, "
     return (f"{odd}: check the unit ({across}{otherwise})",) if odd else ()
+
+
+def _stray(part: Part) -> str:
+    """The face that alone makes the part so large."""
+    widest = max(part.faces, key=lambda face: face.diagonal)
+    boxes = np.array([face.box for face in part.faces if face is not widest]).reshape(-1, 2, 3)
+    if not len(boxes):
+        return ""
+    rest = float(np.linalg.norm(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)))
+    if widest.diagonal < STRAY * rest:
+        return ""
+    return (f"face {widest.number} is {widest.diagonal:.4g} mm across and all others together {rest:.4g} mm: its "
+            "geometry looks damaged; repair it in the CAD system and export it again")
 
 
 def _length(value: float) -> str:

@@ -151,10 +151,13 @@ def _write_step(plan: Plan, path: Path, name: str) -> None:
 
 def _part_shape(plan: Plan) -> Any:
     """The part as the kernel reads it, where its file is still the one that was planned with; else None."""
+    from toolaxis.cad.step import readable
+    from toolaxis.cad.steptext import read_text
     from toolaxis.cad.transfer import read_shape
 
     part = plan.part.original or plan.part
     source = Path(part.source) if part.source and part.sha256 else None
     if source is None or not source.is_file() or sha256_of(source) != part.sha256:
         return None
-    return read_shape(str(source))[0]
+    with readable(source, read_text(source, accept_lost_faces=True)) as file:
+        return read_shape(str(file))[0]
