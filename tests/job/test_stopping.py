@@ -10,7 +10,7 @@ import toolaxis as ta
 from toolaxis.contact import distances
 from toolaxis.errors import Cancelled
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient import normals
+from toolaxis.orient import normal_cells
 from toolaxis.orient.normals import NormalField
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress, breathe, heard
@@ -106,9 +106,9 @@ def test_ranges_of_angles_are_the_same_in_pieces_of_any_size(small_plan: Plan,
     axis = unit(np.array([0.3, 0.1, 1.0]))
     limits = radians(1.0), radians(25.0)
     found = field.range_of_angles(axis, *limits)
-    monkeypatch.setattr(normals, "_AT_ONCE", 7)
+    monkeypatch.setattr(normal_cells, "_AT_ONCE", 7)
     counted = Counted(monkeypatch)
     with heard(counted.progress):
-        pieces = field.range_of_angles(axis, *limits)
+        pieces = NormalField(field.face).range_of_angles(axis, *limits)
     assert all(np.array_equal(one, other) for one, other in zip(found, pieces, strict=True))
     assert 0 < counted.most["points"] <= 7

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric.vectors import angle_between, rotation, unit
+from toolaxis.orient import normal_cells
+from toolaxis.orient.normal_cells import NormalCells
 from toolaxis.orient.normals import NormalField, smallest_cap
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
@@ -95,9 +97,32 @@ def test_a_pole_does_not_multiply_cells(monkeypatch):
     """Normals have no bound there: the middles of specks stand for them, and the range is soon told."""
     face = Face(Sphere(7.0, v_range=(0.3, pi / 2)).nurbs())
     field, counts = NormalField(face), []
-    looked = NormalField._looked
-    monkeypatch.setattr(NormalField, "_looked",
-                        lambda self, t, cells, bounds: counts.append(len(cells)) or looked(self, t, cells, bounds))
+    looked = NormalCells._looked
+    monkeypatch.setattr(NormalCells, "_looked", lambda self, rect, *rest: counts.append(len(rect)) or
+                        looked(self, rect, *rest))
     found = field.range_of_angles([0, 0, 1.0], 0.0, pi / 2 - 0.29)
     assert sum(counts) < 1_000_000
     assert found.low <= 1e-3 and pi / 2 - 0.3 <= found.high <= pi / 2 - 0.29
+
+
+def test_what_was_divided_for_one_axis_is_there_for_the_next(monkeypatch):
+    """A search asks for hundreds of axes: each made all cells anew."""
+    counts = []
+    looked = NormalCells._looked
+    monkeypatch.setattr(NormalCells, "_looked", lambda self, rect, *rest: counts.append(len(rect)) or
+                        looked(self, rect, *rest))
+    trims = np.array([[0.1, 0.15], [0.8, 0.1], [0.9, 0.7], [0.3, 0.9]]),
+    field = NormalField(bumpy(7, trims))
+    axes = unit(field.mean + 0.2 * np.random.default_rng(2).normal(size=(40, 3)))
+    one = field.range_of_angles(axes[0], 0.01, 1.0)
+    every = [field.range_of_angles(axis, 0.01, 1.0) for axis in axes]
+    assert counts.count(24 * 24) == 1
+    made = sum(counts)
+    again = [field.range_of_angles(axis, 0.01, 1.0) for axis in axes]
+    assert sum(counts) == made
+    monkeypatch.setattr(normal_cells, "_KEPT", 0)
+    for axis, kept in zip(axes[:5], every, strict=False):
+        alone = NormalField(bumpy(7, trims)).range_of_angles(axis, 0.01, 1.0)
+        assert all(np.array_equal(a, b) for a, b in zip(alone, kept, strict=True))
+    for same in (one, again[0]):
+        assert all(np.array_equal(a, b) for a, b in zip(same, every[0], strict=True))

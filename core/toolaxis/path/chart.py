@@ -29,6 +29,9 @@ _AT = 1e-6
 #: would decide which parts of a line are inside.
 _EDGE = 1e-5
 
+#: Places each way from which the size of a chart is taken.
+_EXTENT = 9
+
 
 @dataclass(frozen=True, eq=False)
 class Cut:
@@ -233,6 +236,21 @@ class IsoChart:
         across = "v" if self.feed == "u" else "u"
         return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, across,
                                       cut.allowance))
+
+
+def extents(chart: Chart) -> tuple[float, float]:
+    """Greatest lengths, mm, of lines over the range of a chart along the passes and across them; no bounds.
+
+    Parameters
+    ----------
+    chart : Chart
+    """
+    a0, a1, s0, s1 = chart.bounds
+    along, step = np.meshgrid(np.linspace(a0, a1, _EXTENT), np.linspace(s0, s1, _EXTENT), indexing="ij")
+    point = chart.face.evaluate(chart.uv(along.ravel(), step.ravel())).point.reshape(_EXTENT, _EXTENT, 3)
+    ways = (np.linalg.norm(np.diff(point, axis=axis), axis=-1).sum(axis=axis).max() for axis in (0, 1))
+    along_passes, across = (float(way) for way in ways)
+    return along_passes, across
 
 
 def rows(chart: Chart, steps: Array) -> Intervals:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.path.chart import Chart, Cut, columns
+from toolaxis.path.chart import Chart, Cut, columns, extents
 from toolaxis.path.material import Intervals, filtered, joined, table
 from toolaxis.path.run_out import needed
-from toolaxis.path.spacing import Spacing, lines, space
+from toolaxis.path.spacing import PITCH, Spacing, lines, space
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
@@ -19,7 +19,10 @@ Reach = Callable[[Array], Bools]
 _BISECTIONS = 14
 #: Passes run out this much farther than the cutter reaches at scallop height.
 _RUN_OUT = 1.05
+#: Places at which it is asked what can be reached, over the whole range: this many, or as many as lie `PITCH` apart
+#: where that makes fewer; how exactly the ends are found, in radii of the cutter, and as a share of the range.
 _REACH_SAMPLES = 192
+_ENDS, _LEAST_ENDS = 2e-4, 2e-7
 #: Places along and across at which it is looked whether strips cover the face.
 _GRID = 240
 
@@ -98,12 +101,12 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
     across = lines(chart, cut)
     column = columns(chart, across.along)
     if reach is not None:
-        column = _reachable(chart, across.along, column, reach)
+        column = _reachable(chart, cut, across.along, column, reach)
     material = table(column, len(across.along))
     spacing = space(chart, cut, across, material, progress)
     found = _extended(chart, cut, spacing.steps, _needed(chart, spacing, material))
     if reach is not None:
-        found = _cut_out(chart, spacing.steps, found, reach)
+        found = _cut_out(chart, cut, spacing.steps, found, reach)
     pieces = np.column_stack([found.low, found.high, spacing.steps[found.line]])
     return Layout(chart, cut, spacing, pieces, found.line)
 
@@ -154,15 +157,32 @@ def _run_out(chart: Chart, cut: Cut, place: tuple[Array, Array], side: int) -> A
     return _RUN_OUT * np.maximum(reach, needed(chart, cut, *place, forward=side == 1))
 
 
-def _reachable(chart: Chart, along: Array, column: Intervals, reach: Reach) -> Intervals:
+def _reachable(chart: Chart, cut: Cut, along: Array, column: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the lines across the passes."""
     _, _, s0, s1 = chart.bounds
-    return filtered(column, lambda line, place: reach(chart.uv(along[line], place)), (s1 - s0) / _REACH_SAMPLES)
+    how = _sampling(extents(chart)[1], s1 - s0, cut)
+    return filtered(column, lambda line, place: reach(chart.uv(along[line], place)), *how)
 
 
-def _cut_out(chart: Chart, steps: Array, found: Intervals, reach: Reach) -> Intervals:
+def _cut_out(chart: Chart, cut: Cut, steps: Array, found: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the passes."""
     a0, a1, _, _ = chart.bounds
-    kept = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])), (a1 - a0) / _REACH_SAMPLES)
+    how = _sampling(extents(chart)[0], a1 - a0, cut)
+    kept = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])), *how)
     long_ = kept.high - kept.low > 1e-9 * (a1 - a0)
     return Intervals(kept.line[long_], kept.low[long_], kept.high[long_])
+
+
+def _sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
+    """How far apart it is asked what can be reached, and how exactly its ends are found, in the parameter.
+
+    Parameters
+    ----------
+    length : float
+        Of the range, mm.
+    span : float
+        Of the range, in the parameter.
+    cut : Cut
+    """
+    radius = cut.tool.radius / max(length, np.finfo(float).tiny)
+    return span * max(1 / _REACH_SAMPLES, PITCH * radius), span * max(_LEAST_ENDS, min(_ENDS * radius, 1.0))

@@ -9,9 +9,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-_BISECTIONS = 14
-
-
 class Intervals(NamedTuple):
     """Pieces of parallel lines that lie on the face, sorted by line and place.
 
@@ -122,7 +119,8 @@ def joined(rows: Intervals) -> Intervals:
     return Intervals(whole[:, 0].astype(np.intp), whole[:, 1], whole[:, 2])
 
 
-def filtered(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]], spacing: float) -> Intervals:
+def filtered(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]], spacing: float,
+             exact: float) -> Intervals:
     """The parts of intervals where a test holds, their ends found by bisection.
 
     Parameters
@@ -132,6 +130,8 @@ def filtered(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]],
         Takes line (n,) and place (n,), returns (n,) bool.
     spacing : float
         Distance at which the test is asked; parts and gaps that are shorter may be missed.
+    exact : float
+        How far ends may lie inside of where the test ends to hold.
     """
     if not len(rows.line):
         return rows
@@ -141,9 +141,11 @@ def filtered(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]],
     before = np.append(False, holds[:-1] & (points.interval[1:] == points.interval[:-1]))
     after = np.append(holds[1:] & (points.interval[1:] == points.interval[:-1]), False)
     low, high = np.flatnonzero(holds & ~before), np.flatnonzero(holds & ~after)
-    starts = _edge(test, line, place, low, np.where(_same(points.interval, low, -1), low - 1, low))
-    ends = _edge(test, line, place, high, np.where(_same(points.interval, high, 1), high + 1, high))
-    return Intervals(line[low], starts, ends)
+    before_low = np.where(_same(points.interval, low, -1), low - 1, low)
+    after_high = np.where(_same(points.interval, high, 1), high + 1, high)
+    ends = _edge(test, np.append(line[low], line[high]), place[np.append(low, high)],
+                 place[np.append(before_low, after_high)], exact)
+    return Intervals(line[low], ends[:len(low)], ends[len(low):])
 
 
 def _same(interval: Index, i: Index, shift: int) -> NDArray[np.bool_]:
@@ -151,15 +153,18 @@ def _same(interval: Index, i: Index, shift: int) -> NDArray[np.bool_]:
     return np.asarray((other != i) & (interval[other] == interval[i]))
 
 
-def _edge(test: Callable[[Index, Array], NDArray[np.bool_]], line: Index, place: Array, good: Index,
-          bad: Index) -> Array:
-    """Last place, from a good point towards a bad one, at which the test holds."""
-    a, b = place[good].copy(), place[bad].copy()
-    for _ in range(_BISECTIONS):
-        middle = (a + b) / 2
-        holds = test(line[good], middle)
-        a, b = np.where(holds, middle, a), np.where(holds, b, middle)
-    return a
+def _edge(test: Callable[[Index, Array], NDArray[np.bool_]], line: Index, good: Array, bad: Array,
+          exact: float) -> Array:
+    """Last place on each line, from a good one towards a bad one, at which the test holds."""
+    good, bad = good.copy(), bad.copy()
+    while True:
+        rows = np.flatnonzero(np.abs(bad - good) > exact)
+        if not len(rows):
+            return good
+        middle = (good[rows] + bad[rows]) / 2
+        holds = test(line[rows], middle)
+        good[rows[holds]] = middle[holds]
+        bad[rows[~holds]] = middle[~holds]
 
 
 def first_from(columns: Array, place: Array) -> Array:

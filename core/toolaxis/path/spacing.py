@@ -12,16 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.path.chart import Chart, Cut, columns
+from toolaxis.path.chart import Chart, Cut, columns, extents
 from toolaxis.path.material import first_from, last_of, table
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: Numbers of gaps between measured lines that are tried in turn; all lines together are about this many.
+#: Numbers of gaps between measured lines that are tried in turn.
 _GAPS = (24, 48, 96, 192)
+#: All lines together are about this many, or as many as lie `PITCH` apart where that makes fewer.
 _FINE = 1024
+#: In radii of the cutter: what is smaller along or across passes changes nothing of where they go.
+PITCH = 0.02
 #: Relative error of interpolated half widths that is accepted at the narrowest places of a pass, and elsewhere.
 _INTERPOLATION, _ELSEWHERE = 5e-4, 3e-3
 _NARROW = 1.1
@@ -63,7 +66,8 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     cut : Cut
     """
     _, _, s0, s1 = chart.bounds
-    fine = _grid(chart, _GAPS[-1])
+    count = int(np.clip(np.ceil(extents(chart)[0] / (PITCH * cut.tool.radius)), 1, _FINE))
+    fine = _grid(chart, _GAPS[-1], count)
     steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
     along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
     exact = chart.half_widths(cut, along, step).reshape(len(fine.measured), len(steps), 2)
@@ -72,7 +76,7 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     width = np.where(counts, exact.sum(axis=2), np.inf)
     allowed = np.where(width <= _NARROW * width.min(axis=0), _INTERPOLATION, _ELSEWHERE)[..., None] * exact
     for gaps in _GAPS[:-1]:
-        coarse = _grid(chart, gaps)
+        coarse = _grid(chart, gaps, count)
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
             continue
@@ -82,14 +86,14 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     return fine
 
 
-def _grid(chart: Chart, gaps: int) -> Lines:
-    """About this many even gaps, with the surface's breaks among the measured lines."""
+def _grid(chart: Chart, gaps: int, count: int) -> Lines:
+    """About so many even gaps, with the surface's breaks among the measured lines, and about so many lines in all."""
     a0, a1, _, _ = chart.bounds
     inner = chart.breaks[0]
     even = np.linspace(a0, a1, gaps + 1)
     apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf) > 1e-9 * (a1 - a0)
     measured = np.sort(np.concatenate([even[apart], inner]))
-    between = max(_FINE // len(measured), 2)
+    between = max(count // len(measured), 2)
     share = np.arange(between) / between
     along = np.append((measured[:-1, None] + np.diff(measured)[:, None] * share).ravel(), measured[-1])
     index, weight = _stencil(measured, along)

@@ -1,0 +1,180 @@
+"""Cells over a face, each with the normal in its middle and a proven bound of how far all others in it are from that.
+
+Nothing of a cell depends on an axis: cells that were divided for one are kept for the next.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.progress import breathe
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Index = NDArray[np.intp]
+
+_CELLS = 24
+#: Cells that are made between two moments to stop; cells and edges of loops that are compared at once.
+_AT_ONCE, _PAIRS = 4096, 200_000
+#: Size, mm, of a cell at a pole, where normals have no bound, below which it counts with the normal in its middle.
+_SPECK = 0.01
+#: Cells that are kept; what is divided beyond that is made anew whenever it is asked for.
+_KEPT = 50_000
+
+
+class Cells(NamedTuple):
+    """Cells that may hold a point of the face.
+
+    rect : (n, 4) u0, u1, v0, v1;  bounds : (n, 3) of |Suu|, |Suv|, |Svv|;  crossed : (n,) whether an edge of a loop
+    comes near;  inside : (n,) whether the middle lies on the face;  normal : (n, 3) unit normals in the middles;
+    spread : (n,) how far other normals of the cell are from that at most, rad.
+    """
+
+    rect: Array
+    bounds: Array
+    crossed: Bools
+    inside: Bools
+    normal: Array
+    spread: Array
+
+    @property
+    def middle(self) -> Array:
+        """Parameters of the middles, (n, 2)."""
+        return (self.rect[:, 0::2] + self.rect[:, 1::2]) / 2
+
+    def chosen(self, rows: Index | Bools) -> "Cells":
+        """Some of the cells."""
+        return Cells(self.rect[rows], self.bounds[rows], self.crossed[rows], self.inside[rows], self.normal[rows],
+                     self.spread[rows])
+
+
+class NormalCells:
+    """The cells of one face, as far as they were asked for.
+
+    Parameters
+    ----------
+    face : Face
+    """
+
+    def __init__(self, face: Face) -> None:
+        self._face = face
+        self._edges = [(loop, np.roll(loop, -1, axis=0)) for loop in face.trims]
+        self._cells = self._first()
+        #: First child of each kept cell, and how many follow it; -1 where the cell was not divided.
+        self._child = np.full((len(self._cells.rect), 2), -1, dtype=np.intp)
+        self.roots: tuple[Index | None, Cells] = np.arange(len(self._cells.rect)), self._cells
+
+    def below(self, kept: Index | None, cells: Cells) -> tuple[Index | None, Cells]:
+        """The quarters of cells, as far as they may hold a point of the face.
+
+        Parameters
+        ----------
+        kept : (n,) array of int or None
+            Numbers of the cells, from `roots` or from here; None where they are not kept.
+        cells : Cells
+            The cells themselves.
+        """
+        if kept is None:
+            return None, self._divided(cells)[0]
+        fresh = np.flatnonzero(self._child[kept, 0] < 0)
+        if len(self._child) + 4 * len(fresh) > _KEPT:
+            return None, self._divided(cells)[0]
+        if len(fresh):
+            made, count = self._divided(cells.chosen(fresh))
+            first = len(self._child) + np.cumsum(count) - count
+            self._child[kept[fresh]] = np.column_stack([first, count])
+            self._child = np.concatenate([self._child, np.full((len(made.rect), 2), -1, dtype=np.intp)])
+            self._cells = Cells(*(np.concatenate(both) for both in zip(self._cells, made, strict=True)))
+        first, count = self._child[kept].T
+        within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+        numbers = np.repeat(first, count) + within
+        return numbers, self._cells.chosen(numbers)
+
+    def _first(self) -> Cells:
+        """An even grid of cells, with the surface's knots among their borders."""
+        u0, u1, v0, v1 = self._face.bounds
+        data = self._face.surface.data
+        lines = [_grid_lines(data[0], u0, u1), _grid_lines(data[1], v0, v1)]
+        bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
+        u, v = (part.ravel() for part in np.meshgrid(*(np.arange(len(line) - 1) for line in lines), indexing="ij"))
+        rect = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)
+        return self._made(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))[0]
+
+    def _divided(self, cells: Cells) -> tuple[Cells, Index]:
+        """The quarters of cells, those of one after those of the other, and how many there are of each."""
+        return self._made(_quartered(cells.rect), np.repeat(cells.bounds, 4, axis=0), np.repeat(cells.crossed, 4),
+                          len(cells.rect))
+
+    def _made(self, rect: Array, bounds: Array, crossed: Bools, parents: int = 1) -> tuple[Cells, Index]:
+        """Cells from rectangles, a few thousand at once; of those that an edge may cross, those that hold something."""
+        parts = []
+        for first in range(0, len(rect), _AT_ONCE):
+            breathe()
+            some = slice(first, first + _AT_ONCE)
+            parts.append(self._looked(rect[some], bounds[some], crossed[some]))
+        found = parts[0] if len(parts) == 1 else Cells(*map(np.concatenate, zip(*parts, strict=True)))
+        met = found.inside | found.crossed
+        return found.chosen(met), met.reshape(parents, -1).sum(axis=1)
+
+    def _looked(self, rect: Array, bounds: Array, near: Bools) -> Cells:
+        middle = (rect[:, 0::2] + rect[:, 1::2]) / 2
+        half = (rect[:, 1::2] - rect[:, 0::2]) / 2
+        crossed, inside = near.copy(), np.ones(len(rect), dtype=bool)
+        crossed[near] = self._edges_meet(middle[near], half[near])
+        inside[near] = self._face.contains(middle[near])
+        normal, spread = self._normals(middle, half, bounds)
+        return Cells(rect, bounds, crossed, inside, normal, spread)
+
+    def _normals(self, middle: Array, half: Array, bounds: Array) -> tuple[Array, Array]:
+        """Normals in the middles of cells, and how far others of the cell are from them at most."""
+        d, normal = self._face.evaluate(middle), self._face.normal(middle)
+        hu, hv = half.T
+        off_u = bounds[:, 0] * hu + bounds[:, 1] * hv
+        off_v = bounds[:, 1] * hu + bounds[:, 2] * hv
+        su, sv = np.linalg.norm(d.su, axis=1), np.linalg.norm(d.sv, axis=1)
+        size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+        share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
+        spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), np.pi)
+        across = 2 * (su * hu + sv * hv) + off_u * hu + off_v * hv
+        spread[(share >= 1) & (across < _SPECK) & (np.linalg.norm(normal, axis=1) > 0.5)] = 0.0
+        return normal, spread
+
+    def _edges_meet(self, middle: Array, half: Array) -> Bools:
+        """Whether any edge of a loop meets the rectangles with these middles and half sizes (separating axes)."""
+        met = np.zeros(len(middle), dtype=bool)
+        for start, end in self._edges:
+            step = max(_PAIRS // len(start), 1)
+            for first in range(0, len(middle), step):
+                breathe()
+                some = slice(first, first + step)
+                met[some] |= _meet(start, end, middle[some, None], half[some, None])
+        return met
+
+
+def _meet(start: Array, end: Array, middle: Array, half: Array) -> Bools:
+    """Which boxes, (n, 1, 2) middles and half sizes, any of the edges (k, 2) meets, (n,)."""
+    centre, way = (start + end) / 2 - middle, end - start
+    apart = (np.abs(centre) > np.abs(way) / 2 + half).any(axis=2)
+    cross = np.abs(centre[..., 0] * way[:, 1] - centre[..., 1] * way[:, 0])
+    apart |= cross > half[..., 0] * np.abs(way[:, 1]) + half[..., 1] * np.abs(way[:, 0])
+    return np.asarray((~apart).any(axis=1))
+
+
+def _grid_lines(knots: Array, low: float, high: float) -> Array:
+    """Even lines from low to high, with the knots between them."""
+    inner = np.unique(knots)
+    inner = inner[(inner > low) & (inner < high)]
+    even = np.linspace(low, high, max(2, _CELLS // (len(inner) + 1)) * (len(inner) + 1) + 1)
+    apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf) > 1e-9 * (high - low)
+    return np.sort(np.concatenate([even[apart], inner]))
+
+
+def _quartered(rect: Array) -> Array:
+    """The quarters of rectangles, (4 n, 4), those of one after those of the other."""
+    u0, u1, v0, v1 = rect.T
+    u, v = (u0 + u1) / 2, (v0 + v1) / 2
+    quarters = [np.stack([*along, *across], axis=1) for along in ((u0, u), (u, u1)) for across in ((v0, v), (v, v1))]
+    return np.stack(quarters, axis=1).reshape(-1, 4)
