@@ -13,7 +13,6 @@ from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
 from toolaxis.shape.cells import Cells
 from toolaxis.tools.assembly import Tool
-from toolaxis.tools.solid import solid_pieces
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -129,7 +128,7 @@ def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
 
 def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> Found:
     limits, cutoff, resolution = ask
-    pieces = solid_pieces(tool.profile, tool.outlines)
+    pieces = tool.pieces
     asked = np.asarray((limits > -np.inf).any(axis=0))
     pieces = pieces[asked[pieces[:, 7].astype(int)]]
     n = len(moves)

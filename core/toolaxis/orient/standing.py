@@ -1,5 +1,6 @@
 """What stands in the way of a tool at given positions: which face, with what part of the tool, and by how much."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ FINE, COARSE = 0.0003, 0.002
 #: Edges of the cubes in which positions are first decided together, in radii of the tool; how many positions a cube
 #: must hold on average for that.
 _BLOCKS, _WORTH = (0.8, 0.2, 0.05), 4
+#: Depths are bounded to this share of themselves, see `toolaxis.contact.distances.bounded`, and a little more.
+_DEPTH_SHARE = 0.06
 
 
 class Scene(NamedTuple):
@@ -57,8 +60,7 @@ def trouble_at(scene: Scene, places: Array, axis: Array, near: Bools, asked: tup
         found = bounded(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
         beside = np.zeros(n, dtype=bool)
         if group.role == OTHER and len(near):
-            hit = np.asarray((found.lower < group.required).any(axis=1))
-            beside = _beside(tool, group, moves, (hit, near[:, :len(group.faces)]))
+            beside = _beside(tool, group, moves, (found, near[:, :len(group.faces)]))
         elif len(near) and scene.neighbours:
             continued = near[:, -len(scene.neighbours):].any(axis=1)
             hit = np.asarray(continued & (found.lower < group.required).any(axis=1))
@@ -126,9 +128,20 @@ def _blocks(places: Array, size: float) -> tuple[NDArray[np.intp], int]:
 
 
 def _carried_on(tool: Tool, places: Array, axis: Array, group: Group) -> Tool:
-    """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it."""
+    """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it.
+
+    What is above all that stands there changes no distance: a few lengths do for all axes.
+    """
     highest = float(np.maximum(*(group.box * axis)).sum())
-    return tool.carried_on(highest - float((places @ axis).min()))
+    needed = highest - float((places @ axis).min())
+    if needed <= tool.height:
+        return tool
+    return _carried_to(tool, float(tool.height * 2.0 ** np.ceil(np.log2(needed / tool.height))))
+
+
+@lru_cache(maxsize=64)
+def _carried_to(tool: Tool, height: float) -> Tool:
+    return tool.carried_on(height)
 
 
 def _into_neighbours(scene: Scene, group: Group, moves: Array, hit: Bools, left_out: Array | None) -> Bools:
@@ -143,17 +156,23 @@ def _into_neighbours(scene: Scene, group: Group, moves: Array, hit: Bools, left_
     return into
 
 
-def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Bools, Bools]) -> Bools:
-    """Which of the positions that were hit come too near to a wall that is near them."""
-    hit, near = at
-    beside = np.zeros(len(hit), dtype=bool)
-    for k in np.flatnonzero(near[hit].any(axis=0)):
+def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Found, Bools]) -> Bools:
+    """Which of the positions come too near to a wall that is near them."""
+    found, near = at
+    amount = group.required - found.lower
+    hit = (amount > 0).any(axis=1)
+    # The nearest face is too near itself where that does not hang on how exactly distances are bounded.
+    row, component = np.nonzero(amount > 2 * COARSE + _DEPTH_SHARE * np.maximum(-found.lower, 0.0))
+    face = found.face[row, component]
+    beside = np.zeros(len(moves), dtype=bool)
+    beside[row[(face >= 0) & near[row, face]]] = True
+    for k in np.flatnonzero(near[hit & ~beside].any(axis=0)):
         rows = np.flatnonzero(hit & near[:, k] & ~beside)
         if len(rows):
             only = np.full((len(group.faces), 3), -np.inf)
             only[k] = 0.0
-            found = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
-            beside[rows] = (found.lower < group.required).any(axis=1)
+            alone = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
+            beside[rows] = (alone.lower < group.required).any(axis=1)
     return beside
 
 

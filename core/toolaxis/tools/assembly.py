@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import degrees, isfinite, radians
 from typing import Any
 
@@ -258,6 +259,11 @@ class Tool:
             found["holder"] = self.holder + np.array([0.0, self.stickout - self.holder[0, 1]])
         return found
 
+    @cached_property
+    def pieces(self) -> Array:
+        """All convex pieces, the cutter first, (k, 8); see `toolaxis.tools.solid`."""
+        return solid_pieces(self.profile, self.outlines)
+
     @property
     def gauge_length(self) -> float | None:
         """From the tip to the holder's upper end, where the spindle's gauge point is, mm; None without a holder."""
@@ -313,7 +319,7 @@ class Tool:
         InvalidInput
             When the tool has no such component, or the points are not rows of three finite numbers.
         """
-        pieces = solid_pieces(self.profile, self.outlines)
+        pieces = self.pieces
         if component is None:
             return signed_distance(pieces, points)
         known = [name for name in COMPONENTS if name == "cutter" or name in self.outlines]
