@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from toolaxis.cad import load
-from toolaxis.cad.stepfaces import FaceOrder, numbered
+from toolaxis.cad.records import ShapeRecord
+from toolaxis.cad.stepfaces import FaceOrder, numbered, transferred
 from toolaxis.cad.steplinks import plain
 from toolaxis.errors import InvalidInput
 
@@ -260,3 +261,32 @@ def test_helping_geometry_is_not_missed(tmp_path):
 def test_faces_have_the_numbers_of_the_whole_file(lists, origins, made, missing):
     found = numbered(FaceOrder((), lists), origins)
     assert (found.made, found.missing) == (made, missing)
+
+
+@pytest.mark.parametrize("copies, origins, split", [
+    ([1, 2, 3], [5, 6, 7], {}), ([1, 2, 1, 2], [5, 6, 5, 6], {}), ([1, 2, 3], [5, 6, 6], {6: 2}), ([1, 2], [0, 0], {}),
+])
+def test_faces_that_the_kernel_has_split_are_found(copies, origins, split):
+    order = FaceOrder((), ((5, 6, 7),))
+    found = transferred(ShapeRecord(), copies, order, numbered(order, origins), origins)
+    assert found.split == split and found.distinct == len(set(copies))
+
+
+def test_surfaces_that_nothing_uses_are_told(tmp_path):
+    path = tmp_path / "part.step"
+    path.write_text(of_sheet("").replace("(#11,#15)", "(#11)"))
+    said = "holds no faces with exact geometry but curves and surfaces that no face uses"
+    with pytest.raises(InvalidInput, match=said):
+        load(path)
+
+
+def test_a_mended_file_can_be_exported_with_its_part(tmp_path):
+    from types import SimpleNamespace
+
+    from toolaxis.cad.ocp import face_map
+    from toolaxis.job.exporting import _part_shape
+
+    path = tmp_path / "part.step"
+    path.write_bytes(listed(f"#{SHELL}", SOLID_LINE).encode("utf-16"))
+    shape = _part_shape(SimpleNamespace(part=load(path)))
+    assert face_map(shape).Extent() == 6

@@ -107,7 +107,8 @@ def step_record(path: Path, text: StepText) -> Transfer:
     numbers = numbered(text.order, origins)
     record = shape_record(shape, numbers=numbers.made)
     record.unit = text.unit
-    return transferred(record, Numbering(faces).count, text.order, numbers, origins)
+    distinct = Numbering()
+    return transferred(record, [distinct.add(face) for face in faces], text.order, numbers, origins)
 
 
 class FreecadFace:

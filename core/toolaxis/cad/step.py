@@ -147,10 +147,14 @@ def _cause(text: StepText, lost: Iterable[int] = ()) -> str:
 
 def _split(text: StepText, found: Transfer) -> list[str]:
     """A sentence where a kernel has made more faces than there are in the file."""
-    if not found.split:
-        return []
-    entity, count = next(iter(found.split.items()))
-    return [f"the CAD kernel made {count} faces of #{entity}: it mended what it found inconsistent there"]
+    if found.split:
+        entity, count = next(iter(found.split.items()))
+        return [f"the CAD kernel made {count} faces of the file's face #{entity}: look at them before they are "
+                "machined"]
+    if found.distinct > text.order.promised > 0:
+        return [f"the CAD kernel made {found.distinct} faces of the {text.order.promised} in the file: look at them "
+                "before they are machined"]
+    return []
 
 
 def _dangling(text: StepText) -> list[str]:

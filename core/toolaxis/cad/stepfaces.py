@@ -227,15 +227,15 @@ def numbered(order: FaceOrder, origins: Sequence[int]) -> Numbers:
     return Numbers(made, missing)
 
 
-def transferred(record: ShapeRecord, distinct: int, order: FaceOrder, numbers: Numbers,
+def transferred(record: ShapeRecord, copies: Sequence[int], order: FaceOrder, numbers: Numbers,
                 origins: Sequence[int]) -> Transfer:
     """What a kernel has made of a file, with a warning for each face that it was not given.
 
     Parameters
     ----------
     record : ShapeRecord
-    distinct : int
-        How many different faces the kernel has made.
+    copies : sequence of int
+        Numbers from 1 of the kernel's faces, the same for copies of one in several places.
     order : FaceOrder
     numbers : Numbers
     origins : sequence of int
@@ -246,7 +246,6 @@ def transferred(record: ShapeRecord, distinct: int, order: FaceOrder, numbers: N
         name = f"face {number} (#{entity})" if number else f"face #{entity} of the file"
         record.warnings.append(left_out(name, why))
     lost = {entity: number for entity, number in numbers.missing.items() if entity not in order.left}
-    copies = {entity: times for entity, times in Counter(origins).items() if entity}
-    least = min(copies.values(), default=1)
-    split = {entity: times for entity, times in copies.items() if times > least} if distinct > order.promised else {}
-    return Transfer(record, distinct - record.endless, lost, split)
+    pieces = Counter(dict(zip(copies, origins, strict=True)).values())
+    split = {entity: times for entity, times in pieces.items() if entity and times > 1}
+    return Transfer(record, len(set(copies)) - record.endless, lost, split)

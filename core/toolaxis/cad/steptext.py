@@ -147,7 +147,8 @@ def _nothing(entities: Entities, links: list[str]) -> str:
     if links:
         return (f"holds no geometry itself: it refers to other files, {named(links)}; open it in the CAD system and "
                 "export everything as one STEP file")
-    other = {"TESSELLATED": "a mesh", "TRIANGULATED": "a mesh", "POLY_LOOP": "a mesh", "CURVE": "curves"}
+    other = {"TESSELLATED": "a mesh", "TRIANGULATED": "a mesh", "POLY_LOOP": "a mesh", "CURVE": "curves",
+             "B_SPLINE_SURFACE": "surfaces that no face uses"}
     kinds = {entity.keyword for entity in entities.table.values()}
     found = dict.fromkeys(what for word, what in other.items() if any(word in kind for kind in kinds))
     only = f" but {' and '.join(found)}" if found else ""

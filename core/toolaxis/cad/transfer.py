@@ -109,17 +109,18 @@ def ranks_of_faces(reading: Reading, faces: Any) -> list[int]:
     return found
 
 
-def distinct_faces(shape: Any) -> int:
-    """How many different faces a shape has, copies in several places counted once."""
+def indices_of_copies(faces: Any) -> list[int]:
+    """A number from 1 for each face, the same for copies of one face in several places.
+
+    Parameters
+    ----------
+    faces : TopTools_IndexedMapOfShape
+    """
     from OCP.TopLoc import TopLoc_Location
-    from OCP.TopTools import TopTools_MapOfShape
+    from OCP.TopTools import TopTools_IndexedMapOfShape
 
-    from toolaxis.cad.ocp import face_map
-
-    faces, distinct = face_map(shape), TopTools_MapOfShape()
-    for k in range(1, faces.Extent() + 1):
-        distinct.Add(faces.FindKey(k).Located(TopLoc_Location()))
-    return int(distinct.Extent())
+    distinct = TopTools_IndexedMapOfShape()
+    return [distinct.Add(faces.FindKey(k).Located(TopLoc_Location())) for k in range(1, faces.Extent() + 1)]
 
 
 def convert(path: str, order: FaceOrder | None = None) -> tuple[Any, ...]:
@@ -150,18 +151,18 @@ def _converted(path: str, order: FaceOrder) -> Transfer:
     from toolaxis.cad.ocp import face_map, shape_record
 
     reading = read_file(path)
-    if not face_map(reading.shape).Extent():
+    faces = face_map(reading.shape)
+    if not faces.Extent():
         raise InvalidInput(f"the CAD kernel made none of its {order.promised} faces: export the part again")
-    faces, distinct = face_map(reading.shape), distinct_faces(reading.shape)
-    entities = len(order.definitions)
-    missing = order.left or distinct != order.promised
+    copies, entities = indices_of_copies(faces), len(order.definitions)
+    missing = order.left or max(copies) != order.promised
     asked = order.lists and faces.Extent() * entities <= (ASKED_OF_MISSING if missing else ASKED)
     ranks = ranks_of_faces(reading, faces) if asked else [0] * faces.Extent()
     origins = order.origins(ranks, reading.reader.WS().Model().NbEntities())
     numbers = numbered(order, origins)
     record = shape_record(reading.shape, numbers=numbers.made)
     record.unit = reading.unit
-    return transferred(record, distinct, order, numbers, origins)
+    return transferred(record, copies, order, numbers, origins)
 
 
 def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
