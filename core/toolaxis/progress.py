@@ -1,11 +1,18 @@
-"""Progress reports and cancellation: the one object that long work is handed."""
+"""Progress reports and cancellation: the one object that long work is handed, and what reports tell of the rest."""
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from toolaxis.errors import Cancelled
+
+#: "face 4a (2 of 9): axes" is the second of nine pieces of work.
+_PIECE = re.compile(r"^(.*?)[^:]*\((\d+) of (\d+)\)")
+#: What is left of a step is told once this share of it was done since it began, and that took so long, s.
+_KNOWN, _LONG_ENOUGH = 0.1, 1.0
 
 
 @dataclass(frozen=True)
@@ -107,3 +114,101 @@ def breathe() -> None:
         When the progress that is `heard` in this thread says so.
     """
     _HEARD.get().check()
+
+
+class Left(NamedTuple):
+    """What is left of the work.
+
+    seconds : float;  of_all : bool, whether of all pieces, or of the present step alone.
+    """
+
+    seconds: float
+    of_all: bool
+
+
+class _Piece(NamedTuple):
+    """When a piece of work was first heard of, and when last."""
+
+    begun: float
+    heard: float
+
+
+class Remaining:
+    """How long work may still take, told from what it reports: from what was finished, and from nothing else.
+
+    Pieces of work may be done one after the other or side by side.  A step that begins again, or whose amount changes
+    as it goes on, is measured anew from there.
+
+    Notes
+    -----
+    **Properties**: 1. nothing is told before a piece, or a tenth of a step, was finished; 2. it never falls to zero
+    while something is left; 3. it is told rightly where all pieces take the same.
+    """
+
+    def __init__(self) -> None:
+        self._group: tuple[str, int] = "", 0
+        self._pieces: dict[int, _Piece] = {}
+        self._stage, self._total, self._share = "", 0.0, 0.0
+        self._since = 0.0, 0.0
+
+    def hear(self, stage: str, done: float, total: float, now: float) -> None:
+        """Take in a report.
+
+        Parameters
+        ----------
+        stage : str
+        done, total : float
+            A total that is not above zero says that it is not known how far the stage is.
+        now : float
+            When it was heard, s.
+        """
+        found = _PIECE.search(stage)
+        if found is not None:
+            number, group = int(found[2]), (found[1], int(found[3]))
+            if group != self._group:
+                self._group, self._pieces = group, {}
+            begun = self._pieces.get(number, _Piece(now, now)).begun
+            self._pieces[number] = _Piece(begun, now)
+        share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
+        if stage != self._stage or total != self._total or share < self._share:
+            self._since = now, share
+        self._stage, self._total, self._share = stage, total, share
+
+    def left(self, now: float) -> Left | None:
+        """What is left, or None while nothing is known of it.
+
+        Parameters
+        ----------
+        now : float
+            s
+        """
+        seconds = self._left_of_pieces(now)
+        if seconds is not None:
+            return Left(seconds, True)
+        begun, start = self._since
+        if self._share - start < _KNOWN or now - begun < _LONG_ENOUGH:
+            return None
+        return Left((now - begun) * (1.0 - self._share) / (self._share - start), False)
+
+    def _left_of_pieces(self, now: float) -> float | None:
+        """Seconds that all pieces still take, as many at a time as now and as long as those that are finished took.
+
+        A piece that is not heard of again after a later one began is finished.  When the present ones take longer than
+        the mean, the mean is what it would be if they ended now.
+        """
+        took, present = [], []
+        for piece in self._pieces.values():
+            # Pieces that are done side by side begin together: that a neighbour has begun does not finish a piece.
+            ends = [one.begun for one in self._pieces.values()
+                    if one.begun >= piece.heard and one.begun >= piece.begun + _LONG_ENOUGH]
+            if ends:
+                took.append(min(ends) - piece.begun)
+            else:
+                present.append(now - piece.begun)
+        waiting = self._group[1] - len(self._pieces)
+        if not took or not present or (waiting <= 0 and min(present) >= sum(took) / len(took)):
+            return None
+        over = [age for age in present if age > sum(took) / len(took)]
+        mean = (sum(took) + sum(over)) / (len(took) + len(over))
+        rest = waiting * mean + sum(max(mean - age, 0.0) for age in present)
+        return rest / len(present)

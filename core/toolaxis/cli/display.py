@@ -6,18 +6,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from toolaxis.progress import Progress
+from toolaxis.progress import Progress, Remaining
 
 _EVERY, _STEP = 5.0, 5.0
 
 
 @dataclass
 class _Stage:
-    """When a stage began, or began again, how far it was then and is now, and what was said of it, in hundredths."""
+    """How far a stage is, and what was said of it, in hundredths."""
 
-    began: float
-    start: float
-    share: float
+    share: float = 0.0
     said: float = 0.0
 
 
@@ -29,24 +27,34 @@ class _Lines:
 
     def __init__(self) -> None:
         self._stages: dict[str, _Stage] = {}
+        self._remaining = Remaining()
         self._said = 0.0
 
     def report(self, stage: str, done: float, total: float) -> None:
         """Say how far a stage is, with the time that remains."""
         now, share = time.monotonic(), 100 * done / total if total > 0 else 0.0
+        self._remaining.hear(stage, done, total, now)
         known = self._stages.get(stage)
         if known is None:
-            self._stages[stage] = _Stage(now, share, share)
+            self._stages[stage] = _Stage(share)
             self._said = now
-            print(stage, file=sys.stderr, flush=True)
+            print(stage + _left(self._remaining, now, ", {}"), file=sys.stderr, flush=True)
             return
-        if share < known.share:
-            known.began, known.start = now, share
+        further = share > known.share
         known.share = share
-        if now - self._said >= _EVERY and share < 100 and share >= known.said + _STEP and share > known.start:
+        if now - self._said >= _EVERY and further and share < 100 and share >= known.said + _STEP:
             self._said, known.said = now, share
-            left = (now - known.began) * (100 - share) / (share - known.start)
-            print(f"{stage}: {share:.0f} %, about {left:.0f} s left", file=sys.stderr, flush=True)
+            print(f"{stage}: {share:.0f} %" + _left(self._remaining, now, ", {}"), file=sys.stderr, flush=True)
+
+
+def _left(remaining: Remaining, now: float, form: str) -> str:
+    """What is left in words, or nothing while it is not known."""
+    left = remaining.left(now)
+    if left is None or left.seconds < 0.5:
+        return ""
+    minutes, seconds = divmod(round(left.seconds), 60)
+    words = f"{minutes}:{seconds:02d} min" if minutes else f"{seconds} s"
+    return form.format(f"about {words} left" + (" of all" if left.of_all else ""))
 
 
 @contextmanager
@@ -62,18 +70,22 @@ def shown_progress(asked: Callable[[], bool]) -> Iterator[Progress]:
         yield Progress(_Lines().report, asked)
         return
     from rich.console import Console
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bars
 
-    with Bars(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
+    with Bars(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
               console=Console(stderr=True), transient=True) as bars:
         tasks: dict[str, int] = {}
+        remaining = Remaining()
 
         def _report(stage: str, done: float, total: float) -> None:
+            now, known = time.monotonic(), total if total > 0 else None
+            remaining.hear(stage, done, total, now)
+            left = _left(remaining, now, "{}")
             if stage not in tasks:
                 for task in tasks.values():
                     bars.update(task, visible=False)  # type: ignore[arg-type]
-                tasks[stage] = bars.add_task(stage, total=total)
-            bars.update(tasks[stage], completed=done, total=total, visible=True)  # type: ignore[arg-type]
+                tasks[stage] = bars.add_task(stage, total=known, left=left)
+            bars.update(tasks[stage], completed=done, total=known, visible=True, left=left)  # type: ignore[arg-type]
 
         yield Progress(_report, asked)

@@ -114,7 +114,7 @@ class Ledger:
         """
         first = len(self.axes)
         for start in range(0, len(axes), _BATCH):
-            self.progress.report("axes", len(self.axes), len(self.axes) + len(axes) - start)
+            self.progress.report("axes", len(self.axes), 0)  # how many it takes is known when they are found
             rows = axes[start:start + _BATCH]
             verdict, price = self.feasibility.screen(rows), self.worth.screen(rows)
             charge = np.array([self.worth.charge(float(length), float(u)) if u > 0 else 1.0
