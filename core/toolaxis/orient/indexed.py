@@ -22,11 +22,11 @@ from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held,
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.reasons import direction, sentence, tally, why_none
+from toolaxis.orient.reasons import direction, nothing_to_cut, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
-from toolaxis.orient.verdicts import BACK, Witness
+from toolaxis.orient.verdicts import BACK, CUTTER, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
@@ -339,6 +339,8 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
         placed = job.laid(one.axis, feed)
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
         return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0
+    if not len(placed.pieces):
+        return Orientation(None, feed), Proof(Witness(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))), 0.0
     path = job.traced(placed)
     beyond = stopped(job.feasibility, path, job.groups)
     proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,

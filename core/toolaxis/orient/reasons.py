@@ -12,6 +12,7 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.setting import MARGIN, TOUCHING
 from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.plan.orientation import REASONS
+from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 
 Array = NDArray[np.float64]
@@ -66,6 +67,17 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
         f"comes within {found.distance:.3g} mm of face {found.label}, less than the required {needed:g} mm and "
         f"{MARGIN:g} mm to be sure,")
     return f"the {name} {how} {at}{_proud(found, feasibility)}"
+
+
+def nothing_to_cut(face: Face) -> str:
+    """What to say of an axis that leaves no pass on a face: each would stand too near to a wall all along.
+
+    Parameters
+    ----------
+    face : Face
+    """
+    return (f"no pass is left on face {face.label}: walls or faces beside it keep the tool off everywhere along the "
+            "passes; divide the face (--regions), or use a smaller cutter")
 
 
 def _proud(found: Witness, feasibility: Feasibility) -> str:

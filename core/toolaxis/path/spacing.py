@@ -31,6 +31,8 @@ _NARROW = 1.1
 #: Strips overlap by up to this share of the narrowest one, half as much on average.
 _ACCURACY = 4e-4
 _MOST_PASSES = 20_000
+#: Places that are tried for the only pass of a face.
+_PLACES = 65
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +242,7 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
         strips.check(active & (front <= place + half[:, 1]))
         unused = max(greedy - place, 0.0) / max(float(half.sum(axis=1)[active].min()), 1e-12 * (s1 - s0))
         if not steps and unused > 0:
-            place = min(max((greedy + place) / 2, s0), s1)
+            place = _only_place((max(place, s0), min(greedy, s1)), (greedy + place) / 2, material[active])
         half = strips.at(place)
         strips.check_progress(steps[-1] if steps else -np.inf)
         steps.append(place)
@@ -253,6 +255,35 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
                                "the scallop height is too small for its size")
     return Spacing(np.array(steps), float(min(unused, 1.0)), across,
                    np.array(halves).reshape(len(steps), len(across.measured), 2))
+
+
+def _only_place(room: tuple[float, float], middle: float, material: Array) -> float:
+    """Where in its room the only pass is put: as near to the middle as may be without leaving what is to be cut.
+
+    A strip may reach far beyond its pass, as that of a flank does; a pass off the face, or where the tool may not
+    stand, would be cut out again.
+
+    Parameters
+    ----------
+    room : (float, float)
+        Least and greatest step.
+    middle : float
+        The step that is wanted; it may lie outside.
+    material : (m, k, 2) array
+        What is to be cut on each line.
+    """
+    low, high = min(room), max(room)
+    wanted = min(max(middle, low), high)
+    tried = np.append(np.linspace(low, high, _PLACES), wanted)
+    held = _holds(material, tried)
+    best = tried[held == held.max()]
+    return float(best[np.argmin(np.abs(best - wanted))])
+
+
+def _holds(material: Array, steps: Array) -> NDArray[np.intp]:
+    """How many lines have something to be cut at each step."""
+    inside = (material[..., None, :, 0] <= steps[:, None]) & (material[..., None, :, 1] >= steps[:, None])
+    return np.asarray(inside.any(axis=-1).sum(axis=0))
 
 
 def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lines) -> float:
