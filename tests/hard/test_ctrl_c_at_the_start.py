@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-SAID = {"toolaxis: stopping; Ctrl-C again ends at once", "toolaxis: no face was finished: nothing is written",
-        "toolaxis: interrupted"}
+SAID = {"toolaxis: stopping and keeping what is finished; Ctrl-C once more, 2 s from now or later, ends at once and "
+        "keeps nothing", "toolaxis: no face was finished: nothing is written", "toolaxis: interrupted"}
 _PART = Path(__file__).parents[2] / "examples" / "saddle.step"
 #: Does what the installed command does, and tells when the first handler stands: before, no program can answer.
 _COMMAND = """

@@ -1,5 +1,7 @@
 """Operations on other blades: turned where faces are the same, laid anew where they differ, searched where refused."""
 
+import os
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -7,13 +9,16 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import Cancelled
+from toolaxis.job import turned
+from toolaxis.job.abreast import checked_workers
 from toolaxis.job.pattern import recognised
+from toolaxis.job.planning import went_on
 from toolaxis.job.turned import spread_out
 from toolaxis.machine.limits import parse_limits
 from toolaxis.orient.indexed import task
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -154,3 +159,71 @@ def test_a_stop_keeps_the_blades_that_were_finished(first):
 
     found = spread_out(pattern, replace(first, part=pattern.part), planner, Progress(_report))
     assert found.outcome == "cancelled" and len(found.operations) == 3
+
+
+@pytest.mark.parametrize("stage", ["proof of turned operations", "clean-up zones"])
+def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
+    """Found: what was finished was put together by code that hears the stop too, and was lost with it."""
+    asked = []
+
+    def _report(name, *_):
+        if name.startswith("blade 4") and stage in name:
+            asked.append(name)
+
+    pattern, _ = recognised(wheel("thick"))
+    stop = Progress(_report, lambda: bool(asked))
+    whole = turned.with_zones
+    if stage == "clean-up zones":
+        def _zones(plan, op, progress):
+            asked.append(stage)
+            return whole(plan, op, progress)
+
+        monkeypatch.setattr(turned, "with_zones", _zones)
+    with heard(stop):
+        found = went_on(replace(first, part=pattern.part), lambda plan: spread_out(pattern, plan, Planner(), stop))
+    assert found.outcome == "cancelled" and all(op.done for op in found.operations)
+    assert len(found.operations) == (3 if stage.startswith("proof") else 4)
+    assert len(found.blades.blades) == COUNT and all(blade.area >= 0 for blade in found.blades.blades)
+
+
+def test_a_stop_in_the_last_stage_keeps_all(first):
+    def _stage(plan):
+        raise Cancelled("cancelled by the user")
+
+    found = went_on(first, _stage)
+    assert found.outcome == "cancelled" and found.operations == first.operations
+    assert went_on(found, lambda plan: 1 // 0) is found
+
+
+def test_a_fault_on_one_blade_costs_that_operation_there(first, monkeypatch):
+    whole = turned._proven
+
+    def _proven(op, *rest):
+        if op.face.number == 4:
+            raise IndexError("planted")
+        return whole(op, *rest)
+
+    monkeypatch.setattr(turned, "_proven", _proven)
+    found, _, _ = spread(first, wheel())
+    lost = on_second(found)
+    assert lost.failed and lost.orientation.reasons[0].startswith("failed: IndexError: planted")
+    assert "Traceback" in lost.traceback and lost.face.number == 4
+    assert [op.done for op in found.operations].count(True) == 3 and found.outcome == "incomplete"
+
+
+@pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux")
+def test_a_process_that_dies_over_a_blade_costs_that_blade(first, monkeypatch):
+    whole, here = turned._proven, os.getpid()
+
+    def _proven(op, *rest):
+        if op.face.number == 4 and os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return whole(op, *rest)
+
+    monkeypatch.setattr(turned, "_proven", _proven)
+    pattern, _ = recognised(wheel())
+    planner = Planner()
+    planner.workers = 2
+    found = spread_out(pattern, replace(first, part=pattern.part), planner, NO_PROGRESS)
+    assert "SIGKILL" in on_second(found).orientation.reasons[0] and found.outcome == "incomplete"
+    assert [op.done for op in found.operations].count(True) == 3

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import toolaxis
 from toolaxis.batch.task import Answer, Task
+from toolaxis.job.abreast import how_it_ended
 
 #: Seconds between two looks at the user and the clock.
 TICK = 0.1
@@ -131,11 +132,11 @@ class Hand:
         """What is said of a process that ended without an answer."""
         assert self._process is not None
         code = self._process.wait()
-        how = f"signal {-code} ({signal.Signals(-code).name})" if code < 0 else f"exit code {code}"
         said = (self._scratch / "errors").read_text(errors="replace").strip().splitlines() \
             if (self._scratch / "errors").exists() else []
         limit = f"; its limit of memory is {task.memory:g} MB" if task.memory is not None else ""
-        return Answer("failed", "crash", f"its process ended by {how}{limit}{f': {said[-1]}' if said else ''}",
+        last = f": {said[-1]}" if said else ""
+        return Answer("failed", "crash", f"its process ended by {how_it_ended(code)}{limit}{last}",
                       spent=time.monotonic() - self._began)
 
     def dismiss(self) -> None:

@@ -21,7 +21,7 @@ from typing import Any
 from toolaxis import __version__
 from toolaxis.batch.hand import MEGABYTE, descendants
 from toolaxis.batch.task import Answer, Source, Task
-from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 from toolaxis.numeric.compiled import compilations
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
@@ -90,7 +90,10 @@ def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) ->
     if task.memory is not None:  # once the parts are read: what their kernel takes is looked at from outside
         resource.setrlimit(resource.RLIMIT_DATA, (int(task.memory * MEGABYTE),) * 2)
     made = plan(part, task.tool, machine=task.machine, obstacles=obstacles or None, workers=1, **task.options)
-    write_plan(made, folder)
+    if made.operations and all(op.orientation.reasons[:1] and op.orientation.reasons[0].startswith(OUT_OF_MEMORY)
+                               for op in made.operations):
+        raise MemoryError  # nothing is lost with the plan, and the next run tries it again
+    made = write_plan(made, folder)
     document = read_json(folder / PLAN)
     document["part"]["source"] = task.part.name
     write_json(document, folder / PLAN)

@@ -70,7 +70,8 @@ def report_batch(folder: Path, file: Path | None = None, progress: Progress = NO
                        checked_workers(workers), progress)
         if made.cancelled:
             raise Cancelled("the page of the batch was not made")
-        leaves = {record["job"]: Leaf(*found) for record, found in zip(planned, made.results, strict=True)}
+        leaves = {planned[k]["job"]: Leaf(*found) for k, found in made.results.items()}
+        leaves |= {planned[k]["job"]: Leaf("", [], f"no page: {fault.sentence}") for k, fault in made.faults.items()}
         text = batch_page(folder.resolve().name, records, leaves)
         (stage.folder / target.name).write_text(text, encoding="utf-8")
         stage.publish(clear=False)

@@ -5,13 +5,12 @@ ORDER is a pickled FaceOrder.  The outcome goes to OUT as a pickle: ("done", Tra
 
 import pickle
 import sys
-import traceback
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from toolaxis.cad.records import Transfer
 from toolaxis.cad.stepfaces import FaceOrder, numbered, transferred
-from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, place_of, report_it
 
 #: How many faces times entities the kernel is asked for the origin of each: always, and where faces are missing.
 ASKED, ASKED_OF_MISSING = 1e7, 1e9
@@ -170,9 +169,8 @@ def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
     what = f"{type(reason).__name__}: {str(reason).strip() or 'no message'}"
     if type(reason).__module__.split(".")[0] == "OCP":
         return InvalidInput, f"the CAD kernel fails on it ({what}): repair the geometry and export it again"
-    frame = traceback.extract_tb(reason.__traceback__)[-1]
-    return ToolAxisError, (f"an error of toolaxis itself, not of the file ({what}; {Path(frame.filename).name}, line "
-                           f"{frame.lineno}): please report it with the file")
+    return ToolAxisError, (f"an error of toolaxis itself, not of the file ({what}, at {place_of(reason)}): "
+                           f"{report_it('the file')}")
 
 
 def main(arguments: list[str]) -> int:

@@ -2,16 +2,14 @@
 
 import argparse
 import os
-import signal
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from importlib import import_module
-from types import FrameType
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from toolaxis import __version__
-from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
+from toolaxis.cli.stopping import Stopping
+from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -230,14 +228,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = parser().parse_args(arguments)
     work = import_module(given.module).run
-    with _Interrupt() as interrupt:
-        return _answer(work, given, interrupt)
+    with Stopping() as stopping:
+        return _answer(work, given, stopping)
 
 
 def _answer(work: Callable[[argparse.Namespace, Callable[[], bool]], int], given: argparse.Namespace,
-            interrupt: "_Interrupt") -> int:
+            stopping: Stopping) -> int:
     try:
-        code = work(given, interrupt.asked)
+        code = work(given, stopping.asked)
         sys.stdout.flush()
         return code
     except (KeyboardInterrupt, Cancelled):
@@ -249,6 +247,10 @@ def _answer(work: Callable[[argparse.Namespace, Callable[[], bool]], int], given
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
+    except Exception as reason:  # a fault of the program that is of no single face
+        why = fault(reason)
+        print(why.traceback, f"toolaxis: {why.sentence}", sep="", file=sys.stderr)
+        return NO
 
 
 def _sentence(reason: BaseException) -> str:
@@ -259,44 +261,6 @@ def _blames_input(reason: BaseException | None) -> bool:
     if reason is None:
         return False
     return isinstance(reason, InvalidInput | UnsupportedGeometry | MissingBackend) or _blames_input(reason.__cause__)
-
-
-class _Ended(KeyboardInterrupt):
-    """The second Ctrl-C.
-
-    A class of its own: where KeyboardInterrupt itself leaves code that ``exec`` runs (dataclasses are made so), Python
-    ends the process by the signal, whoever caught it since.
-    """
-
-
-class _Interrupt:
-    """The first Ctrl-C, or the first SIGTERM, asks the work to stop where it can be; the second ends it at once."""
-
-    def __init__(self) -> None:
-        self._pressed = 0
-        self._before: dict[signal.Signals, Any] = {}
-
-    def asked(self) -> bool:
-        """Whether Ctrl-C was pressed or SIGTERM came."""
-        return self._pressed > 0
-
-    def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        self._pressed += 1
-        if self._pressed == 1:
-            again = b"Ctrl-C" if number == signal.SIGINT else b"the signal"
-            os.write(2, b"toolaxis: stopping; " + again + b" again ends at once\n")  # print may be interrupted itself
-        elif self._pressed == 2:  # a third one would only disturb the clearing up
-            raise _Ended
-
-    def __enter__(self) -> "_Interrupt":
-        with suppress(ValueError):  # not the main thread: no signal comes here
-            for number in (signal.SIGINT, signal.SIGTERM):
-                self._before[number] = signal.signal(number, self._on_signal)
-        return self
-
-    def __exit__(self, *reason: object) -> None:
-        for number, before in self._before.items():
-            signal.signal(number, before)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.errors import Cancelled
+from toolaxis.cli.stopping import writing
+from toolaxis.errors import REPORT_AT, Cancelled
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
 from toolaxis.job.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.catalogue import load_machine
@@ -49,10 +50,12 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")
-            write_plan(made, stage.folder)
+            with writing():
+                made = write_plan(made, stage.folder)
             if not given.no_pictures and made.outcome != "cancelled":
                 _draw(made, stage.folder, progress)
-        stage.publish()
+        with writing():
+            stage.publish()
     return _told(made, given)
 
 
@@ -121,17 +124,31 @@ def _told(made: Plan, given: Namespace) -> int:
         elif not op.done and outcome_of([op], made.blades) == "complete":
             say(f"toolaxis: face {op.face.label}: left to clean-up: {op.orientation.reasons[0]}")
         elif not op.done:
-            for reason in (f"outcome {op.orientation.outcome}", *op.orientation.reasons):
+            outcome = () if op.failed else (f"outcome {op.orientation.outcome}",)
+            for reason in (*outcome, *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
         else:
             _left_over(op)
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
+    _of_failures(Path(given.out))
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
     if made.outcome == "cancelled":
-        say("toolaxis: stopped before all faces were done; plan.json holds those that were")
+        say(f"toolaxis: stopped before all faces were done; {Path(given.out) / PLAN} holds those that were")
         return 130
     return 0 if made.outcome == "complete" else 1
+
+
+def _of_failures(out: Path) -> None:
+    """Say what the whole plan failed at, and how to report failures."""
+    document = read_json(out / PLAN)
+    for sentence in document["faults"]:
+        say(f"toolaxis: {sentence}")
+    files = [op["failure_file"] for op in document["operations"]] + [document["failure_file"]]
+    written = [name for name in files if name]
+    if written:
+        say(f"toolaxis: the program itself failed: please report it at {REPORT_AT}, with the part, and with plan.json, "
+            f"{', '.join(written)} of {out}")
 
 
 def _left_over(op: Operation) -> None:

@@ -6,10 +6,15 @@ from pathlib import Path
 
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
+from toolaxis.cli.stopping import writing
+from toolaxis.errors import Cancelled
 from toolaxis.job.folder import read_plan, staged, write_json
 from toolaxis.job.judge import not_judged, passes, verdict_document, verify_plan
 from toolaxis.job.views import write_views
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import Progress
 from toolaxis.report.tables import verdict_table
+from toolaxis.verify.verdict import Verdict
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -24,7 +29,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     Returns
     -------
     int
-        0 where everything passed, else 1.
+        0 where everything passed, 1 where not, 130 where the user stopped it.
     """
     folder = Path(given.folder)
     with shown_progress(asked) as progress:
@@ -32,13 +37,13 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         with staged(folder) as stage:
             verdict = verify_plan(plan, progress=progress)
             document = verdict_document(plan, verdict)
-            write_json(document, stage.folder / "verdict.json")
-            write_views(plan, verdict, stage.folder)
-            if not given.no_pictures:
-                from toolaxis.job.pictures import draw_verdict
-
-                draw_verdict(plan, verdict, stage.folder, progress)
-            stage.publish(clear=False)
+            with writing():
+                write_json(document, stage.folder / "verdict.json")
+                write_views(plan, verdict, stage.folder)
+            if not (given.no_pictures or verdict.unjudged):
+                _draw(plan, verdict, stage.folder, progress)
+            with writing():
+                stage.publish(clear=False)
     if given.json:
         print_json(document)
     else:
@@ -54,4 +59,20 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         say(f"toolaxis: {reason}")
     if plan.outcome == "cancelled":
         say("toolaxis: the plan was cancelled before all sub-surfaces were done")
+    if verdict.unjudged:
+        say(f"toolaxis: stopped: {len(verdict.operations)} operations were judged, {len(verdict.unjudged)} were not; "
+            f"{folder / 'verdict.json'} holds those that were, and is no verdict on the plan")
+        return 130
     return 0 if passes(plan, verdict) else 1
+
+
+def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress) -> None:
+    """Draw the maps; a verdict is worth keeping without them."""
+    from toolaxis.job.pictures import draw_verdict
+
+    try:
+        draw_verdict(plan, verdict, folder, progress)
+    except Cancelled:
+        say("toolaxis: stopped while drawing; the verdict is whole, pictures are missing")
+    except Exception as reason:
+        say(f"toolaxis: warning: pictures are missing ({type(reason).__name__}: {reason}); the verdict is whole")

@@ -1,25 +1,30 @@
 """Independent pieces of work on several processes, with one progress and one stop for all."""
 
+import faulthandler
 import multiprocessing
 import os
-import pickle
 import signal
 import sys
+import tempfile
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
-from typing import Any, Generic, TypeVar
+from multiprocessing.process import BaseProcess
+from typing import IO, Generic, NamedTuple, TypeVar
 
-from toolaxis.errors import Cancelled, InvalidInput, JobError
-from toolaxis.progress import Progress
+from toolaxis.errors import Cancelled, Fault, InvalidInput, fault, process_fault
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 
 Result = TypeVar("Result")
 
 #: Seconds between two looks for a stop, and between two reports of a worker.
 _TICK = 0.1
+#: Signals that ask the parent to stop; they go to its whole group.
+_STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
 @dataclass(frozen=True)
@@ -28,13 +33,16 @@ class Outcome(Generic[Result]):
 
     Attributes
     ----------
-    results : tuple
-        Those that were finished, in the order of the pieces.
+    results : dict of int to result
+        Those of the pieces that were finished, by their numbers and in their order.
+    faults : dict of int to Fault
+        What went wrong with others: a piece that fails, or whose process dies, costs none beside it.
     cancelled : bool
-        Whether the user asked to stop before all were.
+        Whether the user asked to stop before all were tried.
     """
 
-    results: tuple[Result, ...]
+    results: dict[int, Result]
+    faults: dict[int, Fault]
     cancelled: bool
 
 
@@ -76,133 +84,206 @@ def abreast(work: Callable[[int, Progress], Result], count: int, workers: int, p
     Returns
     -------
     Outcome
-        The same for every number of workers, unless the user stops it.
-
-    Raises
-    ------
-    JobError
-        When a process ended without a word.
-    Exception
-        The first that a piece of work raised.
+        The same for every number of workers, unless the user stops it or a process dies.
     """
-    if min(workers, count) <= 1:
-        done: list[Result] = []
+    found: Outcome[Result] = Outcome({}, {}, False)
+    waiting = deque(range(count))
+    if min(workers, count) > 1:
+        crew = _Crew(work, progress, found, waiting)
         try:
-            for index in range(count):
-                done.append(work(index, progress))
+            crew.work(min(workers, count))
         except Cancelled:
-            return Outcome(tuple(done), True)
-        return Outcome(tuple(done), False)
-    crew = _Crew(work, progress)
+            crew.gather()
+            return _in_order(found, True)
+        finally:
+            crew.dismiss()
     try:
-        return crew.outcome(count, min(workers, count))
-    finally:
-        crew.dismiss()
+        while waiting:
+            index = waiting.popleft()
+            try:
+                found.results[index] = work(index, progress)
+            except Cancelled:
+                raise
+            except Exception as reason:
+                found.faults[index] = fault(reason)
+    except Cancelled:
+        return _in_order(found, True)
+    return _in_order(found, False)
+
+
+def _in_order(found: Outcome[Result], cancelled: bool) -> Outcome[Result]:
+    """An outcome with its pieces in the order of their numbers."""
+    return Outcome(dict(sorted(found.results.items())), dict(sorted(found.faults.items())), cancelled)
+
+
+def how_it_ended(code: int | None) -> str:
+    """How a process ended, in words.
+
+    Parameters
+    ----------
+    code : int or None
+        Its exit code; that of a signal is negative.
+    """
+    if code is None or code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"signal {-code} ({signal.Signals(-code).name})"
+    except ValueError:
+        return f"signal {-code}"
+
+
+class _Member(NamedTuple):
+    """A process, the piece that it has, and the file into which it writes where it stood when it crashes."""
+
+    process: BaseProcess
+    piece: int
+    said: IO[bytes]
 
 
 class _Crew(Generic[Result]):
-    """Forked processes, each of which is handed the next piece when it has finished one."""
+    """Forked processes, each of which is handed the next piece when it has finished one.
 
-    def __init__(self, work: Callable[[int, Progress], Result], progress: Progress) -> None:
-        self._work, self._progress = work, progress
-        self._members: dict[Connection, Any] = {}
-        self._released: list[Any] = []
-        self._results: dict[int, Result] = {}
+    Parameters
+    ----------
+    work : callable
+    progress : Progress
+    found : Outcome
+        Receives what comes of the pieces.
+    waiting : deque of int
+        Pieces that nobody has yet; those that remain when no process can be started stay in it.
+    """
 
-    def outcome(self, count: int, workers: int) -> Outcome[Result]:
-        """Results of all pieces.
+    def __init__(self, work: Callable[[int, Progress], Result], progress: Progress, found: Outcome[Result],
+                 waiting: deque[int]) -> None:
+        self._work, self._progress, self._found, self._waiting = work, progress, found, waiting
+        self._members: dict[Connection, _Member] = {}
+        self._released: list[_Member] = []
+
+    def work(self, workers: int) -> None:
+        """Have all pieces done.
 
         Parameters
         ----------
-        count, workers : int
+        workers : int
+
+        Raises
+        ------
+        Cancelled
+            When the user asked to stop.
         """
-        cancelled, waiting = False, iter(range(count))
-        for _ in range(workers):
-            self._engage().send(next(waiting))
-        try:
-            while len(self._results) < count:
-                self._progress.check()
-                for pipe in wait(list(self._members), _TICK):
-                    assert isinstance(pipe, Connection)
-                    if self._heard(pipe):
-                        self._hand(pipe, next(waiting, None))
-        except Cancelled:
-            cancelled = True
-        return Outcome(tuple(self._results[k] for k in sorted(self._results)), cancelled)
+        self._fill(workers)
+        while self._members:
+            self._progress.check()
+            for pipe in wait(list(self._members), _TICK):
+                assert isinstance(pipe, Connection)
+                if not self._heard(pipe, self._progress):
+                    continue
+                if pipe in self._members and self._waiting:
+                    self._hand(pipe)
+                elif pipe in self._members:
+                    self._released.append(self._members.pop(pipe))
+                    pipe.close()
+                else:  # its process has died
+                    self._fill(len(self._members) + 1)
+
+    def gather(self) -> None:
+        """Take what was finished and has not been heard yet."""
+        while ready := wait(list(self._members), 0):
+            for pipe in ready:
+                assert isinstance(pipe, Connection)
+                if self._heard(pipe, NO_PROGRESS) and pipe in self._members:
+                    self._released.append(self._members.pop(pipe))
+                    pipe.close()
+
+    def _fill(self, workers: int) -> None:
+        """Start processes for pieces that wait, until there are so many, or the system lets no more be started."""
+        while self._waiting and len(self._members) < workers:
+            try:
+                pipe = self._engage()
+            except OSError:
+                return
+            self._hand(pipe)
 
     def _engage(self) -> Connection:
         context = multiprocessing.get_context("fork")
-        ours, theirs = context.Pipe()
-        process = context.Process(target=_labour, args=(self._work, theirs, (*self._members, ours)), daemon=True)
-        process.start()
+        with ExitStack() as stack:
+            said = stack.enter_context(tempfile.TemporaryFile())
+            ours, theirs = map(stack.enter_context, context.Pipe())
+            process = context.Process(target=_labour, args=(self._work, theirs, (*self._members, ours), said),
+                                      daemon=True)
+            # Until the child ignores them, signals to the group wait.
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
+            try:
+                process.start()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            stack.pop_all()
         theirs.close()
-        self._members[ours] = process
+        self._members[ours] = _Member(process, -1, said)
         return ours
 
-    def _hand(self, pipe: Connection, index: int | None) -> None:
-        """Give a process its next piece, or let it go."""
-        if index is None:
-            self._released.append(self._members.pop(pipe))
-            pipe.close()
-        else:
+    def _hand(self, pipe: Connection) -> None:
+        """Give a process its next piece."""
+        index = self._waiting.popleft()
+        self._members[pipe] = self._members[pipe]._replace(piece=index)
+        with suppress(BrokenPipeError, ConnectionResetError):  # it has died: that is heard next
             pipe.send(index)
 
-    def _heard(self, pipe: Connection) -> bool:
-        """Take one message; whether its sender is ready for the next piece."""
+    def _heard(self, pipe: Connection, progress: Progress) -> bool:
+        """Take one message; whether its sender is done with its piece."""
         try:
             kind, value = pipe.recv()
-        except EOFError:
-            process = self._members.pop(pipe)
-            process.join()
-            raise JobError("work on several processes", f"process {process.pid}", f"it ended with code "
-                           f"{process.exitcode} before its work was done; where memory is short, ask for fewer workers"
-                           ) from None
+        except (EOFError, ConnectionResetError):
+            member = self._members.pop(pipe)
+            self._released.append(member)
+            member.process.join()
+            member.said.seek(0)
+            self._found.faults[member.piece] = process_fault(how_it_ended(member.process.exitcode),
+                                                             member.said.read().decode(errors="replace"))
+            pipe.close()
+            return True
+        index = self._members[pipe].piece
         if kind == "report":
-            self._progress.report(*value)
+            progress.report(*value)
         elif kind == "failed":
-            raise value
+            self._found.faults[index] = value
         else:
-            self._results[value[0]] = value[1]
-        return bool(kind == "done")
+            self._found.results[index] = value
+        return bool(kind != "report")
 
     def dismiss(self) -> None:
         """End all processes; they hold nothing that would have to be put away."""
-        for pipe, process in self._members.items():
+        for pipe, member in self._members.items():
             pipe.close()
-            process.terminate()
-        for process in (*self._members.values(), *self._released):
-            process.join()
+            member.process.kill()
+        for member in (*self._members.values(), *self._released):
+            member.process.join()
+            member.said.close()
 
 
-def _labour(work: Callable[[int, Progress], object], pipe: Connection, others: tuple[Connection, ...]) -> None:
+def _labour(work: Callable[[int, Progress], object], pipe: Connection, others: tuple[Connection, ...],
+            said: IO[bytes]) -> None:
     """Pieces of work in a forked process, until there are none; the parent alone hears the user."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    for number in _STOPS:
+        signal.signal(number, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPS)
+    faulthandler.enable(said)
     for other in others:
         other.close()
-    said: dict[str, float] = {}
+    reported: dict[str, float] = {}
 
     def _report(stage: str, done: float, total: float) -> None:
-        if time.monotonic() - said.get(stage, -_TICK) >= _TICK:
-            said[stage] = time.monotonic()
+        if time.monotonic() - reported.get(stage, -_TICK) >= _TICK:
+            reported[stage] = time.monotonic()
             pipe.send(("report", (stage, done, total)))
 
     progress = Progress(_report)
-    with suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the parent is gone
+    with heard(progress), suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the parent is gone
         while True:
             index = pipe.recv()
             try:
-                pipe.send(("done", (index, work(index, progress))))
+                pipe.send(("done", work(index, progress)))
             except (BrokenPipeError, ConnectionResetError):
                 return
             except Exception as reason:
-                pipe.send(("failed", _portable(reason)))
-
-
-def _portable(reason: Exception) -> Exception:
-    """An exception that the parent can raise."""
-    try:
-        pickle.loads(pickle.dumps(reason))
-    except Exception:
-        return JobError("work on several processes", type(reason).__name__, str(reason))
-    return reason
+                pipe.send(("failed", fault(reason)))

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from toolaxis.errors import Cancelled, fault
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
@@ -47,7 +48,13 @@ def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[F
             continue
         if method == "sturz" and sum(not axis.by_hand for axis in rotary) < 2:
             continue
-        other = again(method, faces if whole else pieces)
+        try:
+            other = again(method, faces if whole else pieces)
+        except Cancelled:
+            break
+        except Exception as reason:
+            rows.append(Baseline(method, made.tool.name, len(pieces), 0, 0, 0, 0.0, 0.0, 0.0, fault(reason).sentence))
+            continue
         if other.outcome == "cancelled":
             break
         rows.append(baseline(method, other))

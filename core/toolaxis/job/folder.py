@@ -7,12 +7,13 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from toolaxis.cad.loading import load
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, about, fault, piece_of
+from toolaxis.job.failures import failed_after, failure_text, fault_text
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan
@@ -24,7 +25,7 @@ from toolaxis.shape.part import Part
 PLAN = "plan.json"
 #: What a folder may hold of an earlier plan; the rest in it is the user's and stays.
 _OURS = (PLAN, "plan.step", "plan.glb", "verdict.json", "verdict-maps.npz", "report.html", "part.*", "obstacle-*.*",
-         "op*.apt", "program-*.*", "setup-*.md", "*.png")
+         "op*.apt", "failed-*.txt", "program-*.*", "setup-*.md", "*.png")
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def sha256_of(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def write_plan(plan: Plan, folder: Path) -> None:
+def write_plan(plan: Plan, folder: Path) -> Plan:
     """Write a plan's files into a folder.
 
     Parameters
@@ -149,18 +150,56 @@ def write_plan(plan: Plan, folder: Path) -> None:
     plan : Plan
     folder : Path
         Of a `Stage`.
+
+    Returns
+    -------
+    Plan
+        The plan as it was written: an operation that cannot be written has failed, and keeps no other from the disk.
     """
     part = _written_part(plan.part, folder, "part")
     obstacles = [_written_part(body, folder, f"obstacle-{k}") for k, body in enumerate(plan.obstacles, 1)]
-    names: list[str | None] = []
-    for op in plan.operations:
-        names.append(None if op.path is None else f"{op.name}.apt")
-        if op.path is not None:
-            text = apt_text(op.path, plan.tool, op.name, plan.inputs.feedrate, plan.inputs.spindle)
-            (folder / f"{op.name}.apt").write_text(text, encoding="ascii")
-    document = plan_document(plan, {"part": part, "obstacles": obstacles, "operations": names})
+    while True:
+        try:
+            files = _write_operations(plan, folder)
+            document = plan_document(plan, {"part": part, "obstacles": obstacles, **files})
+            break
+        except Exception as reason:
+            plan = _without(plan, reason, folder)
     check(document)
     write_json(document, folder / PLAN)
+    return plan
+
+
+def _write_operations(plan: Plan, folder: Path) -> dict[str, Any]:
+    """Write the CL files, and what tells of failures; their names."""
+    names: list[str | None] = []
+    failures: list[str | None] = []
+    for op in plan.operations:
+        names.append(None if op.path is None else f"{op.name}.apt")
+        told = op.failed and (plan.blades is None or op.number not in plan.blades.copies)
+        failures.append(f"failed-{op.name}.txt" if told else None)
+        if op.path is not None:
+            with about(op.face.label):
+                text = apt_text(op.path, plan.tool, op.name, plan.inputs.feedrate, plan.inputs.spindle)
+            (folder / f"{op.name}.apt").write_text(text, encoding="ascii")
+        if told:
+            (folder / f"failed-{op.name}.txt").write_text(failure_text(plan, op), encoding="utf-8")
+    whole = "failed-plan.txt" if plan.faults else None
+    if whole:
+        (folder / whole).write_text("\n".join(fault_text(plan, one) for one in plan.faults), encoding="utf-8")
+    return {"operations": names, "failures": failures, "failure": whole}
+
+
+def _without(plan: Plan, reason: Exception, folder: Path) -> Plan:
+    """A plan without the operation that cannot be written."""
+    lost = {op.number: failed_after(op, fault(reason)) for op in plan.operations
+            if op.face.label == piece_of(reason) and not op.failed}
+    if not lost:
+        raise reason
+    for op in lost.values():
+        (folder / f"{op.name}.apt").unlink(missing_ok=True)
+    outcome = "incomplete" if plan.outcome == "complete" else plan.outcome
+    return replace(plan, operations=tuple(lost.get(op.number, op) for op in plan.operations), outcome=outcome)
 
 
 def write_json(document: Any, path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from toolaxis.contact.indexing import Stop, trouble_at_the_ends, trouble_between
 from toolaxis.contact.machinery import Surroundings, words
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, about
 from toolaxis.feed.turning import following
 from toolaxis.machine.mounting import Mounting
 from toolaxis.orient.laying import met
@@ -65,11 +65,13 @@ def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple
         moves = op.orientation.lead is not None
         if moves:
             try:
-                along = following(mounting.machine, op.path, mounting.table_from_part,
-                                  float(mounting.tool_length or 0.0), near=stand, travel=True)
+                with about(op.face.label):
+                    along = following(mounting.machine, op.path, mounting.table_from_part,
+                                      float(mounting.tool_length or 0.0), near=stand, travel=True)
             except InvalidInput as reason:
                 return _but(plan, k, str(reason)), []
-            found = met(mounting, along, around)
+            with about(op.face.label):
+                found = met(mounting, along, around)
             if found is not None:
                 return _but(plan, k, f"{words(mounting, found[1], found[0], around.required)}, at point "
                                      f"{found[0].motion} of the path"), []

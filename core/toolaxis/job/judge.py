@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput, fault
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.machine.kinematics import placement
 from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
@@ -20,7 +20,7 @@ from toolaxis.shape.skins import own_pieces
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.task import Task
-from toolaxis.verify.verdict import OperationVerdict, Verdict, judge
+from toolaxis.verify.verdict import OperationVerdict, Verdict, judge, not_measured
 
 Array = NDArray[np.float64]
 
@@ -41,12 +41,13 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
     Returns
     -------
     Verdict
-        `passed`, `reasons`, and per operation what was measured.
+        `passed`, `reasons`, and per operation what was measured; an operation on which the judge itself fails has not
+        passed.  Where the progress object asks to stop, those that were judged by then: it has not passed either.
 
     Raises
     ------
     Cancelled
-        When the progress object asks to stop.
+        When the progress object asks to stop before the first operation was judged.
     InvalidInput
         When it is no plan.
     """
@@ -69,12 +70,20 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
         As for `verify`.
     """
     done = [op for op in plan.operations if op.path is not None]
-    found = []
+    limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+    found: list[OperationVerdict] = []
     for index, op in enumerate(done):
         name = f"{op.name} ({index + 1} of {len(done)})"
-        with heard(progress):
-            task = _task(plan, op, done[index - 1] if index else None)
-            found.append(judge(task, spacing, threads, progress.within(name)))
+        try:
+            with heard(progress):
+                task = _task(plan, op, done[index - 1] if index else None)
+                found.append(judge(task, spacing, threads, progress.within(name)))
+        except Cancelled:
+            if not found:
+                raise
+            return Verdict(tuple(found), tuple(op.name for op in done[index:]))
+        except Exception as reason:  # nothing is known of this operation; the others are judged
+            found.append(not_measured(op.name, limits, fault(reason).sentence))
     return Verdict(tuple(found))
 
 
@@ -115,8 +124,10 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     """
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
+            "complete": not verdict.unjudged, "unjudged": list(verdict.unjudged),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
-                        *(f"between operations: {why}" for why in plan.in_the_way)],
+                        *(f"between operations: {why}" for why in plan.in_the_way),
+                        *(f"the plan: {why.sentence}" for why in plan.faults)],
             "not_checked": list(not_judged(plan, verdict)),
             "operations": [_operation_document(op) for op in verdict.operations]}
 
@@ -169,7 +180,8 @@ def _clearances(found: Mapping[str, Clearance | str]) -> dict[str, Any]:
 def _operation_document(op: OperationVerdict) -> dict[str, Any]:
     return {"name": op.name, "faces": list(op.faces), "passed": op.passed, "reasons": list(op.reasons),
             "scallop_limit": op.scallop_limit, "allowance": op.allowance, "scallop_max": _number(op.scallop_max),
-            "share_within": op.share_within, "gouge_max": op.gouge_max, "gouge_allowed": op.gouge_allowed,
-            "clearance": _clearances(op.clearance), "worst_scallop": [_place(p) for p in op.worst_scallop],
+            "share_within": op.share_within, "gouge_max": op.gouge_max if op.measured else None,
+            "gouge_allowed": op.gouge_allowed, "clearance": _clearances(op.clearance),
+            "worst_scallop": [_place(p) for p in op.worst_scallop],
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
             "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty}

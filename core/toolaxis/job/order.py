@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.indexing import RETRACT, Stop, trouble_at_the_ends, trouble_between
 from toolaxis.contact.machinery import Surroundings, free_solutions
+from toolaxis.errors import about
 from toolaxis.feed.profile import travel_time
 from toolaxis.job.in_motion import kept_clear, refused
 from toolaxis.machine.axes import RotaryAxis
@@ -61,7 +62,10 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
         return plan
     mounting = replace(plan.machine, tool_length=plan.tool.gauge_length)
     around = _around(plan)
-    found = [_states(mounting, op, around) if _fixed(op) else ([], "") for op in plan.operations]
+    found: list[tuple[list[_State], str]] = []
+    for op in plan.operations:
+        with about(op.face.label):
+            found.append(_states(mounting, op, around) if _fixed(op) else ([], ""))
     kept = tuple(refused(op, why) if why and not states else op
                  for op, (states, why) in zip(plan.operations, found, strict=True))
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(kept, plan.blades)

@@ -129,6 +129,8 @@ def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress 
     axes = {op.name: op.orientation.axis for op in plan.operations}
     for index, found in enumerate(verdict.operations):
         progress.report("drawing", index, len(verdict.operations))
+        if not found.maps:
+            continue
         axis = axes[found.name]
         assert axis is not None
         targets = found.maps[:len(found.faces)]

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.errors import Cancelled, ToolAxisError
+from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault, piece_of
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import Remembering, frame_of, judged
 from toolaxis.job.baselines import compared
+from toolaxis.job.failures import failed
 from toolaxis.job.pattern import Pattern, shared_out
 from toolaxis.job.rooms import with_rooms
-from toolaxis.job.targets import Target, by_axis, given_targets, held, with_given
+from toolaxis.job.targets import Target, by_axis, given_targets, held, lost, smooth_pieces, with_given
 from toolaxis.job.timing import feeds_of, timed
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
@@ -42,7 +43,6 @@ from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
-from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool
@@ -57,6 +57,38 @@ _SEARCHES = {"ball": "normal"}
 _MOVING: dict[str, Callable[[Task], tuple[Orientation, ToolPath | None]]] = {
     "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys"),
     "four-plus-one": four_plus_one, "multiscale": multiscale}
+
+
+def went_on(plan: Plan, stage: Callable[[Plan], Plan]) -> Plan:
+    """A plan after a further stage; what it was before is kept where the user stops that, or the program fails in it.
+
+    Parameters
+    ----------
+    plan : Plan
+        A stopped one stays as it is.
+    stage : callable
+        Takes and returns a plan.
+    """
+    if plan.outcome == "cancelled":
+        return plan
+    try:
+        return stage(plan)
+    except Cancelled:
+        return replace(plan, outcome="cancelled")
+    except Exception as reason:
+        return with_fault(plan, fault(reason))
+
+
+def with_fault(plan: Plan, why: Fault) -> Plan:
+    """A plan in which something failed that is of no single sub-surface.
+
+    Parameters
+    ----------
+    plan : Plan
+    why : Fault
+    """
+    outcome = "incomplete" if plan.outcome == "complete" else plan.outcome
+    return replace(plan, outcome=outcome, faults=(*plan.faults, why))
 
 
 def quicker(divided: Plan, whole: Plan) -> Plan:
@@ -127,47 +159,51 @@ class Job:
         share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
         apart = pattern.blades.apart(self.part, pattern.first[0].number)
         regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
-        one = replace(self, part=apart, regions=regions,
-                      whole=tuple(piece for face in share.whole for piece in split_at_kinks(face)))
-        faces = [piece for face in share.divided for piece in split_at_kinks(face)]
-        first = with_refused(zoned(one.carried_out(faces, progress), self.workers, progress), pattern, share)
-        found = spread_out(pattern, first, _Planner(self), progress)
+        one = replace(self, part=apart, regions=regions, whole=share.whole)
+        first = with_refused(one.zoned_out(share.divided, progress), pattern, share)
+        found = went_on(replace(first, part=pattern.part),
+                        lambda plan: spread_out(pattern, plan, _Planner(self), progress))
         if found.outcome != "cancelled" and pattern.rest:
-            faces = [piece for face in pattern.rest for piece in split_at_kinks(face)]
-            found = followed(found, zoned(self.carried_out(faces, progress), self.workers, progress))
-        if compare and found.outcome != "cancelled":
+            found = followed(found, self.zoned_out(pattern.rest, progress))
+        if compare:
             plain = replace(one, regions=None, orientations=None, whole=(), division=())
             done = tuple(op for op in first.operations if op.done)
             own = [face for face in (*share.divided, *share.whole) if face.number in {op.face.number for op in done}]
-            rows = compared(replace(first, operations=done), own,
-                            lambda name, some: plain.by(name).carried_out(some, progress.within(name)))
-            found = replace(found, baselines=rows.baselines)
-        return found if found.outcome == "cancelled" else with_rooms(found, progress)
+            found = went_on(found, lambda plan: replace(plan, baselines=compared(
+                replace(first, operations=done), own,
+                lambda name, some: plain.by(name).carried_out(some, progress.within(name))).baselines))
+        return went_on(found, lambda plan: plan if plan.blades is None else with_rooms(plan, progress))
+
+    def zoned_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
+        """The plan for faces with the clean-up zones of its operations."""
+        return went_on(self.carried_out(faces, progress), lambda plan: zoned(plan, self.workers, progress))
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
         made = self._as_asked(faces, progress)
         free = "auto" in (self.regions, self.orientations) or (self.regions is None and self.orientations is not None)
         if self.inputs.objective != "time" or not free or made.outcome == "cancelled" \
-                or len(made.operations) == len(faces) + len(self.whole):
+                or len(made.operations) == len(smooth_pieces((*faces, *self.whole))):
             return made
         whole = replace(self, regions=None, orientations=None)._as_asked(faces, progress.within("undivided"))
         most = self.orientations if isinstance(self.orientations, int) else np.inf
-        return quicker(made, whole) if whole.orientations <= most else made
+        return went_on(made, lambda plan: quicker(plan, whole)) if whole.orientations <= most else made
 
     def _as_asked(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
         order = [face.number for face in (*faces, *self.whole)]
         given = given_targets(self.part, self.division, order)
-        faces = [face for face in faces if face.number not in given]
+        pieces = smooth_pieces(face for face in faces if face.number not in given)
+        faces = [target.face for target in pieces if target.ended is None]
         try:
             targets: list[Target] = []
             if self.orientations and faces:
                 targets, options = self._sharing(faces, progress)
             elif faces:
                 targets = self._divided(faces, progress)
-            targets += [Target(face) for face in self.whole if face.number not in given]
+            targets += [target for target in pieces if target.ended is not None]
+            targets += smooth_pieces(face for face in self.whole if face.number not in given)
             targets = with_given(targets, given, [] if self.orientations else order)
             if self.inputs.method == "one":
                 return self._alike(targets, progress)
@@ -179,19 +215,37 @@ class Job:
         """The plan for sub-surfaces as they are."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
-        operations = tuple(replace(op, face=targets[op.number - 1].face) for op in done.results)
+        made = {**done.results, **{k: failed(k + 1, targets[k].face, why) for k, why in done.faults.items()}}
+        operations = tuple(replace(made[k], face=targets[k].face) for k in sorted(made))
         complete = "complete" if all(op.done for op in operations) else "incomplete"
         return self._plan(operations, "cancelled" if done.cancelled else complete, options)
 
     def _alike(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
-        tasks = [self._task(target.face, progress) for target in targets]
+        axes, targets = self._for_all(targets, progress)
         made = None
-        for axis in together(tasks, progress.within("one axis")):
-            made = self._machined([Target(target.face, axis, True) for target in targets], (), progress)
-            if made.outcome != "incomplete":
+        for axis in axes:
+            made = self._machined([target if target.ended else Target(target.face, axis, True) for target in targets],
+                                  (), progress)
+            if made.outcome == "cancelled" or all(op.done or op.failed for op in made.operations):
                 break
         return made or self._machined(targets, (), progress)
+
+    def _for_all(self, targets: list[Target], progress: Progress) -> tuple[Array, list[Target]]:
+        """Axes that serve all sub-surfaces, those aside on which the program fails; the sub-surfaces with these ended.
+        """
+        while open_ := [target for target in targets if target.ended is None]:
+            try:
+                tasks = []
+                for target in open_:
+                    with about(target.face.label):
+                        tasks.append(self._task(target.face, progress))
+                return together(tasks, progress.within("one axis")), targets
+            except ToolAxisError:  # Cancelled among them
+                raise
+            except Exception as reason:
+                targets = _without(targets, reason)
+        return np.empty((0, 3)), targets
 
     def empty(self) -> Plan:
         """The plan that was cancelled before anything was done."""
@@ -207,17 +261,33 @@ class Job:
             return [Target(face) for face in faces]
         slim = "auto" if self.regions != 1 else 1
 
-        def _division(k: int, inner: Progress) -> Regions:
+        def _division(k: int, inner: Progress) -> Regions | ToolAxisError:
             named = inner.within(f"face {faces[k].label}")
             standing = distances(faces[k], self.tool, self.part, self._obstacles)
             count = slim if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
-            return regions_of(self._task(faces[k], inner), count, progress=named, bosses=standing)
+            try:
+                return regions_of(self._task(faces[k], inner), count, progress=named, bosses=standing)
+            except Cancelled:
+                raise
+            except ToolAxisError as reason:
+                return reason
 
         found = abreast(_division, len(faces), self.workers, progress)
         if found.cancelled:
             raise Cancelled("cancelled by the user")
-        return [Target(piece, axis) for one in found.results
-                for piece, axis in zip_longest(one.faces, one.axes)]
+        refused = [one for one in found.results.values() if isinstance(one, ToolAxisError)]
+        if len(refused) == len(faces):
+            raise refused[0]
+        targets: list[Target] = []
+        for k, face in enumerate(faces):
+            one = found.results.get(k)
+            if one is None:
+                targets.append(lost(face, found.faults[k]))
+            elif isinstance(one, ToolAxisError):  # this face cannot be divided so; the others can
+                targets.append(Target(face, ended=_refused(1, face, one)))
+            else:
+                targets += [Target(piece, axis) for piece, axis in zip_longest(one.faces, one.axes)]
+        return targets
 
     def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
         """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from.
@@ -225,10 +295,33 @@ class Job:
         A face for which no division was found stays whole with an axis of its own, unless that is so of all.
         """
         most = MOST if self.regions is None else checked_count(self.regions) or MOST
-        every = [Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
-                 for face in faces]
+        every: list[Divider] = []
+        ended: list[Target] = []
+        for face in faces:
+            try:
+                one = Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
+                _ = one.best
+                every.append(one)
+            except ToolAxisError:  # Cancelled among them
+                raise
+            except Exception as reason:
+                ended.append(lost(face, fault(reason)))
         dividers = [one for one in every if len(one.best.known)] or every
-        alone = [Target(one.job.worth.face) for one in every if one not in dividers]
+        ended += [Target(one.job.worth.face) for one in every if one not in dividers]
+        while dividers:
+            try:
+                targets, options = self._in_common(dividers, progress)
+                return targets + ended, options
+            except ToolAxisError:
+                raise
+            except Exception as reason:
+                left = _without([Target(one.job.worth.face) for one in dividers], reason)
+                ended += [target for target in left if target.ended is not None]
+                dividers = [one for one, target in zip(dividers, left, strict=True) if target.ended is None]
+        return ended, ()
+
+    def _in_common(self, dividers: list[Divider], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
+        """Sub-surfaces of faces with the few axes that they share, and the numbers of axes to choose from."""
         options: tuple[Option, ...] = ()
         count = checked_count(self.orientations, "orientations")
         if count is None:
@@ -241,11 +334,13 @@ class Job:
         axes = np.unique(np.concatenate([one.axes for one in chosen.regions]), axis=0)
         rows = [(piece, axis) for one in chosen.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
         return by_axis([Target(piece, axis, True, tuple(other for other in axes if (other != axis).any()))
-                        for piece, axis in rows]) + alone, options
+                        for piece, axis in rows]), options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""
         face, axis, number = target.face, target.axis, place[0] + 1
+        if target.ended is not None:
+            return replace(target.ended, number=number)
         inner = progress.within(f"face {face.label} ({number} of {place[1]})")
         inner.report("search for the axis", 0, 1)
         try:
@@ -265,7 +360,7 @@ class Job:
         except Cancelled:
             raise
         except ToolAxisError as reason:  # this face cannot be done; the others can
-            return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+            return _refused(number, face, reason)
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
@@ -314,6 +409,20 @@ class Job:
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
                            allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, progress=progress)
+
+
+def _refused(number: int, face: Face, reason: ToolAxisError) -> Operation:
+    """The operation of a face that cannot be done, in the words of an exception."""
+    return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+
+
+def _without(targets: list[Target], reason: Exception) -> list[Target]:
+    """Targets, that one ended on which the program failed; all of them where nobody knows which it was."""
+    why, piece = fault(reason), piece_of(reason)
+    guilty = {target.face.label for target in targets if target.face.label == piece} or {
+        target.face.label for target in targets}
+    return [lost(target.face, why) if target.ended is None and target.face.label in guilty else target
+            for target in targets]
 
 
 def _price(job: Task, found: Orientation) -> float:

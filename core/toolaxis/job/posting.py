@@ -95,4 +95,8 @@ def verdict_of(folder: Path) -> str:
     if not path.is_file():
         return "not judged yet: run toolaxis verify"
     found = read_json(path)
-    return "passed" if isinstance(found, dict) and found.get("passed") is True else "FAILED"
+    if not isinstance(found, dict):
+        return "FAILED"
+    if found.get("unjudged") and all(op["passed"] for op in found["operations"]):
+        return "not judged to the end: run toolaxis verify again"
+    return "passed" if found.get("passed") is True else "FAILED"

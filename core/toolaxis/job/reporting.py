@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 PAGE = "report.html"
 #: Files of the folder whose hashes the page shows.
-_LISTED = (PLAN, "part.*", "obstacle-*.*", "*.apt", "verdict.json", MAPS, "program-*.*", "setup-*.md")
+_LISTED = (PLAN, "part.*", "obstacle-*.*", "*.apt", "failed-*.txt", "verdict.json", MAPS, "program-*.*", "setup-*.md")
 #: What the page reads of the verdict, and of each of its operations.
 _VERDICT = ("passed", "reasons", "not_checked", "operations")
 _JUDGED = ("name", "passed", "reasons", "scallop_max", "share_within", "gouge_max", "clearance", "worst_scallop",

@@ -1,6 +1,7 @@
 """The main job: from a part and a tool to operations, each with its axis, passes and work coordinate system."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from math import pi
 from typing import Any
@@ -12,16 +13,16 @@ from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.units import tool_warnings
 from toolaxis.contact.feasible_area import check_bull_nose
 from toolaxis.contact.rings import check_bottom
-from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
+from toolaxis.job.failures import failed_after
 from toolaxis.job.pattern import recognised
-from toolaxis.job.planning import Job
+from toolaxis.job.planning import Job, went_on
 from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined, with_rings
-from toolaxis.job.targets import check_division, not_divided, read_division
+from toolaxis.job.targets import check_division, not_divided, read_division, smooth_pieces
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
-from toolaxis.job.zones import zoned
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
@@ -36,7 +37,6 @@ from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joined import GREATEST_CORNER
-from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
@@ -165,12 +165,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
     bodies = tuple(load(body) for body in _listed(obstacles))
-    targets = [piece for face in chosen_faces(loaded, numbers) for piece in split_at_kinks(face)]
     job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
               checked_workers(workers), machine=mounting, division=given)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
-    with heard(progress):
-        return timed(_carried_out(job, targets, (whole, compare), progress), reorder=True)
+    return _ordered(_carried_out(job, chosen_faces(loaded, numbers), (whole, compare), progress), progress)
 
 
 def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
@@ -178,22 +176,68 @@ def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], prog
     with other methods where that is asked for."""
     whole, compare = asked
     try:
-        if job.workers > 1:
-            _in_cells(job, progress)
-        if whole:
-            progress.report("looking for blades", 0, 1)
-            pattern, refusal = recognised(job.part, progress)
-            if pattern is not None:
-                return replace(job, part=pattern.part).bladed(pattern, compare, progress)
-            job = replace(job, part=job.part.with_warnings(*refusal))
-        made = zoned(job.by(job.inputs.method).carried_out(faces, progress), job.workers, progress)
+        with heard(progress):
+            if job.workers > 1:
+                _in_cells(job, progress)
+            if whole:
+                progress.report("looking for blades", 0, 1)
+                made, refusal = _bladed(job, compare, progress)
+                if made is not None:
+                    return made
+                job = replace(job, part=job.part.with_warnings(*refusal))
+            made = job.by(job.inputs.method).zoned_out(faces, progress)
+            return _compared(job, made, faces, progress) if compare else made
     except Cancelled:
         return job.empty()
-    if not compare or made.outcome == "cancelled":
-        return made
+
+
+def _bladed(job: Job, compare: bool, progress: Progress) -> tuple[Plan | None, tuple[str, ...]]:
+    """The plan of a part with blades; none where it has none that can be planned as one, and a warning that says why.
+    """
+    try:
+        pattern, refusal = recognised(job.part, progress)
+        if pattern is None:
+            return None, refusal
+        return replace(job, part=pattern.part).bladed(pattern, compare, progress), ()
+    except ToolAxisError:  # Cancelled among them
+        raise
+    except Exception as reason:
+        return None, (f"blades are not told apart, every face is planned by itself: {fault(reason).sentence}",)
+
+
+def _compared(job: Job, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
+    """A plan with what other methods come to."""
     plain = replace(job, regions=None, orientations=None, division=())
-    return compared(timed(made, reorder=True), faces,
-                    lambda name, some: timed(plain.by(name).carried_out(some, progress.within(name)), reorder=True))
+    pieces = [target.face for target in smooth_pieces(faces)]
+    return went_on(went_on(made, _in_time), lambda plan: compared(
+        plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))
+
+
+def _in_time(plan: Plan) -> Plan:
+    """A plan in the order that takes least time, with times; operations on which the program fails lose their axis."""
+    while True:
+        try:
+            return timed(plan, reorder=True)
+        except ToolAxisError:  # Cancelled among them
+            raise
+        except Exception as reason:
+            lost = {op.number: failed_after(op, fault(reason)) for op in plan.operations
+                    if op.done and op.face.label == piece_of(reason)}
+            if not lost:
+                raise
+            plan = replace(plan, operations=tuple(lost.get(op.number, op) for op in plan.operations),
+                           outcome="cancelled" if plan.outcome == "cancelled" else "incomplete")
+
+
+def _ordered(plan: Plan, progress: Progress) -> Plan:
+    """A plan in the order that takes least time; a stopped one as it stands, but judged on its machine as the others.
+    """
+    with heard(progress):
+        found = went_on(plan, _in_time)
+    if found.outcome != "cancelled":
+        return found
+    with heard(NO_PROGRESS):  # what is finished is kept
+        return replace(went_on(replace(found, outcome="incomplete"), timed), outcome="cancelled")
 
 
 def _in_cells(job: Job, progress: Progress) -> None:
@@ -201,7 +245,8 @@ def _in_cells(job: Job, progress: Progress) -> None:
     every = [face for part in (job.part, *job.bodies) for face in part.faces]
     for k, face in enumerate(every):
         progress.report("surroundings", k, len(every))
-        cells(face)
+        with suppress(Exception):  # it is told of the faces to which it matters
+            cells(face)
 
 
 def _listed(obstacles: Any) -> list[Any]:

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
 from toolaxis.job.axes import judged
+from toolaxis.job.failures import failed
 from toolaxis.orient.indexed import Task
+from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
 from toolaxis.shape.face import Face
@@ -30,13 +32,14 @@ _SLACK, _GRID = 0.01, 48
 
 class Target(NamedTuple):
     """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, the axes
-    that others share, and what of it was given by hand."""
+    that others share, what of it was given by hand, and what became of it where its division failed or was refused."""
 
     face: Face
     axis: Array | None = None
     shared: bool = False
     others: tuple[Array, ...] = ()
     given: SubSurface | None = None
+    ended: Operation | None = None
 
 
 def by_axis(targets: list[Target]) -> list[Target]:
@@ -95,10 +98,44 @@ def given_targets(part: Part, division: Sequence[SubSurface], numbers: Iterable[
     for number, group in groupby(chosen, key=lambda one: one.face):
         rows = list(group)
         whole = part.face(number)
-        named = [(one, _piece(whole, one, k, len(rows))) for k, one in enumerate(rows)]
-        _check_apart(whole, [piece for _, piece in named])
-        found[number] = [Target(smooth, one.axis, given=one) for one, piece in named
-                         for smooth in split_at_kinks(piece)]
+        try:
+            named = [(one, _piece(whole, one, k, len(rows))) for k, one in enumerate(rows)]
+            _check_apart(whole, [piece for _, piece in named])
+            found[number] = [Target(smooth, one.axis, given=one) for one, piece in named
+                             for smooth in split_at_kinks(piece)]
+        except ToolAxisError:
+            raise
+        except Exception as reason:
+            found[number] = [lost(whole, fault(reason))]
+    return found
+
+
+def lost(face: Face, why: Fault) -> Target:
+    """A face on which the program failed before an axis was looked for.
+
+    Parameters
+    ----------
+    face : Face
+    why : Fault
+    """
+    return Target(face, ended=failed(1, face, why))
+
+
+def smooth_pieces(faces: Iterable[Face]) -> list[Target]:
+    """Faces divided where they have kinks.
+
+    Parameters
+    ----------
+    faces : iterable of Face
+    """
+    found: list[Target] = []
+    for face in faces:
+        try:
+            found += map(Target, split_at_kinks(face))
+        except Cancelled:
+            raise
+        except Exception as reason:
+            found.append(lost(face, fault(reason)))
     return found
 
 

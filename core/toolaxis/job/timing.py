@@ -6,7 +6,7 @@ from math import inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, about
 from toolaxis.feed.crawling import SLOW, Crawl
 from toolaxis.feed.five_axes import FiveAxisMotion, five_axis_motion
 from toolaxis.feed.profile import travel_time
@@ -52,7 +52,8 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
             continue
         if op.orientation.lead is not None:
             try:
-                moved = _moving(mounting, op, stand, plan.inputs)
+                with about(op.face.label):
+                    moved = _moving(mounting, op, stand, plan.inputs)
             except InvalidInput as reason:
                 return replace(plain, operations=tuple(
                     _told(one, f"{UNTIMED} {reason}") if one.number == op.number else one for one in plain.operations))
@@ -66,7 +67,8 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
             return plain
         angles = np.array(op.rotary, dtype=float)
         index = 0.0 if last is None else _between(mounting, (last, stand), (op, angles))
-        time = _path_time(mounting, op, angles, plan.inputs)
+        with about(op.face.label):
+            time = _path_time(mounting, op, angles, plan.inputs)
         done.append(replace(op, time=time.at(tuple(angles.tolist()), index)))
         stand, last = angles, op
     return replace(plan, operations=tuple(done))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,12 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.distances import judged as decided
 from toolaxis.contact.distances import segment_motions
 from toolaxis.contact.gouge import least_distance
-from toolaxis.errors import Cancelled, ToolAxisError
-from toolaxis.job.abreast import abreast
+from toolaxis.errors import Cancelled, Fault, ToolAxisError, fault
+from toolaxis.job.abreast import Outcome, abreast
 from toolaxis.job.axes import frame_of, judged
+from toolaxis.job.failures import failed, failed_after
 from toolaxis.job.pattern import Pattern, Share
-from toolaxis.job.zones import told, zones_of
+from toolaxis.job.zones import with_zones
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.proof import COMPONENTS, prove
 from toolaxis.orient.reasons import sentence
@@ -26,11 +27,13 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
-from toolaxis.progress import Progress
+from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
 Array = NDArray[np.float64]
+#: Operations of one blade, and for each the number of the one that it copies; 0 where its axis was searched anew.
+_OnBlade: TypeAlias = tuple[list[Operation], list[int]]
 
 #: A turned path is taken as it is where the turned face is so close to the real one, mm.
 SAME = 1e-4
@@ -78,7 +81,7 @@ def followed(plan: Plan, other: Plan) -> Plan:
     """
     more = tuple(replace(op, number=len(plan.operations) + op.number) for op in other.operations)
     worst = next((name for name in ("cancelled", "incomplete") if name in (plan.outcome, other.outcome)), "complete")
-    return replace(plan, operations=plan.operations + more, outcome=worst)
+    return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults))
 
 
 def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progress) -> Plan:
@@ -98,13 +101,26 @@ def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progre
         With `blades`; cancelled where the user stopped it, with the blades that were finished.
     """
     count = len(pattern.blades.blades)
-    if first.outcome == "cancelled":
-        return replace(first, part=pattern.part)
     done = abreast(lambda k, inner: _on_blade(pattern, k, first, planner, inner.within(f"blade {k + 2} of {count}")),
                    count - 1, planner.workers, progress)
+    with heard(NO_PROGRESS):  # what is finished is put together, whoever wants to stop
+        made = _with_blades(pattern, first, done)
+    if not done.cancelled:
+        assert made.blades is not None
+        own = {op.number for op in made.operations[len(first.operations):] if op.done}
+        made = _zoned_anew(made, own - _exact(made), progress)
+    with heard(NO_PROGRESS):
+        assert made.blades is not None
+        measured = tuple(_measured(pattern, k, made.operations) for k in range(count))
+        return replace(made, blades=replace(made.blades, blades=measured))
+
+
+def _with_blades(pattern: Pattern, first: Plan, done: Outcome[_OnBlade]) -> Plan:
+    """The plan of the first blade with what came of the others."""
+    every = {**done.results, **{k: _failed_blade(pattern, k, first, why) for k, why in done.faults.items()}}
     operations, copies, searched = list(first.operations), {}, []
-    for found, taken in done.results:
-        for op, source in zip(found, taken, strict=True):
+    for k in sorted(every):
+        for op, source in zip(*every[k], strict=True):
             number = len(operations) + 1
             face = pattern.part.face(op.face.number)
             operations.append(replace(op, number=number, face=face.trimmed(op.face.trims, op.face.label)))
@@ -114,11 +130,16 @@ def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progre
                 searched.append(number)
     outcome = "cancelled" if done.cancelled else outcome_of(operations, pattern.blades)
     blades = replace(pattern.blades, copies=copies, searched=tuple(searched))
-    made = replace(first, part=pattern.part, operations=tuple(operations), outcome=outcome, blades=blades)
-    own = {number for number in range(len(first.operations) + 1, len(operations) + 1) if operations[number - 1].done}
-    made = _zoned_anew(made, own - _exact(made), progress)
-    measured = tuple(_measured(pattern, k, made.operations) for k in range(count))
-    return replace(made, blades=replace(blades, blades=measured))
+    return replace(first, part=pattern.part, operations=tuple(operations), outcome=outcome, blades=blades)
+
+
+def _failed_blade(pattern: Pattern, k: int, first: Plan, why: Fault) -> _OnBlade:
+    """Operations of blade k + 2, on which the program failed."""
+    lost = []
+    for op in first.operations:
+        other = pattern.matching[k].get(op.face.number)
+        lost.append(failed(op.number, op.face if other is None else pattern.part.face(other.face.number), why))
+    return lost, [0] * len(lost)
 
 
 def _exact(plan: Plan) -> set[int]:
@@ -129,11 +150,24 @@ def _exact(plan: Plan) -> set[int]:
 
 def _zoned_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
     """The plan with the clean-up zones of those operations whose passes are not turned copies."""
+    made = []
     try:
-        return replace(plan, operations=tuple(told(op, zones_of(plan, op, progress), plan.tool) if op.number in numbers
-                                              else op for op in plan.operations))
+        for op in plan.operations:
+            made.append(_zoned(plan, op, progress) if op.number in numbers else op)
     except Cancelled:
         return replace(plan, outcome="cancelled")
+    outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(made, plan.blades)
+    return replace(plan, operations=tuple(made), outcome=outcome)
+
+
+def _zoned(plan: Plan, op: Operation, progress: Progress) -> Operation:
+    """An operation with its zones; a failed one where the program fails on them."""
+    try:
+        return with_zones(plan, op, progress)
+    except Cancelled:
+        raise
+    except Exception as reason:
+        return failed_after(op, fault(reason))
 
 
 def _measured(pattern: Pattern, k: int, operations: Sequence[Operation]) -> PlannedBlade:
@@ -145,14 +179,18 @@ def _measured(pattern: Pattern, k: int, operations: Sequence[Operation]) -> Plan
     return replace(blade, area=float(area), left=float(left))
 
 
-def _on_blade(pattern: Pattern, k: int, first: Plan, planner: Planner,
-              progress: Progress) -> tuple[list[Operation], list[int]]:
+def _on_blade(pattern: Pattern, k: int, first: Plan, planner: Planner, progress: Progress) -> _OnBlade:
     """Operations of blade k + 2, and for each the number of the one it copies; 0 where its axis was searched anew."""
     known: dict[frozenset[int], tuple[Group, ...]] = {}
     found, taken = [], []
     for index, op in enumerate(first.operations):
         progress.report("proof of turned operations", index, len(first.operations))
-        made, copied = _elsewhere(pattern, k, op, (planner, known, progress))
+        try:
+            made, copied = _elsewhere(pattern, k, op, (planner, known, progress))
+        except Cancelled:
+            raise
+        except Exception as reason:
+            made, copied = _failed_blade(pattern, k, replace(first, operations=(op,)), fault(reason))[0][0], False
         found.append(made)
         taken.append(op.number if copied else 0)
     return found, taken

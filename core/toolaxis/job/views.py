@@ -30,6 +30,8 @@ def write_views(plan: Plan, verdict: Verdict, folder: Path) -> None:
     most = max(_MOST // max(len(verdict.operations), 1), _FEWEST)
     arrays: dict[str, Any] = {}
     for found in verdict.operations:
+        if not found.maps:
+            continue
         frame = frames[found.name]
         assert frame is not None
         view = view_along(found.maps[:len(found.faces)], frame.x, frame.y, frame.origin, min(most, 90_000))

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from toolaxis.errors import Cancelled, fault
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
+from toolaxis.job.failures import failed_after
 from toolaxis.orient.impossible import corner_too_large, tight_fillet
 from toolaxis.orient.reasons import place
 from toolaxis.path.beyond_layers import beyond_layers
@@ -47,12 +49,13 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
     plan = _without_fillets(plan, stage)
     asked = [op for op in plan.operations if op.done]
     while asked:
-        found = abreast(lambda k, inner: zones_of(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
+        found = abreast(lambda k, inner: with_zones(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
         if found.cancelled:
             return replace(plan, outcome="cancelled")
-        made = {op.number: told(op, zones, plan.tool) for op, zones in zip(asked, found.results, strict=True)}
+        made = {op.number: replace(op, face=asked[k].face) for k, op in found.results.items()}
+        made |= {asked[k].number: failed_after(asked[k], why) for k, why in found.faults.items()}
         plan = replace(plan, operations=tuple(made.get(op.number, op) for op in plan.operations))
-        lost = {op.face.number for op in made.values() if op.left}  # what it would have machined stays, for others too
+        lost = {op.face.number for op in made.values() if not op.done}  # what it would have machined stays
         asked = [op for op in plan.operations if op.done and op.face.number in lost]
     some = any(op.done for op in plan.operations)
     return replace(plan, outcome=outcome_of(plan.operations, plan.blades) if some else "incomplete")
@@ -62,8 +65,16 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
     """A plan in which narrow faces without an axis that are tighter than the cutter are left to clean-up."""
     made = []
     for op in plan.operations:
-        why = "" if op.done or mean_width(op.face) >= 2 * plan.tool.radius else _too_tight(plan, op, progress)
-        made.append(_left_whole(op, why) if why else op)
+        if op.done or op.failed:
+            made.append(op)
+            continue
+        try:
+            why = "" if mean_width(op.face) >= 2 * plan.tool.radius else _too_tight(plan, op, progress)
+            made.append(_left_whole(op, why) if why else op)
+        except Cancelled:
+            raise
+        except Exception as reason:
+            made.append(failed_after(op, fault(reason)))
     return replace(plan, operations=tuple(made))
 
 
@@ -104,6 +115,24 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     others = [excess(op.face, plan.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
     return tuple(also_machined(op.face, zone, others) for zone in zones)
+
+
+def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Operation:
+    """An operation of a plan with the zones that it leaves; see `zones_of` and `told`.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+        With a path.
+    progress : Progress
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    return told(op, zones_of(plan, op, progress), plan.tool)
 
 
 def told(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:

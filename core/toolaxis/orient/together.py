@@ -1,11 +1,13 @@
 """One fixed axis for several sub-surfaces at once: a search over the hemisphere by the sum of their prices."""
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from math import pi, radians
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.errors import about
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.ledger import Ledger
@@ -59,13 +61,15 @@ class Pool:
         for task in self.tasks:
             free = np.flatnonzero(np.isfinite(total))
             if len(free):
-                reason, _ = task.feasibility.quick(axes[free])
+                with _of(task):
+                    reason, _ = task.feasibility.quick(axes[free])
                 total[free[reason != FREE]] = np.inf
         for task in self.tasks:
             free = np.flatnonzero(np.isfinite(total))
             if len(free):
                 ledger = Ledger(task.feasibility, task.worth, self.progress)
-                ledger.look(axes[free])
+                with _of(task):
+                    ledger.look(axes[free])
                 total[free] += ledger.price
         self.axes = np.concatenate([self.axes, axes])
         self.price = np.concatenate([self.price, total])
@@ -98,7 +102,7 @@ class Pool:
         if row not in self._known:
             self._known.add(row)
             self.progress.check()
-            if any(task.feasibility.witness(self.axes[row]) is not None for task in self.tasks):
+            if any(_refuses(task, self.axes[row]) for task in self.tasks):
                 self.price[row] = np.inf
         return bool(np.isfinite(self.price[row]))
 
@@ -113,9 +117,21 @@ class Pool:
         for task in self.tasks:
             self.progress.check()
             ledger = Ledger(task.feasibility, task.worth, self.progress)
-            ledger.look(axis[None])
-            total += counted(ledger, 0).value
+            with _of(task):
+                ledger.look(axis[None])
+                total += counted(ledger, 0).value
         return total
+
+
+def _of(task: Task) -> AbstractContextManager[None]:
+    """Exceptions that leave the block tell which face they are about."""
+    return about(task.worth.face.label)
+
+
+def _refuses(task: Task, axis: Array) -> bool:
+    """Whether a closer look of one sub-surface forbids an axis."""
+    with _of(task):
+        return task.feasibility.witness(axis) is not None
 
 
 def together(tasks: Sequence[Task], progress: Progress = NO_PROGRESS) -> Array:

@@ -1,14 +1,14 @@
 """One face on its way to sub-surfaces: lattice, prices of axes, and the divisions that they make cheapest."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple, overload
+from functools import cached_property, wraps
+from typing import Concatenate, NamedTuple, ParamSpec, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, about
 from toolaxis.orient.indexed import Task
 from toolaxis.orient.spiral import own_frame, ring, spiral
 from toolaxis.partition.guillotine import Corners, Division, Offers, each_axis, offers, proper
@@ -140,6 +140,22 @@ def named_pieces(label: str, rows: list[Row], curve: Array) -> Regions:
                    tuple(float(row.found.offers.cost[row.box]) for row in rows) if timed else ())
 
 
+Given = ParamSpec("Given")
+Answer = TypeVar("Answer")
+
+
+def _of_its_face(method: "Callable[Concatenate[Divider, Given], Answer]",
+                 ) -> "Callable[Concatenate[Divider, Given], Answer]":
+    """The same method; exceptions that leave it tell which face they are about, where several share axes."""
+    @wraps(method)
+    def told(divider: "Divider", *given: Given.args, **named: Given.kwargs) -> Answer:
+        with about(divider.job.worth.face.label):
+            return method(divider, *given, **named)
+
+    return told
+
+
+
 class Divider:
     """One face, its lattice, and what axes cost on it.
 
@@ -185,6 +201,7 @@ class Divider:
         places = {int(found.offers.axis[box]) for count in found.known for box in found.pieces(int(count))}
         return found.prices.axes[sorted(places)]
 
+    @_of_its_face
     def candidates(self) -> Array:
         """Axes for sub-surfaces to share: those that serve in some division, and the cheapest for the whole, (k, 3)."""
         nu, nv = self.lattice.cells
@@ -193,6 +210,7 @@ class Divider:
         order = np.argsort(whole, kind="stable")[:_FEW]
         return np.concatenate([self.used(self.best), prices.axes[order[np.isfinite(whole[order])]]])
 
+    @_of_its_face
     def priced(self, axes: Array) -> Prices:
         """Prices of axes on the lattice.
 
@@ -202,6 +220,7 @@ class Divider:
         """
         return priced(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress)
 
+    @_of_its_face
     def solved(self, prices: Prices, piece_cost: float = 0.0) -> Solution:
         """The cheapest divisions with some axes.
 
@@ -216,6 +235,7 @@ class Divider:
         empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
         return Solution(prices, found, Division(cost, empty, self.most))
 
+    @_of_its_face
     def costs(self, prices: Prices, box: Corners) -> Array:
         """What a rectangle costs with each axis and its better feed, (k,) mm or s; inf where an axis may not be used.
 
@@ -269,6 +289,7 @@ class Divider:
         """
         return self.named(self.best, self.best.pieces(count))
 
+    @_of_its_face
     def named(self, found: Solution, boxes: list[Corners]) -> Regions:
         """Sub-surfaces as pieces of the face.
 

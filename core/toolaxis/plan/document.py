@@ -1,5 +1,6 @@
 """A plan as a JSON document, and back: the written form that every door and the judge read."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import Fault, about
 from toolaxis.machine.setup import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
@@ -128,7 +130,7 @@ def _smooth_piece(part: Part, number: int, label: str) -> Face:
     return next((piece for piece in split_at_kinks(face) if piece.label == label), face)
 
 
-def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Document:
+def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_file: str | None) -> Document:
     whole = _smooth_piece(plan.part, op.face.number, op.face.label)
     same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
@@ -137,7 +139,8 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None) -> Docum
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
-            "cl_file": cl_file, "points": 0 if path is None else len(path.cl), "travel": op.travel,
+            "cl_file": cl_file, "failure_file": failure_file, "travel": op.travel,
+            "points": 0 if path is None else len(path.cl),
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
             "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
             "rotary": _rows(rotary_of(plan.machine, op, plan.tool.gauge_length)),
@@ -151,8 +154,16 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
     ----------
     plan : Plan
     files : mapping
-        "part": {"file", "sha256"}; "obstacles": list of the same; "operations": CL file name or None per operation.
+        "part": {"file", "sha256"}; "obstacles": list of the same; "operations": CL file name or None per operation;
+        "failures": name of the file that tells of a failure, or None, per operation, and "failure" for what failed of
+        the whole; none of them unless given.
+
+    Raises
+    ------
+    Exception
+        Where an operation cannot be written, `toolaxis.errors.piece_of` tells which, by the label of its face.
     """
+    failures = files.get("failures") or [None] * len(plan.operations)
     return {
         "schema": NAME, "version": VERSION,
         "units": {"length": "mm", "angle": "rad", "feedrate": "mm/min", "spindle": "rev/min"},
@@ -175,11 +186,21 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "order": None if plan.order is None else {
             **asdict(plan.order), "listed": plan.order.listed if np.isfinite(plan.order.listed) else None},
         "in_the_way": list(plan.in_the_way),
+        "faults": [one.sentence for one in plan.faults],
+        "failure_file": files.get("failure"),
         "options": [{name: value for name, value in asdict(option).items() if value is not None}
                     for option in plan.options],
-        "operations": [_operation_document(op, plan, name)
-                       for op, name in zip(plan.operations, files["operations"], strict=True)],
+        "operations": [_checked_document(op, plan, names)
+                       for op, *names in zip(plan.operations, files["operations"], failures, strict=True)],
     }
+
+
+def _checked_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Document:
+    """The record of an operation, tried out as JSON, so that what cannot be written is told of it alone."""
+    with about(op.face.label):
+        record = _operation_document(op, plan, *names)
+        json.dumps(record, allow_nan=False)
+    return record
 
 
 def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | None) -> Operation:
@@ -233,4 +254,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 tuple(Option(**option) for option in document.get("options", ())),
                 tuple(Baseline(**one) for one in document.get("baselines", ())),
                 blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")),
-                _order_from(document.get("order")), tuple(document.get("in_the_way", ())))
+                _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
+                tuple(Fault(sentence) for sentence in document.get("faults", ())))

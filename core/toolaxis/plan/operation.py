@@ -33,6 +33,8 @@ class Operation:
         What the plan's machine takes, where it states the limits of its axes.
     rotary : tuple of float
         Where the rotary axes of the plan's machine stand, rad; empty without one.
+    traceback : str
+        Where the program failed on it, of the exception; plan.json names the file that has it.
     """
 
     number: int
@@ -43,6 +45,12 @@ class Operation:
     zones: tuple[Zone, ...] = ()
     time: MachiningTime | None = None
     rotary: tuple[float, ...] = ()
+    traceback: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the program itself failed on it: nothing is known of what can be machined."""
+        return self.orientation.outcome == "failed"
 
     @property
     def done(self) -> bool:

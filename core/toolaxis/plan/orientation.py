@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-OUTCOMES = ("optimal", "feasible", "infeasible", "not_found", "cancelled")
+#: What came of a face; "failed" where the program itself went wrong, which says nothing of the face.
+OUTCOMES = ("optimal", "feasible", "infeasible", "not_found", "failed", "cancelled")
 
 #: Why an axis is forbidden, in the order in which it is found out; code 0 is an axis that may be used.
 REASONS = ("free", "limits", "back of the surface", "contact wanders over the flat bottom", "gouge",

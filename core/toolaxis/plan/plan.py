@@ -7,7 +7,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Fault, InvalidInput
 from toolaxis.machine.mounting import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
@@ -145,10 +145,10 @@ def outcome_of(operations: Sequence[Operation], blades: Blades | None = None) ->
     operations : sequence of Operation
     blades : Blades, optional
         Their fillets need no axis: roots are what a clean-up tool is for, and the plan says how much of them stays.
-        Nor do faces that are left to a clean-up tool as a whole.
+        Nor do faces that are left to a clean-up tool as a whole.  Where the program failed, nothing is complete.
     """
     needed = [op for op in operations
-              if not op.left and (blades is None or blades.side_of(op.face.number) != "fillet")]
+              if op.failed or (not op.left and (blades is None or blades.side_of(op.face.number) != "fillet"))]
     return "complete" if all(op.done for op in needed) else "incomplete"
 
 
@@ -170,7 +170,8 @@ class Plan:
         Origin of every work coordinate system, mm.
     outcome : str
         "complete" (every sub-surface has an axis, fillets at the roots of blades and faces that are left to a clean-up
-        tool as a whole apart, and nothing is in the way between operations), "incomplete" or "cancelled".
+        tool as a whole apart, nothing is in the way between operations, and the program failed nowhere), "incomplete"
+        or "cancelled".
     options : tuple of Option
         Cutting length, or time, against the number of different axes, where that was asked for.
     baselines : tuple of Baseline
@@ -183,6 +184,8 @@ class Plan:
         What the order of operations saves, where it was chosen.
     in_the_way : tuple of str
         What bodies of the machine meet between operations, before the first and after the last one, in sentences.
+    faults : tuple of Fault
+        Where the program failed on no single sub-surface, as in timing the whole: the plan is incomplete then.
     """
 
     part: Part
@@ -198,6 +201,7 @@ class Plan:
     machine: Mounting | None = None
     order: Order | None = None
     in_the_way: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.

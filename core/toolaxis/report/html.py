@@ -226,7 +226,11 @@ def _times(plan: Plan) -> list[dict[str, float]]:
 
 
 def _verdict_word(verdict: Mapping[str, Any] | None) -> str:
-    return "not judged" if verdict is None else "passed" if verdict["passed"] else "FAILED"
+    if verdict is None:
+        return "not judged"
+    if verdict.get("unjudged") and all(op["passed"] for op in verdict["operations"]):
+        return "not judged to the end"
+    return "passed" if verdict["passed"] else "FAILED"
 
 
 def _figures(plan: Plan) -> list[tuple[str, str]]:

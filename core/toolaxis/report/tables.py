@@ -236,7 +236,9 @@ def _measured(found: Mapping[str, Clearance | str]) -> str:
 def _verdict_row(op: Operation, found: OperationVerdict | None) -> list[str]:
     row = _operation_row(op)
     if found is None:
-        return [*row, "-", "-", "NO AXIS"]
+        return [*row, "-", "-", "NOT JUDGED" if op.done else "NO AXIS"]
+    if not found.measured:
+        return [*row, "-", "-", "FAIL"]
     row[6:8] = [number(found.gouge_max, 4), _measured(found.clearance)]
     return [*row, number(found.scallop_max, 4), f"{100 * found.share_within:.2f}", "pass" if found.passed else "FAIL"]
 

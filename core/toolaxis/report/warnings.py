@@ -34,7 +34,8 @@ def warnings_of(plan: Plan, verdict: Mapping[str, Any] | None) -> tuple[Warning,
     """
     left, lost = _of_operations(plan)
     found = [*lost, *_of_verdict(plan, verdict),
-             *(Warning("stop", f"between operations: {text}") for text in plan.in_the_way)]
+             *(Warning("stop", f"between operations: {text}") for text in plan.in_the_way),
+             *(Warning("stop", f"the plan: {one.sentence}") for one in plan.faults)]
     # Sorting keeps this order among those of one level: what was not checked stands before what is left.
     unchecked = plan.not_checked if verdict is None else verdict["not_checked"]
     if unchecked:
@@ -76,7 +77,7 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         return [Warning("stop", "not judged: run toolaxis verify on this folder before anything is machined")]
     found = []
     failed = {op["name"] for op in verdict["operations"] if not op["passed"]}
-    if not verdict["passed"]:
+    if not verdict["passed"] and (failed or not verdict.get("unjudged")):
         found.append(Warning("stop", "the verdict is FAIL" + (f": {', '.join(sorted(failed))}" if failed else "")))
     judged = {op["name"] for op in verdict["operations"]}
     unjudged = [op.name for op in plan.operations if op.done and op.name not in judged]
@@ -84,7 +85,7 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         found.append(Warning("stop", f"the verdict says nothing of {', '.join(unjudged)}: run toolaxis verify again"))
     for text in verdict["reasons"]:
         name, _, rest = text.partition(": ")
-        if "not checked" not in rest and "nothing to judge" not in rest:
+        if "not checked" not in rest and not rest.startswith(("no axis, nothing to judge", "not judged")):
             found.append(Warning("stop" if name in failed else "note", text))
     return found
 

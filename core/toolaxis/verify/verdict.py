@@ -89,6 +89,28 @@ class OperationVerdict:
     reasons: tuple[str, ...]
     maps: tuple[SurfaceMap, ...]
 
+    @property
+    def measured(self) -> bool:
+        """Whether anything was measured: not where the judge itself failed."""
+        return self.rays > 0
+
+
+def not_measured(name: str, limits: tuple[float, float, float], why: str) -> OperationVerdict:
+    """The verdict on an operation on which the judge itself failed: it has not passed.
+
+    Parameters
+    ----------
+    name : str
+        Of the operation.
+    limits : (float, float, float)
+        Scallop limit, allowance and gouge allowed, mm.
+    why : str
+    """
+    scallop, allowance, gouge = limits
+    unknown: dict[str, Clearance | str] = dict.fromkeys(("cutter", "shank", "holder"), NOT_CHECKED)
+    return OperationVerdict(name, (), scallop, allowance, float("inf"), 0.0, 0.0, gouge, unknown, (), (), None, (), 0.0,
+                            0, 0.0, 0.0, False, (why,), ())
+
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
@@ -97,19 +119,23 @@ class Verdict:
     Attributes
     ----------
     operations : tuple of OperationVerdict
+    unjudged : tuple of str
+        Names of the operations that were not judged, as the user stopped before.
     """
 
     operations: tuple[OperationVerdict, ...]
+    unjudged: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
-        """Whether there is an operation, and every one passed."""
-        return bool(self.operations) and all(op.passed for op in self.operations)
+        """Whether there is an operation, every one was judged, and every one passed."""
+        return bool(self.operations) and not self.unjudged and all(op.passed for op in self.operations)
 
     @property
     def reasons(self) -> tuple[str, ...]:
         """Sentences of all operations, each led by its name."""
-        return tuple(f"{op.name}: {reason}" for op in self.operations for reason in op.reasons)
+        return (*(f"{op.name}: {reason}" for op in self.operations for reason in op.reasons),
+                *(f"{name}: not judged: stopped before" for name in self.unjudged))
 
 
 def verify(tasks: Sequence[Task], *, spacing: float | None = None, threads: int = 1,

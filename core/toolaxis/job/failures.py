@@ -1,0 +1,79 @@
+"""A face on which the program itself failed: its operation, and the text that tells others what happened."""
+
+import platform
+from dataclasses import asdict
+
+from toolaxis import __version__
+from toolaxis.errors import REPORT_AT, Fault
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan
+from toolaxis.shape.face import Face
+
+
+def failed(number: int, face: Face, fault: Fault, notes: tuple[str, ...] = ()) -> Operation:
+    """The operation of a face on which the program failed.
+
+    Parameters
+    ----------
+    number : int
+    face : Face
+    fault : Fault
+    notes : tuple of str
+        Reasons that stand beside it.
+    """
+    none = Orientation(None, outcome="failed", reasons=(fault.sentence, *notes))
+    return Operation(number, face, none, traceback=fault.traceback)
+
+
+def failed_after(op: Operation, fault: Fault) -> Operation:
+    """An operation that was planned, and on which the program failed afterwards: nothing of it may be machined.
+
+    Parameters
+    ----------
+    op : Operation
+    fault : Fault
+    """
+    return failed(op.number, op.face, fault, op.orientation.reasons)
+
+
+def failure_text(plan: Plan, op: Operation) -> str:
+    """What to send beside the part where the program failed on a face.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+        That failed.
+    """
+    numbers = ", ".join(map(str, op.face.numbers))
+    face = f"sub-surface {op.face.label}, face {numbers}, {op.face.kind}"
+    return _text(plan, f"{op.name}: {op.orientation.reasons[0]}", face, op.traceback)
+
+
+def fault_text(plan: Plan, fault: Fault) -> str:
+    """What to send beside the part where the program failed on no single face.
+
+    Parameters
+    ----------
+    plan : Plan
+    fault : Fault
+    """
+    return _text(plan, fault.sentence, f"all {len(plan.operations)} operations", fault.traceback)
+
+
+def _text(plan: Plan, sentence: str, what: str, traceback: str) -> str:
+    tool = plan.tool
+    holder = "with holder" if "holder" in tool.outlines else "without holder"
+    machine = "no machine" if plan.machine is None else plan.machine.machine.name
+    lines = (sentence,
+             "",
+             f"Report this at {REPORT_AT}, with the part, plan.json and this text.",
+             "",
+             f"toolaxis {__version__}, Python {platform.python_version()}, {platform.platform()}",
+             f"{plan.part.source or 'part without a file'}, {what}",
+             f"{tool.name} {holder}, stickout {tool.stickout} mm, {machine}",
+             ", ".join(f"{name} {value}" for name, value in asdict(plan.inputs).items()),
+             "",
+             traceback.rstrip() or "no traceback is known")
+    return "\n".join(lines) + "\n"
