@@ -9,6 +9,8 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+from benchmarks._papers import GOUGE
+
 import toolaxis as ta
 from toolaxis.job.pattern import Pattern, recognised
 from toolaxis.job.toolfile import load_tool
@@ -60,7 +62,7 @@ def main() -> None:
             print(f"{path.name}: skipped, {path} is not there (set TOOLAXIS_SHARED)")
             continue
         watch = Watch()
-        plan = ta.plan(path, tool, SCALLOP, workers=WORKERS, progress=Progress(watch.report))
+        plan = ta.plan(path, tool, SCALLOP, workers=WORKERS, tolerance=GOUGE, progress=Progress(watch.report))
         told(path, plan, watch, time.perf_counter() - watch.began)
         if plan.blades is not None:
             growth(plan)

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from benchmarks._papers import GOUGE
 
 import toolaxis as ta
 from toolaxis.orient.indexed import task
@@ -31,7 +32,7 @@ def main() -> None:
         if len(around) <= MOST_RINGS:
             sharing(whole, around)
         start = time.perf_counter()
-        plan = ta.plan(part, tool, facts["scallop"], faces=[face.number], regions=count)
+        plan = ta.plan(part, tool, facts["scallop"], faces=[face.number], regions=count, tolerance=GOUGE)
         planned = time.perf_counter()
         judged(plan, facts.get("published", {}).get("passes", []))
         print(f"    plan {planned - start:.1f} s, judge {time.perf_counter() - planned:.1f} s")
@@ -50,7 +51,7 @@ def divisions(name: str, part: ta.Part, face: ta.Face,
     """Print reckoned length, links and clean-up included, by iso-parametric cuts and around the bosses."""
     tool, scallop = cut
     start = time.perf_counter()
-    whole = Divider(task(face, tool, scallop, part=part))
+    whole = Divider(task(face, tool, scallop, part=part, tolerance=GOUGE))
     curve = whole.curve
     cuts = time.perf_counter() - start
     around = candidates(whole, distances(face, tool, part))

@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
+from benchmarks._papers import GOUGE
 from benchmarks.bosses import judged
 from benchmarks.examples import BODY, FOLDER
 
@@ -24,6 +25,7 @@ from toolaxis.plan.plan import Inputs, Plan
 
 TOOL = ta.Tool.torus(12, 1, stickout=60, holder=[(16, 0), (16, 40), (25, 40), (25, 80)])
 H, FEED = 0.02, 3000.0
+GIVEN: dict[str, float] = {"feedrate": FEED, "tolerance": GOUGE}
 #: What [zhu2016] prints: Table 4 (mm, s) and the passes of its nine sub-surfaces.
 PRINTED = (("5-axis", 3927.03, 195), ("fixed axis", 8976.06, 444), ("3+2-axis, nine sub-surfaces", 5720.1, 359),
            ("3-axis, ball end", 11684.1, 576))
@@ -50,13 +52,13 @@ def waves() -> None:
     face = part.sculptured[0]
     equal, alike = equal_patches(face, 3), clustered_patches(face, 9)
     print(f"waves.step: area {face.area:.0f} mm2\n{'':42} sub axes pass    cut mm  links mm min:s  taken s")
-    first = _timed("ours, at most 6 axes", lambda: ta.plan(part, TOOL, H, orientations=6, feedrate=FEED))
-    _timed("ours, an axis each", lambda: ta.plan(part, TOOL, H, regions="auto", feedrate=FEED))
+    first = _timed("ours, at most 6 axes", lambda: ta.plan(part, TOOL, H, orientations=6, **GIVEN))
+    _timed("ours, an axis each", lambda: ta.plan(part, TOOL, H, regions="auto", **GIVEN))
     for title, pieces in (("3 x 3 equal patches", equal), (f"{len(alike)} patches alike in features", alike)):
         for method in ("sectors", "sphere", "roman"):
             _timed(f"{title}, {method}", lambda p=pieces, m=method: by_patches(part, p, m))  # type: ignore[misc]
-    _timed("one fixed axis", lambda: ta.plan(part, TOOL, H, method="one", feedrate=FEED))
-    _timed("ball end, mean normal", lambda: ta.plan(part, TOOL, H, method="ball", feedrate=FEED))
+    _timed("one fixed axis", lambda: ta.plan(part, TOOL, H, method="one", **GIVEN))
+    _timed("ball end, mean normal", lambda: ta.plan(part, TOOL, H, method="ball", **GIVEN))
     print("  ours, at most 6 axes, judged with cutter, shank and holder against the whole part:")
     judged(first, [])
     print("  the original surface, printed:", "; ".join(f"{name} {length:.0f} mm {seconds} s"
@@ -68,7 +70,7 @@ def outline() -> None:
     """The trimmed look-alike of [zhu2016] Fig. 21 in one piece, judged."""
     facts = json.loads((FOLDER / "outline.json").read_text("utf-8"))
     print(f"outline.step: trimmed across its iso-parametric lines, {facts['tool']}")
-    judged(ta.plan(FOLDER / "outline.step", ta.Tool.parse(facts["tool"], **BODY), facts["scallop"]),
+    judged(ta.plan(FOLDER / "outline.step", ta.Tool.parse(facts["tool"], **BODY), facts["scallop"], tolerance=GOUGE),
            facts["published"]["passes"])
 
 
@@ -79,7 +81,7 @@ def romans_rule() -> None:
         part = ta.load(FOLDER / f"{name}.step")
         for objective in ("passes", "length"):
             for method in ("sphere", "roman"):
-                made = ta.plan(part, TOOL, H, method=method, objective=objective, feedrate=FEED)
+                made = ta.plan(part, TOOL, H, method=method, objective=objective, **GIVEN)
                 found = made.operations[0].orientation
                 told = f"feed {found.feed} {found.passes:4d} passes {found.length:8.1f} mm" if made.operations[0].done \
                     else found.reasons[0][:90]
@@ -136,12 +138,15 @@ def by_patches(part: ta.Part, pieces: Sequence[ta.Face], method: str) -> Plan:
     """Patches as they are, an axis each by a method."""
     operations = []
     for number, piece in enumerate(pieces, 1):
-        found = ta.best_axis(piece, TOOL, H, part=part, method=method)
-        path = None if found.axis is None else task(piece, TOOL, H, part=part).made(found.axis, found.feed)
+        found = ta.best_axis(piece, TOOL, H, part=part, method=method, tolerance=GOUGE)
+        path = None
+        if found.axis is not None:
+            path = task(piece, TOOL, H, part=part, tolerance=GOUGE).made(found.axis, found.feed)
         frame = None if path is None else frame_of(piece, found, np.zeros(3))
         operations.append(Operation(number, piece, found, path, frame))
     outcome = "complete" if all(op.done for op in operations) else "incomplete"
-    return Plan(part, TOOL, Inputs(H, method=method, feedrate=FEED), tuple(operations), (), np.zeros(3), outcome)
+    inputs = Inputs(H, method=method, feedrate=FEED, tolerance=ta.Tolerance(GOUGE))
+    return Plan(part, TOOL, inputs, tuple(operations), (), np.zeros(3), outcome)
 
 
 def _timed(name: str, make) -> Plan:  # type: ignore[no-untyped-def]

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from benchmarks._papers import GOUGE
 
 import toolaxis as ta
 from toolaxis.orient.planes import axis_at, initial_plane
@@ -53,7 +54,7 @@ def free_axes(face: ta.Face, ready: Estimator) -> tuple[np.ndarray, np.ndarray]:
     seen = (cosine.min(axis=1) > np.sin(np.radians(5))) & np.isfinite(ready.many(axes, exact=False).passes).all(axis=1)
     axes, least = axes[seen], np.degrees(np.arccos(np.clip(cosine[seen].max(axis=1), -1, 1)))
     probe = np.concatenate([face.grid(9, 9), *(loop[:: max(1, len(loop) // 16)] for loop in face.outline)])
-    free = np.array([ta.gouge(face, TOOL, probe, a).max() <= 0.002 for a in axes])
+    free = np.array([ta.gouge(face, TOOL, probe, a).max() <= GOUGE for a in axes])
     return axes[free], least[free]
 
 

@@ -12,6 +12,7 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
+from benchmarks._papers import GOUGE
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
@@ -60,7 +61,7 @@ def brute(name: str) -> None:
     """Every clamped angle in steps of half a degree, counted as the search counts, beside what the search finds."""
     face = ta.load(f"examples/{name}.step").sculptured[0]
     mounting = Mounting(ta.load_machine(MACHINE))
-    job = task(face, Tool.torus(12, 1), SCALLOP, mounting)
+    job = task(face, Tool.torus(12, 1), SCALLOP, mounting, tolerance=GOUGE)
     began = time.perf_counter()
     finder = Finder(Clamping(job, mounting))
     found = finder.found(Orientation(None))[0]  # no fixed axis: the search stands on its own
@@ -89,7 +90,8 @@ def measured(name: str) -> None:
     rows = []
     for strategy in ("indexed", "four-plus-one"):
         began = time.perf_counter()
-        plan = ta.plan(f"examples/{name}.step", TOOL, SCALLOP, machine=MACHINE, strategy=strategy, workers=1)
+        plan = ta.plan(f"examples/{name}.step", TOOL, SCALLOP, machine=MACHINE, strategy=strategy, workers=1,
+                       tolerance=GOUGE)
         spent, op = time.perf_counter() - began, plan.operations[0]
         verdict = ta.verify(plan)
         one = verdict.operations[0]

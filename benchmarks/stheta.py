@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from benchmarks._blades import FAMILIES, sections
+from benchmarks._papers import GOUGE
 from numpy.typing import NDArray
 
 from toolaxis.cad.loading import load
@@ -180,7 +181,7 @@ def blisk() -> None:
     alone = {"skin": [part.face(n) for n in (4, 159, 160, 162)], "surroundings": [part.face(5)]}
     for title, around in (("alone on its hub", alone), ("between its neighbours", {"part": part})):
         begun = time.perf_counter()
-        found, made = blade(task(part.face(1), tool, 0.1, direction="climb", **around))
+        found, made = blade(task(part.face(1), tool, 0.1, direction="climb", tolerance=GOUGE, **around))
         taken = time.perf_counter() - begun
         print(f"blisk blade, {tool.name}, scallop 0.1 mm, {title}: {found.outcome}, {taken:.1f} s", flush=True)
         if made is not None:

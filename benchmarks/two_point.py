@@ -22,6 +22,7 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
+from benchmarks._papers import GOUGE
 from matplotlib import colormaps
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
@@ -45,6 +46,7 @@ from toolaxis.orient.indexed import Task, task
 from toolaxis.orient.worth import FEEDS
 from toolaxis.report.plots import GREY, VERMILION, bare, cutting_lines, figure
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import OperationVerdict, judge
@@ -52,7 +54,7 @@ from toolaxis.verify.verdict import OperationVerdict, judge
 EXAMPLE = Path(__file__).parents[1] / "examples" / "biquintic.json"
 R, D, A = 30.0, 0.03, 0.5
 TOOL, MACHINE = Tool.flat(2 * R), "mikron-ucp-710"
-OUT, GOUGE = Path(__file__).parents[1] / "out", 0.002
+OUT, LIMITS = Path(__file__).parents[1] / "out", Tolerance(GOUGE)
 #: The paper's postures and their titles.
 PRINTED = (("matched", "curvature matched, as printed"), ("formula", "two points, as printed"))
 #: Gouge-free postures, ours first: title, posture, and the share of the tolerance in the formula.
@@ -101,7 +103,8 @@ def reckoned() -> None:
     for two in (False, True):
         narrowest = []
         for step in place:
-            setting = Work(sample, TOOL, D, allowance=A).setting(np.column_stack([place, np.full(41, step)]), 1)
+            work = Work(sample, TOOL, D, allowance=A, limits=LIMITS)
+            setting = work.setting(np.column_stack([place, np.full(41, step)]), 1)
             rho = 1 / setting.curvatures()[1]
             lead = two_point_lead(R, rho, D) if two else matched_lead(R, rho)
             pace = np.linalg.norm(sample.evaluate(setting.uv).sv, axis=1)
@@ -125,7 +128,8 @@ def least_constant_lead(work: Work, leaning: str) -> float:
 
 def judged(path: ToolPath, sample: Face, spacing: float = FINE) -> OperationVerdict:
     """What the judge measures; gouges are followed to 1 mm."""
-    return judge(Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (sample,), D, A), spacing=spacing, threads=1)
+    return judge(Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (sample,), D, A,
+                        tolerance=LIMITS), spacing=spacing, threads=1)
 
 
 def reckoned_passes(work: Work, leaning: str) -> float:
@@ -194,7 +198,7 @@ def short() -> None:
     formula()
     reckoned()
     head()
-    paper(task(face(), TOOL, D, allowance=A))
+    paper(task(face(), TOOL, D, allowance=A, tolerance=GOUGE))
 
 
 def paper(job: Task) -> list[Row]:
@@ -205,13 +209,13 @@ def paper(job: Task) -> list[Row]:
 
 def printed(job: Task, posture: str, title: str) -> Row | None:
     """One of the paper's postures."""
-    return row(title, job, Work(job.worth.face, TOOL, D, "u", posture, allowance=A), "ahead")
+    return row(title, job, Work(job.worth.face, TOOL, D, "u", posture, allowance=A, limits=LIMITS), "ahead")
 
 
 def feeds(job: Task) -> tuple[str, ...]:
     """Feeds that are looked at: along which passes with one contact are not far more than along the other."""
-    counts = {feed: min(reckoned_passes(Work(job.worth.face, TOOL, D, feed, "one-point", allowance=A), leaning)
-                        for leaning in TRIED) for feed in FEEDS}
+    works = [Work(job.worth.face, TOOL, D, feed, "one-point", allowance=A, limits=LIMITS) for feed in FEEDS]
+    counts = {work.feed: min(reckoned_passes(work, leaning) for leaning in TRIED) for work in works}
     told_of = ", ".join(f"{count:.1f} along {feed}" for feed, count in counts.items())
     print(f"passes reckoned with one contact: {told_of}")
     return tuple(feed for feed, count in counts.items() if count <= MORE * min(counts.values()))
@@ -221,7 +225,7 @@ def fewest(title: str, job: Task, along: tuple[str, ...], posture: str, share: f
     """A gouge-free posture laid the way that is reckoned to take the fewest passes."""
     found = []
     for feed in along:
-        work = Work(job.worth.face, TOOL, D, feed, posture, allowance=A, share=share)
+        work = Work(job.worth.face, TOOL, D, feed, posture, allowance=A, limits=LIMITS, share=share)
         for leaning in TRIED if posture != "sturz" else TRIED[:2]:
             own = work if posture != "sturz" else replace(work, lead=least_constant_lead(work, leaning))
             found.append((reckoned_passes(own, leaning), f"{feed}, {leaning}", own, leaning))
@@ -255,7 +259,7 @@ def main() -> None:
     """All postures."""
     formula()
     reckoned()
-    job = task(face(), TOOL, D, allowance=A)
+    job = task(face(), TOOL, D, allowance=A, tolerance=GOUGE)
     along = feeds(job)
     head()
     rows: list[Row | None] = []

@@ -2,6 +2,7 @@
 
 from math import inf, nan, radians
 
+import numpy as np
 import pytest
 
 from toolaxis.errors import Cancelled, InvalidInput, JobError, MissingBackend, ToolAxisError, UnsupportedGeometry
@@ -23,17 +24,38 @@ def test_job_errors_name_stage_and_item() -> None:
 def test_default_tolerances() -> None:
     tolerance = Tolerance()
     assert (tolerance.gouge, tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance) == (
-        0.002, 0.1, 0.5, 1.0)
-    assert tolerance.chord_for(0.02) == pytest.approx(0.0004) and Tolerance(chord=0.01).chord_for(0.02) == 0.01
+        0.01, 0.1, 0.5, 1.0)
     assert tolerance.min_lead == radians(0.5)
     assert Tolerance(cutter_clearance=0.0, min_lead=0.0).cutter_clearance == 0.0
 
 
-@pytest.mark.parametrize("name, value", [("gouge", 0.0), ("gouge", -1.0), ("gouge", nan), ("chord", 0.0), ("trim", 0.0),
+def test_the_chord_tolerance_is_a_share_of_scallop_height_and_machining_tolerance() -> None:
+    assert [Tolerance().chord_for(scallop) for scallop in (0.01, 0.02, 0.2)] == pytest.approx([0.001, 0.002, 0.0025])
+    assert Tolerance(0.002).chord_for(0.02) == pytest.approx(0.0005)
+    given = Tolerance(chord=0.004)
+    assert [given.chord_for(scallop) for scallop in (0.02, 0.006)] == pytest.approx([0.004, 0.003])
+    assert Tolerance(0.005, chord=0.004).chord_for(0.02) == pytest.approx(0.0025)
+
+
+def test_a_number_is_the_machining_tolerance() -> None:
+    assert Tolerance.of(None) == Tolerance() == Tolerance.of(0.01)
+    assert Tolerance.of(np.float64(0.05)) == Tolerance(gouge=0.05) and Tolerance.of(Tolerance(0.003)).gouge == 0.003
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, nan, inf, 1e9, 0.2, 1e-9, True, "fine", (0.01,), 1 + 1j])
+def test_a_wrong_machining_tolerance_is_refused_in_one_sentence(value: object) -> None:
+    for make in (Tolerance.of, lambda given: Tolerance(gouge=given)):
+        with pytest.raises(InvalidInput) as why:
+            make(value)
+        assert str(why.value).startswith("machining tolerance is ")
+        assert str(why.value).endswith("it must be a number from 0.0005 to 0.1 mm; 0.01 mm is usual")
+
+
+@pytest.mark.parametrize("name, value", [("chord", 0.0), ("trim", 0.0), ("chord", "fine"),
                                          ("holder_clearance", -0.1), ("shank_clearance", inf), ("min_lead", nan)])
-def test_wrong_tolerances(name: str, value: float) -> None:
+def test_wrong_tolerances(name: str, value: object) -> None:
     with pytest.raises(InvalidInput, match=f"tolerance {name} is {value}: it must be"):
-        Tolerance(**{name: value})
+        Tolerance(**{name: value})  # type: ignore[arg-type]
 
 
 def test_progress_offers_what_is_made_only_when_asked_for() -> None:

@@ -2,8 +2,18 @@
 
 from dataclasses import dataclass, fields
 from math import isfinite, radians
+from numbers import Real
+from typing import Any, TypeAlias
 
 from toolaxis.errors import InvalidInput
+
+#: The machining tolerance unless given, and the least and the greatest that is planned with, mm.  Below the least,
+#: bounds of depths (0.0003 mm) have no room; above the greatest, the judge's rays would see thin walls as whole.
+MACHINING, LEAST, GREATEST = 0.01, 0.0005, 0.1
+#: Shares of the scallop height and of the machining tolerance that the chord tolerance takes, whichever is less.
+SCALLOP_SHARE, MACHINING_SHARE = 1 / 10, 1 / 4
+#: More than this share of either a given chord tolerance does not take.
+MOST = 1 / 2
 
 
 @dataclass(frozen=True)
@@ -13,19 +23,24 @@ class Tolerance:
     Attributes
     ----------
     gouge : float
-        Deepest penetration below the machined skin that is accepted, mm.
+        The machining tolerance: deepest penetration below the machined skin that is accepted, mm.
     cutter_clearance, shank_clearance, holder_clearance : float
         Least distance of each component to everything that is not the machined skin, mm.
     chord : float or None
-        Chord tolerance of the passes, mm; None stands for a fiftieth of the scallop height.
+        Chord tolerance of the passes, mm; None stands for the share that `chord_for` states.
     min_lead : float
         Least angle between the axis of a cutter with a flat bottom and any normal of the face, rad: nearer than
         this the contact wanders over the flat bottom and its place is undefined.
     trim : float
         Chord tolerance of trim loops, as a share of the face's diagonal; at most 0.0002 mm, however large the face.
+
+    Raises
+    ------
+    InvalidInput
+        When a value is out of its range.
     """
 
-    gouge: float = 0.002
+    gouge: float = MACHINING
     cutter_clearance: float = 0.1
     shank_clearance: float = 0.5
     holder_clearance: float = 1.0
@@ -34,19 +49,63 @@ class Tolerance:
     trim: float = 1e-5
 
     def __post_init__(self) -> None:
+        _check_machining(self.gouge)
         for field in fields(self):
             value = getattr(self, field.name)
             if value is None:
                 continue
-            if not isfinite(value) or value < 0 or (field.name in ("chord", "trim", "gouge") and value == 0):
+            number = isinstance(value, Real) and isfinite(value)
+            if not number or value < 0 or (field.name in ("chord", "trim") and value == 0):
                 raise InvalidInput(f"tolerance {field.name} is {value}: it must be a finite positive number")
 
+    @classmethod
+    def of(cls, given: "ToleranceLike") -> "Tolerance":
+        """Tolerances from what a caller gives.
+
+        Parameters
+        ----------
+        given : Tolerance, float or None
+            A number is the machining tolerance, mm; None stands for the defaults.
+
+        Raises
+        ------
+        InvalidInput
+            When it is none of these, or out of range.
+        """
+        if given is None:
+            return cls()
+        if isinstance(given, Tolerance):
+            return given
+        _check_machining(given)
+        return cls(gouge=float(given))
+
     def chord_for(self, scallop: float) -> float:
-        """Chord tolerance of passes for a scallop height, mm.
+        """Chord tolerance of passes: how far straight motions may leave them, mm.
 
         Parameters
         ----------
         scallop : float
-            Scallop height, mm.
+            Scallop height that is asked for, mm.
+
+        Returns
+        -------
+        float
+            A tenth of the scallop height or a quarter of the machining tolerance, whichever is less, unless one is
+            given; that one as far as it is at most half of both.
         """
-        return scallop / 50 if self.chord is None else self.chord
+        if self.chord is None:
+            return min(SCALLOP_SHARE * scallop, MACHINING_SHARE * self.gouge)
+        return min(self.chord, MOST * scallop, MOST * self.gouge)
+
+
+#: What calls take as a tolerance: a `Tolerance`, the machining tolerance in mm, or None for the defaults.
+ToleranceLike: TypeAlias = Tolerance | float | None
+
+
+def _check_machining(value: Any) -> None:
+    """Refuse what is no machining tolerance."""
+    number = isinstance(value, Real) and not isinstance(value, bool)
+    if not number or not LEAST <= value <= GREATEST:
+        shown = f"{value} mm" if number else repr(value)
+        raise InvalidInput(f"machining tolerance is {shown}: it must be a number from {LEAST:g} to {GREATEST:g} mm; "
+                           f"{MACHINING:g} mm is usual")

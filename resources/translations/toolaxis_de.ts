@@ -1243,6 +1243,10 @@
    <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
   </message>
   <message>
+   <source>Machining tolerance: how far the finished surface may be cut too deep.</source>
+   <translation>Bearbeitungstoleranz: wie weit die fertige Fläche zu tief geschnitten werden darf.</translation>
+  </message>
+  <message>
    <source>Method</source>
    <translation>Verfahren</translation>
   </message>
@@ -1401,6 +1405,10 @@
   <message>
    <source>To and fro, or all passes one way so that the cutter climbs or cuts conventionally.</source>
    <translation>Hin und her, oder alle Bahnen in einer Richtung, im Gleichlauf oder im Gegenlauf.</translation>
+  </message>
+  <message>
+   <source>Tolerance</source>
+   <translation>Toleranz</translation>
   </message>
   <message>
    <source>Tool</source>

@@ -70,6 +70,9 @@ def test_defaults_hold_for_all_jobs_and_files_are_meant_from_the_job_files_folde
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop="fine"', "scallop is 'fine': give a finite number"),
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop=true', "scallop is True"),
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop=-1', "scallop is -1"),
+    ("{scallop}\ntolerance=1", "machining tolerance is 1 mm: it must be a number from 0.0005 to 0.1 mm"),
+    ("{scallop}\ntolerance='fine'", "machining tolerance is 'fine'"),
+    ("{scallop}\ntolerance=true", "machining tolerance is True"),
     ('[[jobs]]\npart="gone.step"\ntool="ball:8"\nscallop=0.1', "gone.step' does not exist"),
     ('[[jobs]]\npart=""\ntool="ball:8"\nscallop=0.1', "path of the part is empty"),
     ("{scallop}\nfaces=true", "faces is True"), ("{scallop}\nfaces='3-1'", "faces '3-1' is not understood"),
@@ -102,12 +105,12 @@ def test_a_job_is_the_same_wherever_it_lies_and_another_one_with_every_other_set
     moved = tmp_path / "elsewhere"
     moved.mkdir()
     (moved / "c.step").write_text(STEP)
-    same = [{}, {"part": moved / "c.step"}, {"tool": ta.Tool.ball(diameter=8)}, {"name": "y"}, {"timeout": 9},
-            {"memory": 900}]
+    same = [{}, {"tolerance": 0.01}, {"part": moved / "c.step"}, {"tool": ta.Tool.ball(diameter=8)}, {"name": "y"},
+            {"timeout": 9}, {"memory": 900}]
     other = [{"part": here / "b.step"}, {"tool": "ball:6"}, {"scallop": 0.2}, {"faces": "1"}, {"regions": 2},
              {"stickout": 30}, {"obstacles": [here / "b.step"]}, {"machine": "mikron-ucp-710"}, {"verify": True},
              {"limits": "cone:0,0,1,45"}, {"feedrate": 500}, {"compare": True}, {"pictures": True},
-             {"strategy": "multiscale"}, {"strategy": "multiscale", "roughness": 0.8}]
+             {"tolerance": 0.005}, {"strategy": "multiscale"}, {"strategy": "multiscale", "roughness": 0.8}]
     keys = [read_jobs([{**first, **change}])[0].key for change in same]
     assert len(set(keys)) == 1
     others = [read_jobs([{**first, **change}])[0].key for change in other]

@@ -59,7 +59,7 @@ def test_plan_writes_everything_that_verify_and_people_need(sheet: Path, planned
     assert [op["face"] for op in document["operations"]] == [1, 2]
     for op in document["operations"]:
         found = op["orientation"]
-        assert found["passes"] >= 3 and found["axis"][2] > 0.49 and found["gouge"] <= 0.002
+        assert found["passes"] >= 3 and found["axis"][2] > 0.49 and found["gouge"] <= 0.01
         assert found["clearance"]["holder"] >= 1.0
         assert op["work_coordinates"]["z"] == pytest.approx(found["axis"], abs=1e-12)
 
@@ -70,10 +70,33 @@ def test_verify_passes_and_writes_verdict_and_maps(planned: Path, capsys: Captur
     assert out.count("pass") >= 2 and "FAIL" not in out
     document = strict((planned / "verdict.json").read_text())
     assert document["passed"] is True and len(document["operations"]) == 2
-    assert all(op["share_within"] >= 0.999 and op["gouge_max"] <= 0.002 for op in document["operations"])
+    for op in document["operations"]:
+        assert op["share_within"] >= 0.999 and op["gouge_max"] <= op["gouge_allowed"] == 0.01
     assert (planned / "op01-face1-verdict.png").stat().st_size > 10_000
     assert main(["verify", str(planned), "--json", "--no-pictures"]) == 0
     assert strict(capsys.readouterr().out)["passed"] is True
+
+
+def test_the_machining_tolerance_goes_with_the_plan(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
+    """It stands in plan.json, in tables and in the setup sheet's settings, and `verify` judges by it."""
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1", "--tolerance=0.004", "--no-pictures", "--out", str(out)]) == 0
+    assert "tolerance 0.004 mm" in " ".join(capsys.readouterr().out.split())
+    assert strict((out / "plan.json").read_text())["inputs"]["tolerance"]["gouge"] == 0.004
+    assert main(["verify", str(out), "--no-pictures"]) == 0
+    assert "machining tolerance 0.004 mm" in " ".join(capsys.readouterr().out.split())
+    judged = strict((out / "verdict.json").read_text())["operations"][0]
+    assert judged["gouge_allowed"] == 0.004 and judged["gouge_max"] <= 0.004
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "1e9", "1e-9"])
+def test_a_machining_tolerance_out_of_range_is_refused(sheet: Path, tmp_path: Path, capsys: Capture,
+                                                       value: str) -> None:
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1", f"--tolerance={value}", "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert "machining tolerance is " in said and "from 0.0005 to 0.1 mm; 0.01 mm is usual" in said
+    assert said.count("\n") == 1 and not out.exists()
 
 
 def test_verify_fails_where_the_cl_file_was_spoilt(planned: Path, tmp_path: Path, capsys: Capture) -> None:

@@ -41,9 +41,10 @@ def turbine():
     return loft("turbine", 6.0)
 
 
-@pytest.fixture(scope="module", params=["climb", "zigzag"])
+@pytest.fixture(scope="module", params=[("climb", 0.01), ("zigzag", 0.01), ("zigzag", 0.002)])
 def made(request, turbine):
-    job = task(turbine, TOOL, H, surroundings=(platform(),), direction=request.param)
+    direction, tolerance = request.param
+    job = task(turbine, TOOL, H, surroundings=(platform(),), direction=direction, tolerance=tolerance)
     return job, *blade(job)
 
 
@@ -132,7 +133,8 @@ def test_the_judge_passes_a_path_around_a_blade(made):
     job, _, path = made
     verdict = judge(Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (job.worth.face,), H, 0.0), spacing=0.6,
                     threads=1)
-    assert verdict.gouge_max < 0.002 and verdict.scallop_max <= H * 1.02, (verdict.gouge_max, verdict.scallop_max)
+    deepest = job.chord + 0.0005  # chords, and what the swing of the axis between points adds
+    assert verdict.gouge_max < deepest and verdict.scallop_max <= H, (verdict.gouge_max, verdict.scallop_max)
     assert verdict.share_within > 0.999
 
 

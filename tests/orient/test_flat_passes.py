@@ -104,7 +104,7 @@ def planned():
     hole = np.array([[-0.1, 10.0], [0.1, 10.0], [0.1, 20.0], [-0.1, 20.0]])[::-1]
     rim = np.array([[-0.45, 0.0], [0.45, 0.0], [0.45, 30.0], [-0.45, 30.0]])
     face = trough(trims=(rim, hole))
-    job = task(face, TOOL, H, allowance=0.1)
+    job = task(face, TOOL, H, allowance=0.1, tolerance=0.002)
     return face, job, *two_point(job)
 
 

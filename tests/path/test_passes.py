@@ -49,7 +49,7 @@ def test_scallop_by_brute_force(make, seed, trim, feed, axis):
     inner = rng.uniform(*np.array(face.bounds).reshape(2, 2).T, (400, 2))
     rim = np.concatenate([loop[rng.integers(0, len(loop), 12)] for loop in face.outline])
     height = make["scallops"](path, face, TORUS, np.concatenate([inner[face.contains(inner)][:110], rim]), 3 * H)
-    assert height.max() <= 1.02 * H, "0.02 of it is what chords may add"
+    assert height.max() <= 1.003 * H, "chords add nothing to it"
 
 
 @pytest.mark.parametrize("feed", ["u", "v"])
@@ -77,7 +77,7 @@ def test_ends_are_covered_and_run_out_is_short(make):
     beyond = np.maximum(-path.cc[_cut_points(path), 0], path.cc[_cut_points(path), 0] - 40)
     assert 0 < beyond.max() < 2.0
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0.5], [1, 0.5]], float)
-    assert make["scallops"](path, face, TORUS, corners, 3 * H).max() <= 1.02 * H
+    assert make["scallops"](path, face, TORUS, corners, 3 * H).max() <= 1.003 * H
 
 
 def test_no_cut_over_a_hole_beyond_the_run_out(make):
@@ -88,21 +88,29 @@ def test_no_cut_over_a_hole_beyond_the_run_out(make):
     assert len(_strokes(path)) > path.passes, "passes across the hole are in two strokes"
 
 
-def test_chords_of_tips_and_contacts_keep_the_tolerance(make):
-    face, axis, chord = make["wavy"](2), make["leaning"](25, 10), 4e-4
-    path = passes(face, TORUS, axis, H)
-    worst = 0.0
+@pytest.mark.parametrize("chord", [None, 4e-4])
+@pytest.mark.parametrize("seed", [2, 5, 7])
+def test_chords_of_contacts_keep_the_tolerance_and_those_of_tips_stay_above_nothing(make, seed, chord):
+    """Points of hollow stretches lie deeper, so that tips are never above the pass, nor much deeper than chords are."""
+    face, axis, limits = make["wavy"](seed), make["leaning"](25, 10), Tolerance(chord=chord)
+    path, most = passes(face, TORUS, axis, H, tolerance=limits), limits.chord_for(H)
+    away, above = [], []
     for rows in _strokes(path)[::5]:
         u, v = (path.cc[rows, :2] / [40, 30]).T
-        for share in (0.25, 0.5, 0.8):
+        for share in (0.0, 0.25, 0.5, 0.8):
             at = u[:-1] + share * np.diff(u)
             keep = (at > 0) & (at < 1)
             uv = np.column_stack([at, v[:-1]])[keep]
             for curve, nodes in ((face.evaluate(uv).point, path.cc), (place(face, TORUS, uv, axis), path.cl)):
                 a, b = nodes[rows[:-1]][keep], nodes[rows[1:]][keep]
                 t = np.clip(((curve - a) * (b - a)).sum(1) / ((b - a) ** 2).sum(1), 0, 1)
-                worst = max(worst, float(np.linalg.norm(curve - a - t[:, None] * (b - a), axis=1).max()))
-    assert 0.2 * chord < worst <= 1.02 * chord
+                off = a + t[:, None] * (b - a) - curve
+                (away if nodes is path.cc else above).append(
+                    np.linalg.norm(off, axis=1) if nodes is path.cc else (off * face.normal(uv)).sum(axis=1))
+    away, above = np.concatenate(away), np.concatenate(above)
+    assert 0.2 * most < away.max() <= 1.02 * most
+    assert above.max() <= 0.05 * most and -1.5 * most <= above.min() < -0.2 * most
+    assert (above >= -1.02 * most).mean() > 0.95, "deeper only beside places where hollow turns to convex"
 
 
 def test_what_may_not_be_visited_is_cut_out(make):

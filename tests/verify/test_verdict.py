@@ -8,6 +8,7 @@ import pytest
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axes import Clearance
 from toolaxis.verify.task import Task
@@ -90,9 +91,10 @@ def test_declared_clean_up_is_allowed_for(plane_passes):
 
 
 def test_planted_gouge_is_named_with_face_place_and_motion(plane_passes):
-    bad = task(plane_passes)
+    bad = task(plane_passes, tolerance=Tolerance(gouge=0.002))
     at = int(np.argmin(np.linalg.norm(bad.tips[:, :2] - [-8, 2.0], axis=1) + 9 * (bad.kind == 3)))
     bad.tips[at, 2] -= 0.005
+    assert judge(replace(bad, tolerance=Tolerance()), spacing=0.3).passed, "0.01 mm unless given"
     found = judge(bad, spacing=0.3)
     assert not found.passed
     assert found.gouge_max == pytest.approx(0.005, abs=1e-4)

@@ -99,6 +99,9 @@ def test_objects_that_cannot_be_planned(document, part, elsewhere):
     ({"scallop": 0}, ("scallop is 0.0 mm", "above zero")),
     ({"scallop": [1]}, ("scallop is [1]",)),
     ({"scallop": Quantity("0.02 s")}, ("scallop is ", "mm")),
+    ({"tolerance": "fine"}, ("tolerance is 'fine'", "mm")),
+    ({"tolerance": 0}, ("machining tolerance is 0.0 mm", "from 0.0005 to 0.1 mm")),
+    ({"tolerance": "1 m"}, ("machining tolerance is 1000.0 mm", "from 0.0005 to 0.1 mm")),
     ({"allowance": "5 kg"}, ("allowance is '5 kg'", "mm")),
     ({"feedrate": Quantity("2 mm")}, ("feedrate is ", "mm/min")),
     ({"spindle": None, "stickout": "long"}, ("stickout is 'long'",)),
@@ -169,9 +172,9 @@ def test_bodies_of_the_same_assembly_are_avoided(document, part):
 
 def test_numbers_may_have_units(document, part):
     given = {"scallop": Quantity("20 um"), "allowance": "0.1 mm", "stickout": "2 in", "feedrate": Quantity("10 mm/s"),
-             "spindle": 8000}
+             "spindle": 8000, "tolerance": "5 um"}
     assert arguments.fields_of(document, given) == pytest.approx(
-        {"scallop": 0.02, "allowance": 0.1, "stickout": 50.8, "feedrate": 600, "spindle": 8000})
+        {"scallop": 0.02, "allowance": 0.1, "stickout": 50.8, "feedrate": 600, "spindle": 8000, "tolerance": 0.005})
     part.addProperty("App::PropertyLength", "Height")
     part.Height = 7
     assert arguments.fields_of(document, {"scallop": part.Height}) == {"scallop": 7.0}
@@ -204,3 +207,17 @@ def test_a_tool_is_taken_whole(tool):
     assert given.shank is not None or taken.shank is None
     again = replace(bridge.Inputs(), **bridge.tool_fields(taken)).assembled()
     assert again.flute_length == given.flute_length
+
+
+def test_the_machining_tolerance_is_that_of_the_library_and_stands_in_macros(document, parts, face):
+    from freecad.toolaxis.inputs import TOLERANCE
+    from freecad.toolaxis.macros import again_lines, plan_line
+
+    from toolaxis.tolerances import MACHINING
+
+    usual = parts.inputs_for(face)
+    finer = replace(usual, tolerance=0.005)
+    assert usual.tolerance == TOLERANCE == MACHINING
+    assert "tolerance" not in plan_line(usual) and "tolerance=0.005" in plan_line(finer)
+    made = parts.planned(document, face)[0]
+    assert any(line.endswith(".Tolerance = 0.005") for line in again_lines(made, usual, finer))

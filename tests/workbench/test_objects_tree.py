@@ -170,7 +170,7 @@ def test_the_frame_stands_by_the_mean_feed(document, parts):
 def test_an_operation_tells_what_was_found(operation):
     assert is_operation(operation) and operation.Outcome == "feasible"
     assert operation.Passes > 1 and operation.CuttingLength.Value > 50 and operation.AverageStripWidth.Value > 0.5
-    assert 0 <= operation.Gouge.Value <= 0.002
+    assert 0 <= operation.Gouge.Value <= operation.Tolerance.Value == 0.01
     assert operation.CutterClearance.Value >= 0.1 and operation.HolderClearance.Value >= 1
     assert "obstacles other than the part" in operation.NotChecked
     assert json.loads(operation.AxisMap)["axis"] == pytest.approx(list(operation.Axis))
@@ -188,7 +188,8 @@ def test_inputs_come_back_from_the_operation(document, parts):
     other.Placement.Base = Vector(60, 0, 0)
     document.recompute()
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), obstacles=(other,), limits="cone:0,0,1,60",
-                              allowance=0.1, direction="climb", objective="passes", feedrate=777.0, spindle=5400.0)
+                              tolerance=0.004, allowance=0.1, direction="climb", objective="passes", feedrate=777.0,
+                              spindle=5400.0)
     made = bridge.apply(document, inputs, parts.quick_plan(inputs))[0]
     back = bridge.inputs_of(made)
     assert back == inputs, (back, inputs)

@@ -25,6 +25,8 @@ from toolaxis.progress import NO_PROGRESS
 
 SAVED = Path(__file__).with_name("saved")
 NEWER = FreeCAD.Version()[:2] >= ["1", "1"]
+#: Passes are the same, and their points other ones on them: chords that are shorter or longer differ in length by this.
+CHORDS = 2e-6
 #: A newer FreeCAD opens both, an older one its own.
 FILES = ["before-divisions-1.0.FCStd", *(["before-divisions.FCStd"] if NEWER else [])]
 
@@ -57,9 +59,25 @@ def test_it_is_verified_and_planned_again(opened, operation, parts):
     assert bridge.verify(operation).passed
     inputs = bridge.inputs_of(operation)
     assert (inputs.tool, inputs.scallop, inputs.holder) == (parts.TOOL, parts.SCALLOP, parts.HOLDER)
-    again = parts.planned(opened, *inputs.faces)[0]
+    again = parts.planned(opened, *inputs.faces, tolerance=inputs.tolerance)[0]
     assert again.Passes == operation.Passes
-    assert again.CuttingLength.Value == pytest.approx(operation.CuttingLength.Value, rel=1e-9)
+    assert again.CuttingLength.Value == pytest.approx(operation.CuttingLength.Value, rel=CHORDS)
+
+
+def test_it_keeps_the_machining_tolerance_that_held_then(opened, operation, parts):
+    """0.002 mm, in the tree as in what it is verified and planned again with; a new operation takes 0.01 mm."""
+    thing = opened.getObject("Block")
+    assert operation.Tolerance.Value == 0.002 and bridge.inputs_of(operation).job().tolerance.gouge == 0.002
+    bridge.verify(operation)
+    assert operation.GougeAllowed.Value == 0.002
+    fresh = parts.planned(opened, (thing, parts.sculptured_name(thing)))[0]
+    assert fresh.Tolerance.Value == 0.01
+    operation.Tolerance = 0.01
+    opened.recompute()
+    assert operation.Stale and operation.StaleReasons == ["tolerance was changed"] and not fresh.Stale
+    operation.Tolerance = 0.002
+    opened.recompute()
+    assert not operation.Stale
 
 
 @pytest.fixture(params=["before-moving-axes.FCStd", "before-raised-surfaces.FCStd"])
@@ -88,8 +106,9 @@ def test_a_whole_plan_opens_and_goes_on(whole):
     assert [one.AxisLocked for one in operations[:2]] == [True, False] and machine_of(document).Offset.z == 20
     assert all(plan_task([one])(NO_PROGRESS).operations[0].path.passes == one.Passes for one in operations)
     before = [(one.Name, one.Passes, one.CuttingLength.Value) for one in operations[:2]]
-    assert [(one.Name, one.Passes, pytest.approx(one.CuttingLength.Value, rel=1e-9))
-            for one in bridge.recompute(plan)] == before
+    assert plan.Tolerance.Value == 0.002 and {one.Tolerance.Value for one in operations} == {0.002}
+    assert [(one.Name, one.Passes, pytest.approx(one.CuttingLength.Value, rel=CHORDS))
+            for one in bridge.recompute(plan)] == before and {one.Tolerance.Value for one in operations} == {0.002}
     assert not plan.Stale and not any(one.Stale for one in operations)
     jobs = [thing.Name for thing in document.Objects if hasattr(thing, "PostProcessor")]
     assert len(jobs) == 1 and len(make_jobs(document, operations[:2])) == 2

@@ -23,10 +23,11 @@ from toolaxis.partition.regions import checked_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
 from toolaxis.plan.plan import Inputs
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
-           "feedrate": float, "spindle": float, "rapid": float}
+           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance"}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
@@ -246,6 +247,8 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return float(value)
     if kind == "count":
         return value
+    if kind == "tolerance":
+        return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):
         return _short(name, value)
     if not isinstance(value, kind):

@@ -57,6 +57,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner radius x degrees), a TOML or "
                           ".fctb file, or a name from resources/tools")
     sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
+    sub.add_argument("--tolerance", type=float, metavar="MM",
+                     help="machining tolerance: how far the finished surface may be cut too deep (default: 0.01)")
     sub.add_argument("--faces", metavar="LIST",
                      help="face numbers such as 3,5-8, or all; sculptured faces by default; 3+4,7 machines or divides "
                           "faces that continue each other smoothly as one, skins all that can be joined")

@@ -16,6 +16,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.progress import Progress
+from toolaxis.tolerances import Tolerance
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -43,7 +44,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
                         strategy=given.strategy, roughness=_roughness(given),
-                        feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, regions=spec.regions,
+                        feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, tolerance=spec.inputs.tolerance,
+                        regions=spec.regions,
                         rapid=spec.inputs.rapid, compare=given.compare,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         progress=progress)
@@ -65,7 +67,7 @@ def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                    given.feedrate, given.spindle, rapid=given.rapid)
+                    given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place

@@ -97,7 +97,7 @@ class Remembering(Task):
     path: ToolPath | None
 
     def __init__(self, job: Task) -> None:
-        super().__init__(job.feasibility, job.worth, job.groups, job.progress, job.direction)
+        super().__init__(job.feasibility, job.worth, job.groups, job.chord, job.progress, job.direction)
         object.__setattr__(self, "path", None)
 
     def traced(self, placed: Layout) -> ToolPath:

@@ -37,7 +37,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joined import GREATEST_CORNER
-from toolaxis.tolerances import Tolerance
+from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
 
 
@@ -46,7 +46,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
          objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
-         tolerance: Tolerance | None = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
+         tolerance: ToleranceLike = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
          limits: AxisLimits | str | None = None, offset: ArrayLike | None = None,
          rapid: float = 10000.0, roughness: float | None = None, compare: bool = False, workers: int | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
@@ -99,7 +99,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         sub-surfaces) and "ball" (a ball end of the tool's radius takes its place, along the mean normal).
     feedrate, spindle : float
         mm/min and rev/min, for the CL files.
-    tolerance : Tolerance, optional
+    tolerance : float or Tolerance, optional
+        The machining tolerance, mm: how far the finished surface may be cut too deep, 0.01 unless given; or all
+        tolerances.  The straight motions of the passes take a share of it and of the scallop height, see
+        `Tolerance.chord_for`.
     datum : (3,) sequence of float
         Origin of the work coordinate systems, mm.
     limits : AxisLimits or str, optional
@@ -141,7 +144,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else written(allowed)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), tolerance or Tolerance(), float(rapid), roughness_for(strategy, roughness))
+                    float(spindle), Tolerance.of(tolerance), float(rapid), roughness_for(strategy, roughness))
     if objective == "time":
         known_machine(mounting)
     if strategy != "indexed" and mounting is not None:

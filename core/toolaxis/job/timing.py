@@ -27,7 +27,7 @@ _SAME = 1e-6
 def timed(plan: Plan, reorder: bool = False) -> Plan:
     """A plan with the rotary angles of each operation on its machine, and the time where that states all limits.
 
-    Paths are what a control takes that follows cuts as smooth curves within half the gouge tolerance and goes as fast
+    Paths are what a control takes that follows cuts as smooth curves within their chord tolerance and goes as fast
     as its axes do in rapid traverse.  Between operations the rotary axes turn to those solutions that take least time
     together, as in programs; where the part's place on the table is known, Z goes up before that and X and Y go over
     after it.  Axes that are set by hand take `INDEX_SECONDS`.  Where the tool axis moves, all axes keep their limits
@@ -81,7 +81,7 @@ def feeds_of(inputs: Inputs) -> Feeds:
     ----------
     inputs : Inputs
     """
-    return Feeds(inputs.feedrate / 60, rapid=inf, crossing=inputs.rapid / 60, tolerance=inputs.tolerance.gouge / 2,
+    return Feeds(inputs.feedrate / 60, rapid=inf, crossing=inputs.rapid / 60, tolerance=inputs.chord,
                  smooth=True)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import degrees
+from math import degrees, radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,12 @@ Array = NDArray[np.float64]
 
 #: Clearances of tool angles that are tried in turn where the proof refuses a path, rad.
 CLEARANCES = (CLEARANCE, 2 * CLEARANCE, 4 * CLEARANCE)
+#: Chords of the places around at which scallops between layers are looked at: as a share of the scallop height, and mm.
+#: Where layers lie must not hang on how far apart the path's points are.
+_LOOKED_AT = 0.02, 0.001
+#: Greatest swing of the axis from point to point, rad: halfway between two points the axis leaves the cone about the
+#: rotary axis by an eighth of its square, which a machine that cannot leave that cone follows to 0.0001 rad.
+_SWING = radians(1.6)
 #: How much of the face's span may be left at its ends, where the tool has no room.
 _LEFT_OUT = 0.5
 CHECKED = ("the cutter on the machined skin is checked at points of the path, 0.5 mm and 0.5 deg apart at most; all "
@@ -104,7 +110,7 @@ def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, directi
         Each begins at the base point, at the end of the hollow of the middle section.
     """
     along = ring.places(chord)
-    heights = ring.heights(along, scallop, allowance)
+    heights = ring.heights(ring.places(min(_LOOKED_AT[0] * scallop, _LOOKED_AT[1])), scallop, allowance)
     swing = Swing(ring.direction)
     middle = swing.flat(ring.at(along, np.full(len(along), np.mean(ring.span)))[2])
     x, y = middle.T
@@ -121,7 +127,41 @@ def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, directi
         share = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(centre, axis=0), axis=1))])
         share /= share[-1]
         rows = [(way, a + (b - a) * share) for a, b in pairwise([heights[0], *heights, heights[-1]])]
-    return tuple(Turn(*ring.at(*row)) for row in rows)
+    return _deepened(ring, rows)
+
+
+def _deepened(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[Turn, ...]:
+    """Turns whose points on hollow stretches lie deeper, by as much as straight motions between them would stay above
+    the surface: see `toolaxis.path.following.rises`."""
+    turns = [Turn(*ring.at(*row)) for row in rows]
+    above = []
+    for turn, (along, heights) in zip(turns, rows, strict=True):
+        _, up, between = ring.at((along[1:] + along[:-1]) / 2, (heights[1:] + heights[:-1]) / 2)
+        rise = ((turn.centre[1:] + turn.centre[:-1]) / 2 - between) * up
+        above.append(np.maximum(rise.sum(axis=1), 0.0))
+    before = [above[0][0], *(one[-1] for one in above[:-1])]  # a helix goes through the end of one turn to the next
+    after = [*(one[0] for one in above[1:]), above[-1][-1]]
+    found = []
+    for turn, one, first, last in zip(turns, above, before, after, strict=True):
+        deeper = np.maximum(np.append(first, one), np.append(one, last))
+        found.append(replace(turn, centre=turn.centre - deeper[:, None] * turn.normal))
+    return tuple(found)
+
+
+def _closer(turn: Turn, layer: Scheduled, swing: Swing) -> tuple[Turn, Array]:
+    """A turn and its tool axes, with points between those from one to the next of which the axis swings far."""
+    parts = np.ceil(np.abs(np.diff(layer.theta)) / _SWING).clip(1).astype(np.int64)
+    owner = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
+    at, known = np.append(owner + share, len(parts)), np.arange(len(layer.theta))
+
+    def _among(rows: Array) -> Array:
+        return np.column_stack([np.interp(at, known, column) for column in rows.T])
+
+    lengths = layer.section.lengths if layer.onward else layer.section.lengths[::-1]
+    theta = layer.curve.at(np.interp(at, known, lengths))[0]
+    normal = np.asarray(unit(_among(turn.normal)))
+    return Turn(_among(turn.contact), normal, _among(turn.centre)), swing.axes(theta)
 
 
 def path_of(schedule: BladeSchedule, tool: Tool, links: Swivelling) -> ToolPath:
@@ -133,13 +173,15 @@ def path_of(schedule: BladeSchedule, tool: Tool, links: Swivelling) -> ToolPath:
     tool : Tool
     links : Swivelling
     """
-    axis = np.concatenate([one.axes for one in schedule.layers])
-    contact, normal, centre = (np.concatenate([getattr(turn, name) for turn in schedule.turns])
+    turns, axes = zip(*(_closer(turn, layer, schedule.swing)
+                        for turn, layer in zip(schedule.turns, schedule.layers, strict=True)), strict=True)
+    axis = np.concatenate(axes)
+    contact, normal, centre = (np.concatenate([getattr(turn, name) for turn in turns])
                                for name in ("contact", "normal", "centre"))
     tip = centre - tool.corner_radius * axis
     kept = np.concatenate([[True], np.linalg.norm(np.diff(tip, axis=0), axis=1) > 1e-9])
     path = joined([[MovingStroke(contact[kept], tip[kept], normal[kept], axis[kept])]], links)
-    sizes = np.cumsum([len(turn.centre) for turn in schedule.turns])[:-1]
+    sizes = np.cumsum([len(turn.centre) for turn in turns])[:-1]
     first = int(np.flatnonzero(path.kind == Motion.CUT)[0]) - 1
     starts = first + np.array([int(kept[:size].sum()) for size in sizes], dtype=np.int64)
     return replace(path, breaks=np.concatenate([[0], starts, [len(path.cl)]]).astype(np.int64))
@@ -172,10 +214,9 @@ class BladeSearch:
         if float((job.box.mean(axis=0) - face.box.mean(axis=0)) @ own) > 0:
             own = -own  # what a blade stands on is at its root
         self.swing = swing_of(machine, own, place)
-        worth, limits = job.worth, job.feasibility.tolerance
+        worth = job.worth
         self.ring = Ring(face, self.feed, self.swing.direction, self.tool.corner_radius + worth.allowance)
-        chord = min(limits.chord_for(worth.scallop), limits.gouge / 2)
-        self.turns = turns_of(self.ring, worth.scallop, worth.allowance, chord, job.direction)
+        self.turns = turns_of(self.ring, worth.scallop, worth.allowance, job.chord, job.direction)
 
     def planes(self) -> tuple[list[Plane], slice, tuple[float, float]]:
         """Channels of the turns with the real surroundings, which of them have room, and what is left at the ends.

@@ -1,5 +1,6 @@
 """From strips of a flat end to a tool path with an axis for each point, and its proof."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -42,16 +43,6 @@ def strokes(work: Work, strips: tuple[Strip, ...], direction: str = "zigzag",
     return found
 
 
-def chord(work: Work) -> float:
-    """How far straight motions may leave passes, mm.
-
-    Parameters
-    ----------
-    work : Work
-    """
-    return min(work.limits.chord_for(work.scallop), work.limits.gouge / 2)
-
-
 def _climbs(work: Work) -> bool:
     """Whether travel in growing parameter climbs: passes proceed in growing step parameter, where material is left."""
     a0, a1, s0, s1 = work.span
@@ -91,7 +82,28 @@ def _stroke(work: Work, one: Strip, lane: Lane, span: tuple[float, float]) -> Mo
     along = np.concatenate([*(np.linspace(a, b, n, endpoint=False)
                               for (a, b), n in zip(pairwise(along), parts, strict=True)), along[-1:]])
     found = postures(work, along, one.step, lane.sense, (lane.along, lane.postures.stand))
-    return MovingStroke(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
+    stroke = MovingStroke(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
+    return replace(stroke, tip=stroke.tip - _rises(work, stroke, along)[:, None] * stroke.normal)
+
+
+def _rises(work: Work, stroke: MovingStroke, along: Array) -> Array:
+    """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
+
+    As `toolaxis.path.following.rises`, but from how the poses bend at their neighbours: what tip and rim rise by.
+    """
+    if len(along) < 3:
+        return np.zeros(len(along))
+    gap = np.diff(along)
+    bends = []
+    for height in (0.0, work.tool.radius):
+        way = np.diff(stroke.tip + height * stroke.axis, axis=0) / gap[:, None]
+        bends.append(2 * np.diff(way, axis=0) / (gap[1:] + gap[:-1])[:, None])
+    tip, rim = bends
+    bend = (tip * stroke.normal[1:-1]).sum(axis=1) + np.linalg.norm(rim - tip, axis=1)
+    bend = np.concatenate([bend[:1], bend, bend[-1:]])
+    above = np.maximum(np.maximum(bend[1:], bend[:-1]), 0.0) * gap**2 / 8
+    above = np.minimum(above, work.chord)  # corners of the way lie at points: between them there are none
+    return np.asarray(np.maximum(np.append(above, 0.0), np.append(0.0, above)))
 
 
 def _parts(work: Work, lane: Lane) -> NDArray[np.int64]:
@@ -103,7 +115,7 @@ def _parts(work: Work, lane: Lane) -> NDArray[np.int64]:
         bend = 2 * np.linalg.norm(np.diff(way, axis=0), axis=1) / (gap[1:] + gap[:-1])
         sag = np.maximum(sag, bend * np.maximum(gap[1:], gap[:-1])**2 / 8)
     wide = np.maximum(np.maximum(sag, np.append(sag[1:], 0.0)), np.append(0.0, sag[:-1]))
-    return np.asarray(np.clip(np.ceil(np.sqrt(wide / chord(work))), 1, 12).astype(np.int64))
+    return np.asarray(np.clip(np.ceil(np.sqrt(wide / work.chord)), 1, 12).astype(np.int64))
 
 
 def _back(stroke: MovingStroke) -> MovingStroke:

@@ -110,9 +110,9 @@ def choices(job: Task, posture: str, lead: float = radians(20.0)) -> list[Choice
     posture : str
     lead : float
     """
-    worth = job.worth
-    works = [Work(worth.face, worth.tool, worth.scallop, feed, posture, lead, worth.allowance,
-                  job.feasibility.tolerance) for feed in FEEDS]
+    worth, limits = job.worth, replace(job.feasibility.tolerance, chord=job.chord)
+    works = [Work(worth.face, worth.tool, worth.scallop, feed, posture, lead, worth.allowance, limits)
+             for feed in FEEDS]
     plain = [min(_reckoned(replace(work, posture="one-point"), leaning).length for leaning in TRIED[:2])
              for work in works]
     works = [work for work, length in zip(works, plain, strict=True) if length <= WORSE * min(plain)]

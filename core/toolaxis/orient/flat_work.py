@@ -87,6 +87,11 @@ class Work:
         return 0 if self.feed == "u" else 1
 
     @property
+    def chord(self) -> float:
+        """How far straight motions may leave passes, mm."""
+        return self.limits.chord_for(self.scallop)
+
+    @property
     def span(self) -> tuple[float, float, float, float]:
         """along0, along1, step0, step1 of the face."""
         u0, u1, v0, v1 = self.face.bounds

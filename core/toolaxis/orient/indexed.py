@@ -36,7 +36,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tolerances import Tolerance
+from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
@@ -63,6 +63,8 @@ class Task:
     worth : Worth
     groups : tuple of Group
         The same surroundings with the required distances, for the proof.
+    chord : float
+        How far straight motions may leave passes, mm.
     progress : Progress
     direction : str
         "zigzag", "climb" or "conventional".
@@ -71,6 +73,7 @@ class Task:
     feasibility: Feasibility
     worth: Worth
     groups: tuple[Group, ...]
+    chord: float
     progress: Progress = NO_PROGRESS
     direction: str = "zigzag"
 
@@ -120,7 +123,7 @@ class Task:
                     for group in self.groups)
         over = height_over(self.worth.scallop)
         crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
-        return trace(placed, self.direction, self.feasibility.tolerance,
+        return trace(placed, self.chord, self.direction,
                      linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
                                      beside=crossing.beside))
 
@@ -137,7 +140,7 @@ class Task:
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
-         surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None, allowance: float = 0.0,
+         surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
          direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> Task:
     """Gather what decides about an axis for a face.
 
@@ -153,22 +156,22 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     InvalidInput
         When an argument is out of range.
     """
-    given = Tolerance() if tolerance is None else tolerance
+    given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
     worth = Worth(face, tool, scallop, allowance, objective, pace)
-    chord = min(given.chord_for(scallop), given.gouge / 2)
+    chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
     strict, groups = (grouped(face, replace(limit, gouge=allowance - least_distance(tool, limit.gouge, allowance)),
                               allowance, part=part, skin=skin, surroundings=surroundings,
                               obstacles=obstacles) for limit in (kept, given))
     reach = at_face(limits, face, tool)
-    return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, progress, direction)
+    return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress, direction)
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
-              skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: Tolerance | None = None,
+              skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
               starts: ArrayLike | None = None, feeds: Feeds | None = None,
               progress: Progress = NO_PROGRESS) -> Orientation:
@@ -195,7 +198,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         The part that the face belongs to, by its number: its skin and its other faces are looked after.
     skin, surroundings : sequence of Face
         Faces that continue this one smoothly, and others, where there is no part.
-    tolerance : Tolerance, optional
+    tolerance : float or Tolerance, optional
+        The machining tolerance, mm, or all tolerances: 0.01 mm unless given.
     allowance : float
         Stock left on the face, mm.
     limits : AxisLimits or str, optional
@@ -364,7 +368,7 @@ def _other(job: Task, one: Candidate) -> Orientation:
 def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machine: MachineLike | None = None,
                   obstacles: Obstacles = None, feed: str | None = None, objective: str = "length", *,
                   part: Part | None = None, skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
-                  tolerance: Tolerance | None = None, allowance: float = 0.0, limits: AxisLimits | str | None = None,
+                  tolerance: ToleranceLike = None, allowance: float = 0.0, limits: AxisLimits | str | None = None,
                   progress: Progress = NO_PROGRESS) -> Orientation:
     """What one given axis comes to, judged as `best_axis` judges its own.
 

@@ -22,7 +22,7 @@ from toolaxis.orient.proof import Proof
 from toolaxis.orient.setting import OTHER, SKIN
 from toolaxis.orient.verdicts import BACK, LIMITS, Witness
 from toolaxis.path.chart import tip_points
-from toolaxis.path.following import follow
+from toolaxis.path.following import follow, rises
 from toolaxis.path.layout import Layout, lay_out
 from toolaxis.path.leading import LeadChart, LeadCut
 from toolaxis.path.linking import Linking
@@ -122,10 +122,12 @@ def made(job: Task, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
     InvalidInput
         When the axis leaves no strip somewhere, or a retract along it leads nowhere.
     """
-    placed, tolerance = lay_out(chart, cut, progress=job.progress), job.feasibility.tolerance
-    piece, along = follow(chart, cut, placed.pieces, min(tolerance.chord_for(cut.scallop), tolerance.gouge / 2))
+    placed = lay_out(chart, cut, progress=job.progress)
+    piece, along = follow(chart, cut, placed.pieces, job.chord)
     steps = placed.pieces[piece, 2]
-    rows = (*tip_points(chart, cut, along, steps), cut.axes(chart.face, chart.uv(along, steps)))
+    contact, tip, normal = tip_points(chart, cut, along, steps)
+    deeper = rises(chart, cut, steps, piece, along)[:, None] * normal
+    rows = contact, tip - deeper, normal, cut.axes(chart.face, chart.uv(along, steps))
     strokes = [MovingStroke(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
     return placed, joined(_ordered(strokes, placed, job.direction), _links(job, cut))
 
@@ -134,7 +136,7 @@ def _links(job: Task, cut: LeadCut) -> Swivelling:
     face = job.worth.face
     walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
                 for group in job.groups)
-    over = height_over(cut.scallop)
+    over = height_over(job.worth.scallop)
     crossing = MovingCrossing(cut.tool, job.groups, cut.allowance, over)
     linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER)
     return Swivelling(linking, cut.axis, cut.tool, crossing.clear)

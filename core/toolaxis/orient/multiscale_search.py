@@ -67,8 +67,8 @@ _RAISED, _RAISE, _TIGHTENED = 6, radians(1.0), 4
 #: How many beginnings are followed, more only where none keeps all; the sum at which rotary axes stand still; and how
 #: many times that of the pass before is taken without looking for another.
 _STARTS, _STANDS, _WORSE = 3, 1e-3, 1.2
-#: Share of the scallop of the roughness that straight motions may miss passes by, times 50.
-_CHORDS = 2.0
+#: Share of the scallop of the roughness by which straight motions may miss passes.
+_CHORDS = 0.04
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ class Multiscale:
 
     def __init__(self, job: Task, roughness: float = ROUGHNESS, feedrate: float = 800.0,
                  widths: tuple[float, float] | None = None) -> None:
-        self.job, self.face, self.tool = job, job.worth.face, job.worth.tool
+        self.face, self.tool = job.worth.face, job.worth.tool
         check_bull_nose(self.tool, flat_too=False)
         mounting = mounting_of(job.feasibility.limits)
         if mounting is None or len(mounting.machine.rotary) < 2:
@@ -133,6 +133,7 @@ class Multiscale:
         self.mounting: Mounting = mounting
         self.turn = placement(mounting.table_from_part)[:3, :3]
         self.height = scallop_of_roughness(roughness)
+        self.job = replace(job, chord=min(job.chord, _CHORDS * self.height))
         self.roughness, self.speed = roughness, feedrate / 60
         least = max(LEAST_LEAN, job.feasibility.least_angle)
         self.wish = Wish(job.worth.scallop, widths or expected_widths(self.tool, NOMINAL, job.worth.scallop), roughness,
@@ -384,8 +385,7 @@ class Multiscale:
         order = np.argsort(placed.pieces[:, 2], kind="stable")
         axes = np.concatenate([one.axes for one in lanes])
         lean = float(np.mean(np.concatenate([one.lane.leans(one.axes) for one in lanes])))
-        scallop = min(_CHORDS * self.height, self.job.worth.scallop)
-        return SplineCut(self.tool, axes.mean(axis=0), scallop, self.job.worth.allowance, lean,
+        return SplineCut(self.tool, axes.mean(axis=0), self.height, self.job.worth.allowance, lean,
                          placed.chart.feed, machine=self.mounting.machine, turn=self.turn,  # type: ignore[attr-defined]
                          pieces=placed.pieces[order], splines=tuple(lanes[k].spline for k in order))
 

@@ -16,7 +16,7 @@ from toolaxis.partition.divider import INDEX_COST, MOST, Divider, Regions
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tolerances import Tolerance
+from toolaxis.tolerances import ToleranceLike
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str | None = None, *,
               machine: AxisLimits | str | None = None, obstacles: Obstacles = None, part: Part | None = None,
-              faces: Sequence[int] | None = None, tolerance: Tolerance | None = None, allowance: float = 0.0,
+              faces: Sequence[int] | None = None, tolerance: ToleranceLike = None, allowance: float = 0.0,
               index_cost: float = INDEX_COST, progress: Progress = NO_PROGRESS) -> tuple[Face, ...]:
     """Divide faces into sub-surfaces so that fixed axes, one for each, cut them in the least length.
 
@@ -45,7 +45,8 @@ def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str 
         The part that a single face belongs to, by its number.
     faces : sequence of int, optional
         Faces of a part instead of its sculptured ones.
-    tolerance : Tolerance, optional
+    tolerance : float or Tolerance, optional
+        The machining tolerance, mm, or all tolerances: 0.01 mm unless given.
     allowance : float
         Stock left on the faces, mm.
     index_cost : float

@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.placing import tips
+from toolaxis.numeric.vectors import unit
 from toolaxis.path.chart import Chart, Cut, tip_points
 
 Array = NDArray[np.float64]
@@ -50,6 +52,49 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     piece, along = np.concatenate(done_owner), np.concatenate(done_low)
     order = np.lexsort((along, piece))
     return piece[order], along[order]
+
+
+def rises(chart: Chart, cut: Cut, steps: Array, piece: Index, along: Array) -> Array:
+    """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
+
+    Between two points on a hollow stretch a straight motion stays above the pass by what `follow` allows, and would
+    leave so much more than the scallop height.  Points there are set deeper by as much: what the motion between them
+    stays above the pass then, it does not stay above the surface.  So all of the chord tolerance goes into the
+    machining tolerance, at the points of hollow stretches and between those of others, and none into the scallop.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    steps : (n,) array
+        Step of the pass that each point belongs to.
+    piece : (n,) array of int
+        Its piece.
+    along : (n,) array
+        Sorted by piece, then increasing, see `follow`.
+    """
+    deeper = np.zeros(len(along))
+    first = np.flatnonzero(piece[1:] == piece[:-1])
+    if not len(first):
+        return deeper
+    places = np.concatenate([[0.0], _PROBES, [1.0]])
+    rows = along[first, None] + (along[first + 1] - along[first])[:, None] * places
+    contact, tip, normal = tip_points(chart, cut, rows.ravel(), np.repeat(steps[first], len(places)))
+    axes = cut.axes(chart.face, chart.uv(rows.ravel(), np.repeat(steps[first], len(places))))
+    shape = (*rows.shape, 3)
+    axes = np.broadcast_to(axes, contact.shape).reshape(shape)
+    point, up = (part.reshape(shape)[:, 1:-1].reshape(-1, 3) for part in (contact, normal))
+    between, leaning = (_between(part.reshape(shape)).reshape(-1, 3) for part in (tip, axes))
+    touching = tips(point, up, unit(leaning), cut.tool, cut.allowance)
+    above = ((between - touching) * up).sum(axis=1).reshape(len(first), -1).max(axis=1)
+    for end in (first, first + 1):
+        np.maximum.at(deeper, end, above)
+    return deeper
+
+
+def _between(rows: Array) -> Array:
+    """Places of straight motions from the first to the last of (m, k, 3) rows, (m, k - 2, 3)."""
+    return np.asarray(rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * _PROBES[:, None])
 
 
 def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:

@@ -9,7 +9,7 @@ from toolaxis.path.linking import Linking
 from toolaxis.path.tracing import trace
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
-from toolaxis.tolerances import Tolerance
+from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
 
 
@@ -31,7 +31,7 @@ def layout(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = 
 
 
 def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "u", *, direction: str = "zigzag",
-           allowance: float = 0.0, reach: Reach | None = None, tolerance: Tolerance | None = None,
+           allowance: float = 0.0, reach: Reach | None = None, tolerance: ToleranceLike = None,
            box: ArrayLike | None = None, linking: Linking | None = None, progress: Progress = NO_PROGRESS) -> ToolPath:
     """Passes with a fixed tool axis that leave no scallop above a height.
 
@@ -51,8 +51,9 @@ def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = 
         Stock left on the surface, mm.
     reach : callable, optional
         Takes (n, 2) parameters, beyond the face too, and tells which contacts the cutter may visit, (n,) bool.
-    tolerance : Tolerance, optional
-        Chord tolerance of the points: a fiftieth of the scallop height unless given.
+    tolerance : float or Tolerance, optional
+        The machining tolerance, mm, or all tolerances: how far straight motions between points may leave the passes,
+        see `Tolerance.chord_for`.
     box : (2, 3) array_like, optional
         Corners of the box that links cross above; the face's own unless given.
     linking : Linking, optional
@@ -74,4 +75,4 @@ def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = 
     tips keep the chord tolerance; (3) no pass is cut farther beyond the face than its strip needs.
     """
     placed = layout(face, tool, axis, scallop, feed, allowance=allowance, reach=reach, progress=progress)
-    return trace(placed, direction, tolerance, box, linking)
+    return trace(placed, Tolerance.of(tolerance).chord_for(scallop), direction, box, linking)

@@ -20,7 +20,7 @@ from toolaxis.path.linking import Linking
 from toolaxis.path.tracing import trace
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
-from toolaxis.tolerances import Tolerance
+from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
@@ -202,7 +202,7 @@ def count(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: Ar
 
 
 def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: ArrayLike, *, sense: str = "zigzag",
-           allowance: float = 0.0, reach: Reach | None = None, tolerance: Tolerance | None = None,
+           allowance: float = 0.0, reach: Reach | None = None, tolerance: ToleranceLike = None,
            box: ArrayLike | None = None, linking: Linking | None = None, progress: Progress = NO_PROGRESS) -> ToolPath:
     """Passes in which parallel planes that contain the axis cut the face.
 
@@ -236,4 +236,4 @@ def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: A
     **Properties**: (1) contacts of a pass lie in one plane; (2) the scallop height is kept.
     """
     placed = layout(face, tool, axis, scallop, direction, allowance=allowance, reach=reach, progress=progress)
-    return trace(placed, sense, tolerance, box, linking)
+    return trace(placed, Tolerance.of(tolerance).chord_for(scallop), sense, box, linking)

@@ -8,10 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.path.chart import Chart, Cut, tip_points
-from toolaxis.path.following import follow
+from toolaxis.path.following import follow, rises
 from toolaxis.path.layout import Layout
 from toolaxis.path.linking import Linking, Stroke, link
-from toolaxis.tolerances import Tolerance
 
 Array = NDArray[np.float64]
 
@@ -37,17 +36,17 @@ def climbing(chart: Chart, cut: Cut) -> int:
     return 1 if float(right @ (p[3] - p[2])) >= 0 else -1
 
 
-def trace(layout: Layout, direction: str = "zigzag", tolerance: Tolerance | None = None,
-          box: ArrayLike | None = None, linking: Linking | None = None) -> ToolPath:
+def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLike | None = None,
+          linking: Linking | None = None) -> ToolPath:
     """Trace passes as a tool path.
 
     Parameters
     ----------
     layout : Layout
+    chord : float
+        How far straight motions may leave passes, mm.
     direction : str
         "zigzag" (every other pass back), "climb" or "conventional" (all one way, see `climbing`).
-    tolerance : Tolerance, optional
-        Its chord tolerance (a fiftieth of the scallop height unless given), held at half the gouge limit at most.
     box : (2, 3) array_like, optional
         Corners of the box that links cross above; the face's own unless given.
     linking : Linking, optional
@@ -64,11 +63,11 @@ def trace(layout: Layout, direction: str = "zigzag", tolerance: Tolerance | None
     """
     if direction not in DIRECTIONS:
         raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
-    limits = tolerance or Tolerance()
     chart, cut = layout.chart, layout.cut
-    chord = min(limits.chord_for(cut.scallop), limits.gouge / 2)
     piece, along = follow(chart, cut, layout.pieces, chord)
-    contact, tip, normal = tip_points(chart, cut, along, layout.pieces[piece, 2])
+    steps = layout.pieces[piece, 2]
+    contact, tip, normal = tip_points(chart, cut, along, steps)
+    tip = tip - rises(chart, cut, steps, piece, along)[:, None] * normal
     bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
     strokes = [Stroke(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
     return link(_ordered(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))

@@ -90,10 +90,15 @@ class Inputs:
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
-                               "Tolerance(gouge=0.002)")
+                               "Tolerance(gouge=0.005)")
         _one_of("method", self.method, METHODS)
         _one_of("objective", self.objective, OBJECTIVES)
         _one_of("direction", self.direction, DIRECTIONS)
+
+    @property
+    def chord(self) -> float:
+        """How far straight motions may leave passes, mm."""
+        return self.tolerance.chord_for(self.scallop)
 
     def check_tool(self, tool: Tool) -> None:
         """Check that the scallop is one that this cutter can leave.

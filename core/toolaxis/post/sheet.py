@@ -125,7 +125,8 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
     missing = [op.name for op in program.plan.operations if op.path is None]
     machine = program.machine
     rows = [["program", file], ["control", dialect.title], ["machine", f"{machine.name} ({machine.chain})"],
-            ["part", program.plan.part.source or "-"], ["verdict of the plan", verdict],
+            ["part", program.plan.part.source or "-"], ["scallop height", f"{program.inputs.scallop:g} mm"],
+            ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict of the plan", verdict],
             ["not checked", ", ".join(program.plan.not_checked)]]
     if missing:
         rows.append(["NOT IN THE PROGRAM", f"no axis was found for {', '.join(missing)}"])
@@ -238,7 +239,7 @@ def _notes(program: Program, dialect: Dialect) -> list[str]:
     over = [station.operation.name for station in program.stations if gouge_of(program, dialect, station) > allowed]
     if over:
         notes.append(f"With the digits of this dialect the bound of the gouge exceeds {allowed:g} mm in "
-                     f"{', '.join(over)}: plan with a smaller gouge tolerance, or use a dialect with more digits.")
+                     f"{', '.join(over)}: plan with a smaller machining tolerance, or use a dialect with more digits.")
     if program.retract is not None and dialect.told_retract:
         notes.append(f"Rotary axes turn with Z at {program.retract:.3f} in machine coordinates: compare with the "
                      "machine's own travel.")

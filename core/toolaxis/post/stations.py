@@ -20,7 +20,7 @@ Bools = NDArray[np.bool_]
 
 #: Angle within which an operation's axis must stand still, rad.
 FIXED = 1e-6
-#: Shares of the gouge tolerance and of the least clearance that holding the axis in the machine's steps may take up.
+#: Shares of the machining tolerance and of the least clearance that holding the axis in the machine's steps may take.
 _GOUGE_SHARE, _CLEARANCE_SHARE = 0.5, 0.1
 
 

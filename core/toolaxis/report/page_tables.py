@@ -182,11 +182,13 @@ def setting_rows(plan: Plan, source: str) -> Rows:
         Where the part came from.
     """
     given = asdict(plan.inputs)
-    tolerance = given.pop("tolerance")
+    tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
     units = {"scallop": "mm", "allowance": "mm", "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
             for name, value in given.items()]
-    rows += [[f"tolerance {name.replace('_', ' ')}", _tolerance(name, value)] for name, value in tolerance.items()]
+    names = {"gouge": "machining tolerance"}
+    rows += [[names.get(name, f"tolerance {name.replace('_', ' ')}"), _tolerance(name, value)]
+             for name, value in tolerance.items()]
     tool = plan.tool
     rows += [["tool", tool.name], ["tool kind", tool.kind], ["cutter radius", f"{tool.radius:g} mm"],
              ["corner radius", f"{tool.corner_radius:g} mm"], ["half angle", f"{np.degrees(tool.half_angle):g}°"],
@@ -207,9 +209,7 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     return _numbers("settings", [("setting", False), ("value", False)], rows)
 
 
-def _tolerance(name: str, value: float | None) -> str:
-    if value is None:
-        return "scallop / 50"
+def _tolerance(name: str, value: float) -> str:
     return f"{np.degrees(value):g}°" if name == "min_lead" else f"{value:g}" + ("" if name == "trim" else " mm")
 
 

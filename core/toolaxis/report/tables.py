@@ -92,9 +92,9 @@ def plan_table(plan: Plan) -> Table:
         rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
                 for row, op in zip(rows, shown, strict=True)]
     moves = any(op.orientation.lead is not None for op in plan.operations)
-    title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: cutting length {plan.length:.1f} mm, with links "
-             f"{plan.length + plan.travel:.1f} mm, time {clock(plan.seconds)}, "
-             + ("moving axes" if moves else f"different axes {plan.orientations}"))
+    title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, tolerance {plan.inputs.tolerance.gouge:g} mm: "
+             f"cutting length {plan.length:.1f} mm, with links {plan.length + plan.travel:.1f} mm, "
+             f"time {clock(plan.seconds)}, " + ("moving axes" if moves else f"different axes {plan.orientations}"))
     if plan.machine is not None:
         names = "/".join(axis.name for axis in plan.machine.machine.rotary)
         shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
@@ -257,5 +257,5 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
         if not op.done and outcome_of([op], plan.blades) == "complete":
             row[-1] = "clean-up"
     columns = [*_COLUMNS, ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"), ("verdict", "left")]
-    return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, measured by material removal",
-                 columns, rows)
+    return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
+                 f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows)

@@ -15,8 +15,8 @@ BUTTONS = ("compute", "stop", "addFaces", "removeFaces", "holderAdd", "holderRem
 COMBOS = ("strategy", "regions", "orientations", "method", "objective", "direction", "tool", "kind", "limits",
           "operation")
 NUMBERS = ("roughness", "regionsNumber", "orientationsNumber", "spindle", "limitX", "limitY", "limitZ")
-QUANTITIES = ("scallop", "allowance", "feedrate", "diameter", "corner", "taper", "stickout", "cone", "tiltLow",
-              "tiltHigh", "turnLow", "turnHigh")
+QUANTITIES = ("scallop", "tolerance", "allowance", "feedrate", "diameter", "corner", "taper", "stickout", "cone",
+              "tiltLow", "tiltHigh", "turnLow", "turnHigh")
 SEEDS = (1, 2)
 
 

@@ -140,7 +140,8 @@ def test_the_slider_moves_the_tool(desk, form, remembered):
 
 @pytest.mark.parametrize(("field", "text", "words"), [
     ("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diameter"), ("scallop", "-1 mm", "scallop"),
-    ("stickout", "0.5 mm", "stick-out"), ("allowance", "-1 mm", "allowance")])
+    ("stickout", "0.5 mm", "stick-out"), ("allowance", "-1 mm", "allowance"),
+    ("tolerance", "0 mm", "machining tolerance"), ("tolerance", "1 mm", "from 0.0005 to 0.1 mm")])
 def test_impossible_values_lock_compute_with_the_reason(desk, form, field, text, words):
     widget = getattr(form, field)
     form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)

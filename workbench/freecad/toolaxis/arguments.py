@@ -12,7 +12,7 @@ _OPERATION = "give one of the operations that plan returns"
 _ROUGHNESS = (_UNITS.Length, 1000.0, "a finite roughness in micrometres, such as 1.6")
 _LENGTH = (_UNITS.Length, 1.0, "a finite length in mm, such as 0.02 or FreeCAD.Units.Quantity(\"0.02 mm\")")
 #: For each number its unit, what FreeCAD's own value of it is multiplied with, and how to give it.
-_NUMBERS = {"scallop": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
+_NUMBERS = {"scallop": _LENGTH, "tolerance": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
             "flute_length": _LENGTH, "roughness": _ROUGHNESS,
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}

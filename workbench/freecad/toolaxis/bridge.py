@@ -49,7 +49,7 @@ def task(inputs):
         made = ta.plan(part, tool, inputs.scallop, machine=limits_from(inputs.limits, tool), faces=faces,
                        regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
                        compare=inputs.compare, division=division, objective=inputs.objective,
-                       allowance=inputs.allowance, direction=inputs.direction,
+                       tolerance=inputs.tolerance, allowance=inputs.allowance, direction=inputs.direction,
                        obstacles=list(bodies) or None, feedrate=inputs.feedrate, spindle=inputs.spindle,
                        datum=source.datum, progress=progress, **asked_of(inputs))
         refuse_in_vain(made)

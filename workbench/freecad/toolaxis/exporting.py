@@ -11,7 +11,8 @@ from .objects.machine import angles_kept, nearest
 #: What operations of one folder have in common, and how it is called in messages.
 _SHARED = {"tool": "tools", "stickout": "stick-outs", "flute_length": "flute lengths",
            "shank": "shanks", "holder": "holders",
-           "scallop": "scallop heights", "allowance": "allowances", "limits": "limits of the axis",
+           "scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
+           "limits": "limits of the axis",
            "strategy": "strategies", "roughness": "roughness limits", "objective": "objectives",
            "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}

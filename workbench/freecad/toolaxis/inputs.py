@@ -7,6 +7,9 @@ from .machines import PREFIX
 from .places import matrix_of
 from .strategies import INDEXED, ROUGH, ROUGHNESS, check_strategy
 
+#: Machining tolerance unless given, mm; and what it was before it could be given.
+TOLERANCE, FORMER_TOLERANCE = 0.01, 0.002
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -55,7 +58,8 @@ class Inputs:
     stickout, flute_length : float
         Lengths from the tip to the holder, and of the cutting edge; 0 for two diameters of that, as far as the
         stick-out allows.
-    scallop, allowance : float
+    scallop, allowance, tolerance : float
+        The last is the machining tolerance: how deep the finished surface may be cut too deep.
     limits : str
         Limits of the axis in their short form, in the document's space; empty for none.
     obstacles : tuple of objects
@@ -101,6 +105,7 @@ class Inputs:
     pieces: tuple = ()
     strategy: str = INDEXED
     roughness: float = ROUGHNESS
+    tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
@@ -150,11 +155,13 @@ class Inputs:
             When a value is out of range.
         """
         from toolaxis.plan.plan import Inputs as JobInputs
+        from toolaxis.tolerances import Tolerance
 
         return JobInputs(self.scallop, self.allowance, method=self.strategy if self.moves else self.method,
                          objective=self.objective, direction=self.direction,
                          limits="" if self.limits.startswith(PREFIX) else self.limits, feedrate=self.feedrate,
-                         spindle=self.spindle, roughness=self.roughness / 1000 if self.strategy == ROUGH else 0.0)
+                         spindle=self.spindle, tolerance=Tolerance.of(self.tolerance),
+                         roughness=self.roughness / 1000 if self.strategy == ROUGH else 0.0)
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes, and the strategy.
@@ -198,7 +205,7 @@ def inputs_of(thing):
                   thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
                   thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
                   thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
-                  thing.Strategy, thing.Roughness or ROUGHNESS)
+                  thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value)
 
 
 def flute_of(tool):

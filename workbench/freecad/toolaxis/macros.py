@@ -8,8 +8,9 @@ _IMPORT = "import freecad.toolaxis"
 _DOCUMENT = "FreeCAD.ActiveDocument"
 #: Fields of the inputs that an operation planned again may have changed, and the properties that hold them.
 _HELD = {"tool": "Tool", "stickout": "StickOut", "flute_length": "FluteLength", "scallop": "Scallop",
-         "allowance": "Allowance", "limits": "Limits", "objective": "Objective", "direction": "Direction",
-         "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy", "roughness": "Roughness"}
+         "tolerance": "Tolerance", "allowance": "Allowance", "limits": "Limits", "objective": "Objective",
+         "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy",
+         "roughness": "Roughness"}
 
 
 def record(*lines):
@@ -70,7 +71,7 @@ def plan_line(inputs):
     given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
     given |= {name: getattr(inputs, name) for name in ("flute_length", "allowance", "limits", "objective", "direction",
                                                        "regions", "orientations", "method", "blades", "compare",
-                                                       "strategy", "roughness")
+                                                       "strategy", "roughness", "tolerance")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]

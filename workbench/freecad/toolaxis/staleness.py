@@ -2,6 +2,7 @@
 
 import json
 
+from .inputs import FORMER_TOLERANCE
 from .known import known_of
 from .strategies import INDEXED, ROUGHNESS
 
@@ -102,6 +103,8 @@ def digest(inputs):
     """
     numbers = ("stickout", "scallop", "allowance", "feedrate", "spindle")
     words = {name: f"{getattr(inputs, name):.9g}" for name in numbers}
+    tolerance, former = (f"{value:.9g}" for value in (inputs.tolerance, FORMER_TOLERANCE))
+    words |= {} if tolerance == former else {"tolerance": tolerance}
     words |= {name: getattr(inputs, name) for name in ("tool", "limits", "objective", "direction")}
     words |= {name: [[f"{x:.9g}" for x in row] for row in getattr(inputs, name)] for name in ("shank", "holder")}
     words |= {name: str(getattr(inputs, name)) for name, usual in _USUAL.items() if getattr(inputs, name) != usual}

@@ -27,9 +27,9 @@ class LinuxCnc(Iso):
     told_retract = True
 
     def start(self, program: Setting) -> Lines:
-        """Modes with a path tolerance inside that of gouging, retract, tool, spindle."""
-        blend = program.inputs.tolerance.gouge / 2
-        return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{blend:.4f}", *self.cancelled(),
+        """Modes with the passes' chord tolerance as that of the path, retract, tool, spindle."""
+        return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{program.inputs.chord:.4f}",
+                *self.cancelled(),
                 "G54", *self.retracted(program), "T1 M6", f"S{program.inputs.spindle:.0f} M3"]
 
     def retracted(self, program: Setting) -> Lines:

@@ -4,6 +4,7 @@ from math import degrees
 
 import FreeCAD
 
+from ..inputs import FORMER_TOLERANCE
 from ..strategies import STRATEGIES
 from . import is_operation, is_plan
 from .belongings import Keeper, note
@@ -21,6 +22,8 @@ INPUTS = (
     Property("Length", "FluteLength", _ASKED, "Length of the cutting edge from the tip; 0: two diameters"),
     # Set in the panel: FreeCAD's own editor of properties shows 0.02 mm as 20 µm, and takes 0.1 for 0.1 µm.
     Property("Length", "Scallop", _ASKED, "Greatest scallop height; double-click the operation to change it", True),
+    Property("Length", "Tolerance", _ASKED, "How far the face may be cut too deep; double-click the operation to "
+             "change it", True, former=FORMER_TOLERANCE),
     Property("Length", "Allowance", _ASKED, "Stock left on the face; double-click the operation to change it", True),
     Property("String", "Limits", _ASKED, "Limits of the axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
     Property("LinkListGlobal", "Obstacles", _ASKED, "Bodies to avoid"),
@@ -193,7 +196,7 @@ def set_inputs(thing, inputs):
     for name, rows in (("Shank", inputs.shank), ("Holder", inputs.holder)):
         setattr(thing, name, [FreeCAD.Vector(radius, 0, z) for radius, z in rows])
     assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, FluteLength=inputs.flute_length,
-           Scallop=inputs.scallop, Allowance=inputs.allowance,
+           Scallop=inputs.scallop, Tolerance=inputs.tolerance, Allowance=inputs.allowance,
            Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
            FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
            Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,

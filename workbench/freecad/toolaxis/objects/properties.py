@@ -2,7 +2,8 @@
 
 from collections import namedtuple
 
-Property = namedtuple("Property", "kind name group text fixed hidden choices", defaults=(False, False, ()))
+#: `former` is what held in documents that were saved before there was the property.
+Property = namedtuple("Property", "kind name group text fixed hidden choices former", defaults=(False, False, (), None))
 
 
 def ensure(thing, properties):
@@ -61,7 +62,9 @@ class Proxy:
 
     def onDocumentRestored(self, thing):
         """Give an object of an older version what it does not have yet."""
-        ensure(thing, self.properties)
+        added = ensure(thing, self.properties)
+        assign(thing, **{one.name: one.former for one in self.properties
+                         if one.name in added and one.former is not None})
 
     def dumps(self):
         """Nothing: all data stand in properties."""

@@ -42,7 +42,7 @@ class PlanForm:
         self.quantities = {name: QuantityField(self._find(name)) for name in lengths}
         self.quantities |= {name: QuantityField(self._find(name), "deg", (0, 4)) for name in angles}
         self.quantities |= {name: QuantityField(self._find(name), decimals=(2, 5), step=0.005)
-                            for name in ("scallop", "allowance")}
+                            for name in ("scallop", "tolerance", "allowance")}
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.limits = self._find("limits", QtWidgets.QComboBox)
@@ -254,7 +254,7 @@ class PlanForm:
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
         self.shank.rows, self.holder.rows = inputs.shank or (), inputs.holder or ()
-        for name in ("stickout", "scallop", "allowance", "feedrate"):
+        for name in ("stickout", "scallop", "tolerance", "allowance", "feedrate"):
             self.quantities[name].value = getattr(inputs, name) or 0.0
         self.quantities["fluteLength"].value = inputs.flute_length
         self.spindle.setValue(int(inputs.spindle))
@@ -280,7 +280,7 @@ class PlanForm:
         return {"faces": self.faces.faces, "tool": self.tool_text, "shank": self.shank.rows,
                 "holder": self.holder.rows, "stickout": self.quantities["stickout"].value,
                 "flute_length": self.quantities["fluteLength"].value,
-                "scallop": self.quantities["scallop"].value, "allowance": self.quantities["allowance"].value,
+                **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
