@@ -53,8 +53,8 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
         raise InvalidInput(f"{lost}; {ACCEPT}")
     record = found.record
     if record.unit == UNDECLARED != text.unit:
-        raise InvalidInput(f"{file} declares the length unit {text.unit}, and the CAD kernel finds none: export the part "
-                           "again")
+        raise InvalidInput(f"{file} declares the length unit {text.unit}, and the CAD kernel finds none: export the "
+                           "part again")
     record.warnings += [*text.notes, *([lost] if lost else _dangling(text)), *_split(text, found)]
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
     part = part_from_record(record, str(file), digest)
