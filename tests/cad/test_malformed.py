@@ -153,6 +153,8 @@ REFUSED = {
     "decimal comma": (lambda step: step.with_point("1,5"), r"in CARTESIAN_POINT #\d+, where one to three numbers"),
     "Fortran": (lambda step: step.with_point("1.D+01"), r"holds 1.D\+01 in entity #\d+, where a number is needed"),
     "half a number": (lambda step: step.with_point("1.E+"), r"holds 1.E\+ in entity #\d+, where a number is needed"),
+    "a sign": (lambda step: step.substituted("EDGE_CURVE", r"#\d+(\s*,\s*\.[TF]\.)", r"-\1"),
+               r"holds - in entity #\d+, where a number is needed"),
     "a point twice": (lambda step: step.last(f"#{step.numbers[-1]}=CARTESIAN_POINT('',(0.,0.,0.));"),
                       r"defines entity #\d+ more than once: every number must stand for one entity; export"),
     "a face twice": (lambda step: step.last(step.of(step.faces[0])), r"defines entity #\d+ more than once"),

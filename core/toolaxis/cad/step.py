@@ -16,7 +16,7 @@ from typing import Any
 import toolaxis
 from toolaxis.cad.assembling import part_from_record
 from toolaxis.cad.records import Transfer
-from toolaxis.cad.steptext import ACCEPT, StepText, read_text
+from toolaxis.cad.steptext import ACCEPT, UNDECLARED, StepText, read_text
 from toolaxis.cad.units import unit_warnings
 from toolaxis.errors import InvalidInput, MissingBackend, UnsupportedGeometry
 from toolaxis.shape.part import Part
@@ -52,6 +52,9 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     if lost and not accept_lost_faces:
         raise InvalidInput(f"{lost}; {ACCEPT}")
     record = found.record
+    if record.unit == UNDECLARED != text.unit:
+        raise InvalidInput(f"{file} declares the length unit {text.unit}, and the CAD kernel finds none: export the "
+                           "part again")
     record.warnings += [*text.notes, *([lost] if lost else _dangling(text)), *_split(text, found)]
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
     part = part_from_record(record, str(file), digest)

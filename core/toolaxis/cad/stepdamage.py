@@ -15,7 +15,7 @@ FARTHEST = 1e9
 _NUMBER = rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _NOT_FINITE = re.compile(
     rb"(?<=[(,\s])[+-]?(?:nan|inf|infinity|\d+\.#(?:ind|inf|qnan|snan)\w*)(?=[\s,)])", re.IGNORECASE)
-_NO_NUMBER = re.compile(rb"(?<=[(,])\s*+(?!" + _NUMBER + rb"\s*[,)])([+-]?\.?\d[^,();]*?)\s*(?=[,)])")
+_NO_NUMBER = re.compile(rb"(?<=[(,])\s*+(?!" + _NUMBER + rb"\s*[,)])((?:[+-]|\.?\d)[^,();]*?)\s*(?=[,)])")
 _NO_POINT = re.compile(rb"#(\d+)\s*=\s*(CARTESIAN_POINT|DIRECTION)\s*\(\s*'[^']*'\s*,\s*+"
                        rb"(?!\(\s*" + _NUMBER + rb"(?:\s*,\s*" + _NUMBER + rb"){0,2}\s*\)\s*\))\(?([^;)]*)")
 #: Where numbers of 1e9 and more are written, and powers of ten that may be in any.

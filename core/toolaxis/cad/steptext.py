@@ -18,6 +18,7 @@ _START = re.compile(rb"\s*ISO-10303-21\s*;")
 _END = re.compile(rb"(ENDSEC\s*;\s*)?END-ISO-10303-21\s*;")
 _NAMED_DATA = re.compile(rb"\bDATA\s*\([^;]*\)\s*;")
 
+UNDECLARED = "not declared"
 ACCEPT = "repair it in the CAD system and export it again, or pass accept_lost_faces=True in Python"
 
 
@@ -108,12 +109,12 @@ def declared_unit(content: bytes) -> str:
 
 
 def _unit(entities: Entities) -> str:
-    return ", ".join(dict.fromkeys(length_units(entities).values())) or "not declared"
+    return ", ".join(dict.fromkeys(length_units(entities).values())) or UNDECLARED
 
 
 def _reservations(unit: str, links: list[str]) -> list[str]:
     """What is not certain about a file that can be read."""
-    found = ["the file declares no length unit: its numbers were taken for mm"] if unit == "not declared" else []
+    found = ["the file declares no length unit: its numbers were taken for mm"] if unit == UNDECLARED else []
     elsewhere = with_geometry(links)
     if elsewhere:
         found.append(f"the file also refers to {named(elsewhere)}; what stands there is not read: export everything as "

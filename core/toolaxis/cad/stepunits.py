@@ -8,7 +8,7 @@ from toolaxis.cad.stepfaces import REPRESENTATIONS
 _CONTEXT = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^)]*)\)")
 _REFERENCE = re.compile(rb"#(\d+)")
 _BASED = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'\s*,\s*#(\d+)")
-_METRIC = re.compile(rb"SI_UNIT\s*\(\s*(?:\$|\.(\w+)\.)\s*,\s*\.(\w+)\.")
+_METRIC = re.compile(rb"(?<![A-Z_])SI_UNIT\s*\(\s*(?:\$|\.(\w+)\.)\s*,\s*\.(\w+)\.")
 _MEASURE = re.compile(rb"LENGTH_MEASURE\s*\(\s*([^\s)]+)\s*\)\s*,\s*#(\d+)")
 
 REMEDY = "export the part in mm or inches"
@@ -23,13 +23,15 @@ def length_units(entities: Entities) -> dict[int, str]:
     ----------
     entities : Entities
     """
-    lengths = {entity.number: entity for entity in entities.complex_of("LENGTH_UNIT")}
-    found = {}
-    for members in _CONTEXT.findall(entities.bare):
-        for number in map(int, _REFERENCE.findall(members)):
-            if number in lengths:
-                found[number] = _name(entities, lengths[number])
-    return {number: name for number, name in found.items() if name}
+    names = {number: _name(entities, entities.table[number]) for number in _of_contexts(entities)}
+    return {number: name for number, name in names.items() if name}
+
+
+def _of_contexts(entities: Entities) -> list[int]:
+    """Entity numbers of the length units of all contexts."""
+    lengths = {entity.number for entity in entities.complex_of("LENGTH_UNIT")}
+    members = [int(number) for listed in _CONTEXT.findall(entities.bare) for number in _REFERENCE.findall(listed)]
+    return [number for number in dict.fromkeys(members) if number in lengths]
 
 
 def _name(entities: Entities, unit: Entity) -> str:
@@ -47,7 +49,7 @@ def unit_fault(entities: Entities) -> str:
     ----------
     entities : Entities
     """
-    units = length_units(entities)
+    units = _of_contexts(entities)
     fault = next(filter(None, (_fault(entities, number, ()) for number in units)), "")
     return fault or ("" if units else _lost(entities))
 
@@ -76,11 +78,11 @@ def _fault(entities: Entities, number: int, above: tuple[int, ...]) -> str:
     measure = entities.table.get(int(based.group(2))) if based else None
     amount = _MEASURE.search(entities.bare, measure.start - 1, measure.end) if measure else None
     if based is None or amount is None:
-        return ""
+        return f"declares a length unit in #{number} that cannot be read; {REMEDY}"
     try:
         value = float(amount.group(1))
     except ValueError:
-        return ""
+        value = 0.0
     if value <= 0.0:
         name = based.group(1).decode(errors="replace")
         return f"declares the length unit {name} in #{number} as {value:g} of another: it must be above 0; {REMEDY}"

@@ -150,14 +150,17 @@ def _converted(path: str, order: FaceOrder) -> Transfer:
     from toolaxis.cad.ocp import face_map, shape_record
 
     reading = read_file(path)
+    entities, read = len(order.definitions), reading.reader.WS().Model().NbEntities()
+    if read < entities:  # It drops what it cannot parse, and makes something of the rest.
+        raise InvalidInput(f"the CAD kernel can parse {read} of its {entities} entities only: export the part again")
     faces = face_map(reading.shape)
     if not faces.Extent():
         raise InvalidInput(f"the CAD kernel made none of its {order.promised} faces: export the part again")
-    copies, entities = indices_of_copies(faces), len(order.definitions)
+    copies = indices_of_copies(faces)
     missing = order.left or max(copies) != order.promised
     asked = order.lists and faces.Extent() * entities <= (ASKED_OF_MISSING if missing else ASKED)
     ranks = ranks_of_faces(reading, faces) if asked else [0] * faces.Extent()
-    origins = order.origins(ranks, reading.reader.WS().Model().NbEntities())
+    origins = order.origins(ranks, read)
     numbers = numbered(order, origins)
     record = shape_record(reading.shape, numbers=numbers.made)
     record.unit = reading.unit
