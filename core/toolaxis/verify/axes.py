@@ -22,6 +22,7 @@ from toolaxis.verify.sweep import LOOK, least_over_motion, moment
 Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
 Body: TypeAlias = tuple[Array, tuple[Array, Array, Array, Array]]
+TakenOff: TypeAlias = Callable[[Index, Array], Array]
 
 #: Side of the cells at the start, mm; error at which the search ends, mm, or as a share of the distance.
 CELL, RESOLUTION, SHARE = 3.0, 5e-4, 1e-3
@@ -126,8 +127,9 @@ def _clear(body: Body, tables: tuple[Array, Index, Array], blocks: tuple[Array, 
 class _Search:
     """Distances of points from one component along the motions."""
 
-    def __init__(self, solids: Array, motions: Motions, workers: tuple[int, Callable[[float, float], None]]) -> None:
-        self.solids, self.motions, self.workers = solids, motions, workers
+    def __init__(self, solids: Array, motions: Motions, workers: tuple[int, Callable[[float, float], None]],
+                 taken_off: TakenOff | None = None) -> None:
+        self.solids, self.motions, self.workers, self.taken_off = solids, motions, workers, taken_off
         reach = reach_of(solids)
         lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
         slack = 0.5 * np.linalg.norm(motions.step, axis=1) + 0.5 * np.linalg.norm(motions.turn, axis=1) / lean * reach
@@ -141,7 +143,9 @@ class _Search:
         point = np.ascontiguousarray(cells.point[order])
         value, by = np.full(len(order), FAR), np.full(len(order), -1, dtype=np.int64)
         motion = (self.motions.start, self.motions.step, self.motions.axis, self.motions.turn)
-        out = (value, by, point, np.ascontiguousarray(cells.on_face[order]))
+        off = np.zeros(len(order)) if self.taken_off is None else self.taken_off(cells.owner[order], point)
+        # A place at a step must not end the search for places beside it, which is farther than its distance tells.
+        out = (value, by, point, np.ascontiguousarray(cells.on_face[order] & (off == 0.0)))
         kernel = _clear if _compiled.available else clear_numpy
         blocks = balls(point)
 
@@ -149,13 +153,15 @@ class _Search:
             kernel((self.solids, motion), self.tables, blocks, out, (best, margin, *part))
 
         in_chunks(work, len(blocks[0]), *self.workers)
+        value = np.maximum(value, np.minimum(value + off, 0.0))
         result, which = np.empty_like(value), np.empty_like(by)
         result[order], which[order] = value, by
         return result, which
 
 
 def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
-              enough: float = np.inf, threads: int = 1, progress: Progress = NO_PROGRESS) -> Clearance:
+              enough: float = np.inf, taken_off: TakenOff | None = None, threads: int = 1,
+              progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
     Points all over the faces and their borders are measured against the swept solids, more densely around the nearest.
@@ -171,6 +177,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     faces : tuple of Face
     enough : float
         Distance that is asked for, mm: where the tool stays `AMPLE` times as far away, the search ends early.
+    taken_off : callable, optional
+        What faces miss each other by at points (n, 3) of those with some indices (n,), mm: depths are less by that.
     threads : int
         Threads of the compiled kernel; the result does not depend on it.
     progress : Progress
@@ -190,7 +198,7 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, motions.uncertainty)
     if not faces:
         return nothing
-    search = _Search(solids, motions, (threads, partial(progress.report, f"{name} clearance")))
+    search = _Search(solids, motions, (threads, partial(progress.report, f"{name} clearance")), taken_off)
     cells = face_cells(faces, CELL)
     best, found, error = FAR, None, 0.0
     few = cells.rows(np.arange(0, len(cells), 16))

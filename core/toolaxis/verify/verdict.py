@@ -11,15 +11,13 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import FAR, Clearance, clearance
-from toolaxis.verify.edges import depth_at_edges
+from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
-from toolaxis.verify.rays import Rays, face_rays
 from toolaxis.verify.removal import Remains, removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
 from toolaxis.verify.task import Task, motion_of, spot
-from toolaxis.verify.walls import wall_depth
 
 Array = NDArray[np.float64]
 
@@ -177,40 +175,30 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     """
     cl = (task.tips, task.axes, task.kind)
     cut = partial(removal, cl, task.profile, height=_standing(task), threads=threads, progress=progress)
-    seen: list[float] = []
-    samples: list[Rays] = []
+    depths, seen = Depths(task, cut), list[float]()
 
     def measure(face: Face, point: Array, normal: Array) -> Remains:
-        foot = point + task.allowance * normal
-        left = cut((foot, normal), depth=task.depth)
+        left = cut((point + task.allowance * normal, normal), depth=task.depth)
         seen.append(left.uncertainty)
-        deep = np.flatnonzero(left.gouge > task.tolerance.gouge)
-        if not len(deep):
-            return left
-        if not samples:
-            samples.extend(face_rays(one) for one in (*task.targets, *task.skin))
-        limit = wall_depth(foot[deep], normal[deep], tuple(samples), task.depth)
-        thin = limit < task.depth
-        if thin.any():
-            rows = deep[thin]
-            less = cut((foot[rows], normal[rows]), depth=np.maximum(limit[thin], 1e-3))
-            left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
-        left.gouge[deep] = depth_at_edges(
-            face, (point[deep], normal[deep], left.gouge[deep]), (task.touching, beyond(face)),
-            lambda feet, ways: cut((feet + task.allowance * ways, ways), depth=task.depth).gouge)
+        depths.correct(face, (point, normal), left)
         return left
-
-    def beyond(face: Face) -> tuple[Face, ...]:
-        return tuple(one for one in (*task.targets, *task.skin, *task.surroundings) if one is not face)
 
     targets = tuple(surface_map(face, partial(measure, face), spacing) for face in task.targets)
     skin = tuple(surface_map(face, partial(measure, face), spacing) for face in task.skin)
     link_cut = _link_cut(task, targets, partial(cut, cutting=(Motion.LINK,), among=(Motion.LINK,)))
-    edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
-                     enough=task.tolerance.gouge, threads=threads, progress=progress)
+    edge = _behind_edges(task, depths, threads, progress)
     uncertainty = max(seen) + max(face.tolerance for face in (*task.targets, *task.skin))
     rooms = {**_rooms(task, threads, progress), **machine_rooms(task, progress)}
     return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
+
+
+def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) -> Clearance:
+    """How far faces behind convex edges stay out of the cutter; what the file's faces miss each other by is taken off
+    where they do not."""
+    find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
+                   task.touching, enough=task.tolerance.gouge, threads=threads, progress=progress)
+    found = find()
+    return find(taken_off=depths.missed_behind_edges) if -found.distance > task.tolerance.gouge else found
 
 
 def _needed(task: Task, name: str) -> float:
