@@ -6,8 +6,8 @@ less and less up to twice that.  A step higher than `GREATEST` is no mismatch bu
 """
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,11 @@ class Seam:
     def counted(self) -> bool:
         """Whether the step is too high to be a mismatch: what a cutter gouges there counts in full."""
         return self.step > GREATEST
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The seam as JSON has it."""
+        return {**asdict(self), "faces": list(self.faces), "point": list(self.point), "counted": self.counted}
 
 
 class Mismatch(NamedTuple):
