@@ -96,7 +96,7 @@ def _proud(found: Witness, feasibility: Feasibility) -> str:
         return ""  # what faces miss each other by was taken off already
     return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: steps up to {GREATEST:g} mm "
             "are taken as inaccuracy of the file and not counted as gouge, this one is higher; repair the edge, or "
-            "plan with a larger gouge tolerance")
+            "plan with a larger machining tolerance")
 
 
 def tally(ledger: Ledger) -> str:
