@@ -9,7 +9,6 @@ from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gap
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.matching import matched
-from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import seam_warnings
 
@@ -23,8 +22,7 @@ def face_from_record(record: FaceRecord) -> Face:
     ----------
     record : FaceRecord
     """
-    surface = NurbsSurface(record.knots_u, record.knots_v, record.control, record.degree)
-    face = Face(surface, record.loops, record.flip, record.number, kind=record.kind, tolerance=record.tolerance)
+    face = Face(record.surface, record.loops, record.flip, record.number, kind=record.kind, tolerance=record.tolerance)
     return with_kinks(face)
 
 

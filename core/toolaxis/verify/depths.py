@@ -54,7 +54,8 @@ class Depths:
             return
         point, normal = rays[0][deep], rays[1][deep]
         own = tuple(one for one in self._of_the_part() if one is not face)
-        told, near = depth_at_edges(face, (point, normal, left.gouge[deep]), (own, task.surroundings), self._laid_bare)
+        told, near = depth_at_edges(face, (point, normal, left.gouge[deep]), (own, task.surroundings), self._laid_bare,
+                                    task.tolerance.gouge)
         self._in_walls((point, normal), left, deep, ~near)
         left.gouge[deep[near]] = told[near]
         higher = left.gouge[deep] > task.tolerance.gouge

@@ -18,8 +18,9 @@ from toolaxis.verify.borders import STEP, Line, in_parameters, line_of, on_borde
 
 Array = NDArray[np.float64]
 
-#: How near the end of the part must be to count, mm: a cut wider than that is told by rays farther inside.
-NEAR = 0.05
+#: How near the end of the part must be to count, mm, at least and as a multiple of the depth that is allowed: at edges
+#: up to 170 degrees sharp a ray farther inside that is laid bare deeper than allowed tells of a cut that is.
+NEAR, TIMES = 0.05, 12.0
 #: Rays are laid from the end of the part inwards in these steps: the first, mm, and the ratio of the others.
 FIRST, RATIO = 0.0002, 1.05
 #: Shares of a ray's depth at which the end beside it is looked for; least depth to which a ray is followed, mm.
@@ -44,7 +45,7 @@ class End(NamedTuple):
 
 
 def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[tuple[Face, ...], tuple[Face, ...]],
-                   cut: Callable[[Array, Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
+                   cut: Callable[[Array, Array, Array], Array], allowed: float) -> tuple[Array, NDArray[np.bool_]]:
     """How deep the cut lies below the part's surface, for rays of a face; the rays' own depth far from edges.
 
     Parameters
@@ -58,28 +59,31 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
         border.
     cut : callable
         Depths laid bare, mm, of rays with given feet and normals that are followed to given depths.
+    allowed : float
+        Depth that a gouge may have, mm.
 
     Returns
     -------
-    (m,) array, mm: the greatest that any ray tells from the foot up to `NEAR` inwards, in steps of 5 %;
+    (m,) array, mm: the greatest that any ray tells from the foot inwards, as far as counts as near, in steps of 5 %;
     (m,) array: whether the ray is near an edge.
 
     Notes
     -----
     **Properties**: 1. never above the greatest depth of these rays; 2. a cut deeper and wider than a limit is never
-    told to be below it; 3. a ray farther than `NEAR` from every edge keeps its depth.
+    told to be below it; 3. a ray farther than `NEAR`, and `TIMES` the allowed depth, from every edge keeps its depth.
     """
     foot, normal, depth = rays
+    reach = max(NEAR, TIMES * allowed)
     told, near = depth.copy(), np.zeros(len(foot), dtype=bool)
     for first in range(0, len(foot), _AT_ONCE):
         rows = np.arange(first, min(first + _AT_ONCE, len(foot)))
-        ends = [*(_behind(other, foot[rows], normal[rows], depth[rows]) for other in around[0]),
-                _open(face, foot[rows], normal[rows], (*around[0], *around[1]))]
+        ends = [*(_behind(other, (foot[rows], normal[rows], depth[rows]), reach) for other in around[0]),
+                _open(face, (foot[rows], normal[rows]), (*around[0], *around[1]), reach)]
         here = np.any([end.there for end in ends], axis=0)
         near[rows], rows = here, rows[here]
         if len(rows):
             some = [End(end.there[here], end.point[:, here], end.outwards[:, here]) for end in ends if end.there.any()]
-            feet, directions = _inwards(face, foot[rows], normal[rows], some)
+            feet, directions = _inwards(face, (foot[rows], normal[rows]), some, reach)
             middle = _middle((feet, directions), some)
             # What lies beyond the middle is nearer to the other face, and may be air on its side.
             asked = np.maximum(middle, _LEAST)
@@ -88,16 +92,17 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     return told, near
 
 
-def _behind(other: Face, foot: Array, normal: Array, depth: Array) -> End:
+def _behind(other: Face, rays: tuple[Array, Array, Array], reach: float) -> End:
     """The face behind a convex edge, where rays stand near it: how it lies beside them all the way down."""
+    foot, normal, depth = rays
     end = _nowhere(foot, normal)
-    rows = np.flatnonzero(((foot > other.box[0] - NEAR) & (foot < other.box[1] + NEAR)).all(axis=1))
+    rows = np.flatnonzero(((foot > other.box[0] - reach) & (foot < other.box[1] + reach)).all(axis=1))
     if not len(rows):
         return end
     found = nearest(other, foot[rows])
     outwards = other.normal(found.uv)
     away = normal[rows] - dot(normal[rows], outwards)[:, None] * outwards
-    steep = (np.linalg.norm(away, axis=1) > 1e-3) & (found.distance < NEAR)
+    steep = (np.linalg.norm(away, axis=1) > 1e-3) & (found.distance < reach)
     rows, point, down = rows[steep], found.point[steep], -unit(away[steep])
     if not len(rows):
         return end
@@ -106,7 +111,8 @@ def _behind(other: Face, foot: Array, normal: Array, depth: Array) -> End:
     if len(rows):
         end.there[rows] = True
         at = Nearest(*(values[steep][convex] for values in found))
-        end.point[:, rows], end.outwards[:, rows] = _stations(other, at, (foot[rows], normal[rows], depth[rows]))
+        end.point[:, rows], end.outwards[:, rows] = _stations(other, at, (foot[rows], normal[rows], depth[rows]),
+                                                                 reach)
     return end
 
 
@@ -120,15 +126,15 @@ def _goes_down(other: Face, point: Array, down: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _stations(other: Face, at: Nearest, rays: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+def _stations(other: Face, at: Nearest, rays: tuple[Array, Array, Array], reach: float) -> tuple[Array, Array]:
     """Points on a face and its normals there, nearest to places down rays: their feet first, (stations, k, 3) each."""
     foot, normal, depth = rays
     outwards = other.normal(at.uv)
     points, ways = np.tile(at.point, (len(_STATIONS), 1, 1)), np.tile(outwards, (len(_STATIONS), 1, 1))
     # Rays from as far inwards as is looked at come nearer to the other face at this depth, were it plane.
     flat = dot(normal, outwards)
-    reach = 2.0 * NEAR * np.sqrt((1.0 + flat) / np.maximum(1.0 - flat, 1e-12))
-    down = np.minimum(depth, reach)[:, None] * normal
+    lowest = 2.0 * reach * np.sqrt((1.0 + flat) / np.maximum(1.0 - flat, 1e-12))
+    down = np.minimum(depth, lowest)[:, None] * normal
     last = nearest(other, foot - down)
     points[-1], ways[-1] = last.point, other.normal(last.uv)
     bent = np.flatnonzero(np.linalg.norm(ways[-1] - outwards, axis=1) > _PLANE)
@@ -144,14 +150,15 @@ def _nowhere(foot: Array, normal: Array) -> End:
     return End(np.zeros(len(foot), dtype=bool), np.tile(foot, shape), np.tile(normal, shape))
 
 
-def _open(face: Face, foot: Array, normal: Array, others: tuple[Face, ...]) -> End:
+def _open(face: Face, rays: tuple[Array, Array], others: tuple[Face, ...], reach: float) -> End:
     """The face's own border, where rays stand near it and the part does not go on."""
+    foot, normal = rays
     end = _nowhere(foot, normal)
     lines = [line_of(face, loop) for loop in face.outline]
-    uv, along = on_border(face, foot, lines, NEAR)
+    uv, along = on_border(face, foot, lines, reach)
     point = face.evaluate(uv).point
     across = np.cross(along, face.normal(uv))
-    rows = np.flatnonzero((np.linalg.norm(point - foot, axis=1) < NEAR) & (np.linalg.norm(across, axis=1) > 0.0))
+    rows = np.flatnonzero((np.linalg.norm(point - foot, axis=1) < reach) & (np.linalg.norm(across, axis=1) > 0.0))
     if not len(rows):
         return end
     outwards = unit(across[rows])
@@ -182,21 +189,22 @@ def _continued(point: Array, lines: list[Line], others: tuple[Face, ...]) -> NDA
     return found
 
 
-def _inwards(face: Face, foot: Array, normal: Array, ends: list[End]) -> tuple[Array, Array]:
+def _inwards(face: Face, rays: tuple[Array, Array], ends: list[End], reach: float) -> tuple[Array, Array]:
     """Feet and normals of rays from each foot on, away from the ends beside it, (k, steps, 3) each."""
+    foot, normal = rays
     room = np.array([np.where(end.there, dot(end.point[0] - foot, end.outwards[0]), np.inf) for end in ends])
     # The nearest end counts most; in a corner all of them do, so that the way leads to where the part is thickest.
-    weight = np.where(np.isfinite(room), np.maximum(NEAR - np.maximum(room, 0.0), 1e-3 * NEAR), 0.0)
+    weight = np.where(np.isfinite(room), np.maximum(reach - np.maximum(room, 0.0), 1e-3 * reach), 0.0)
     outwards = np.einsum("ek,ekc->kc", weight, np.array([end.outwards[0] for end in ends]))
     flat = outwards - dot(outwards, normal)[:, None] * normal
     sound = np.linalg.norm(flat, axis=1) > 1e-9 * weight.sum(axis=0)
     nearest_one = np.array([end.outwards[0] for end in ends])[room.argmin(axis=0), np.arange(len(foot))]
     flat = np.where(sound[:, None], flat, nearest_one - dot(nearest_one, normal)[:, None] * normal)
-    first, inwards = np.clip(room.min(axis=0), 0.0, NEAR), -unit(flat)
+    first, inwards = np.clip(room.min(axis=0), 0.0, reach), -unit(flat)
     uv = nearest(face, foot).uv
     d, (du, dv) = face.evaluate(uv), in_parameters(face, uv, inwards).T[..., None]
     bend = dot(d.suu * du**2 + 2 * d.suv * du * dv + d.svv * dv**2, normal)
-    count = int(np.ceil(np.log(NEAR / FIRST) / np.log(RATIO)))
+    count = int(np.ceil(np.log(reach / FIRST) / np.log(RATIO)))
     way = np.maximum(FIRST * RATIO ** np.arange(count + 1) - first[:, None], 0.0)[..., None]
     feet = foot[:, None] + way * inwards[:, None] + 0.5 * (bend[:, None, None] * way**2) * normal[:, None]
     return feet, unit(normal[:, None] - bend[:, None, None] * way * inwards[:, None])

@@ -81,7 +81,7 @@ def _middle(face: Face, foot: Array, normal: Array, start: Array) -> Array:
         outwards = face.normal(found.uv)
         against = dot(outwards, normal)
         across = against < AGAINST
-        way = np.where(across, dot(outwards, found.point - foot) / (1.0 - against), 1.5 * way)
+        way = np.where(across, dot(outwards, found.point - foot) / np.maximum(1.0 - against, 1.0), 1.5 * way)
         way = np.maximum(way, 0.0)
     found = nearest(face, foot - way[:, None] * normal)
     outwards = face.normal(found.uv)
