@@ -9,8 +9,8 @@ from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gap
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.matching import matched
-from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
+from toolaxis.shape.seams import seam_warnings
 
 WIDE_GAP = 1e-3
 
@@ -22,8 +22,7 @@ def face_from_record(record: FaceRecord) -> Face:
     ----------
     record : FaceRecord
     """
-    surface = NurbsSurface(record.knots_u, record.knots_v, record.control, record.degree)
-    face = Face(surface, record.loops, record.flip, record.number, kind=record.kind, tolerance=record.tolerance)
+    face = Face(record.surface, record.loops, record.flip, record.number, kind=record.kind, tolerance=record.tolerance)
     return with_kinks(face)
 
 
@@ -46,6 +45,7 @@ def part_from_record(record: ShapeRecord, source: str = "", sha256: str = "") ->
     if found:
         warnings.append(f"{len(found)} edges were found by position: faces touch there but share no edge in the file")
     edges = edges_from_borders(faces, [*record.borders, *found])
+    warnings += seam_warnings(edges)
     selected = tuple(number for number in record.selected if number in numbers)
     return replace(part, edges=edges, warnings=tuple(warnings), selected=selected)
 

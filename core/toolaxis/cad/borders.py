@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 _User: TypeAlias = tuple[FaceRecord, KernelEdge]
 
 FINENESS = 1e-4
+#: Places at which borders are held against each other; where they are farther apart than that, mm, the edge gets places
+#: at this distance, mm, but no more than about so many.
+CHECKED, APART, SPACING, MOST = 17, 2e-4, 0.1, 1000
 
 
 def borders_of(pairs: Iterable[tuple[FaceRecord, KernelFace]]) -> tuple[list[Border], list[Side]]:
@@ -48,9 +51,27 @@ def _side(user: _User) -> Side:
 def _border(one: _User, other: _User) -> Border:
     record, edge = one
     share, points = _polyline(edge)
+    if _apart(one, other, np.linspace(0.0, 1.0, CHECKED)) > APART:
+        share = _between(share, points)
+        points = edge.points(share)
     first, second = (_parameters(user, share) for user in (one, other))
     lefts = [user[1].forward ^ user[0].turned for user in (one, other)]
     return Border((record.number, other[0].number), points, first, second, lefts[0], lefts[1])
+
+
+def _apart(one: _User, other: _User, share: Array) -> float:
+    """How far both faces' own borders are apart at shares of an edge at most, mm."""
+    first, second = (user[0].surface.evaluate(_parameters(user, share)).point for user in (one, other))
+    return float(np.linalg.norm(first - second, axis=1).max())
+
+
+def _between(share: Array, points: Array) -> Array:
+    """Shares with more between them, so that places are no farther apart than what two faces miss changes over."""
+    far = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    step = max(SPACING, float(far.sum()) / MOST)
+    count = np.maximum(np.ceil(far / step), 1).astype(np.int64)
+    inner = [a + (b - a) * np.arange(n) / n for a, b, n in zip(share[:-1], share[1:], count, strict=True)]
+    return np.concatenate([*inner, share[-1:]])
 
 
 def _polyline(edge: KernelEdge) -> tuple[Array, Array]:

@@ -1,6 +1,7 @@
 """A shape as plain arrays: what leaves the CAD kernel, also across processes."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.cad.arcs import ParameterMap
 from toolaxis.shape.adjacency import Border
 from toolaxis.shape.matching import Side
+from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Body
 
 Array = NDArray[np.float64]
@@ -49,6 +51,11 @@ class FaceRecord:
     kind: str
     tolerance: float
     map: ParameterMap
+
+    @cached_property
+    def surface(self) -> NurbsSurface:
+        """The surface."""
+        return NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
 
 
 @dataclass

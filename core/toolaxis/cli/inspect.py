@@ -11,10 +11,15 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.job.survey import FaceSummary, survey
 from toolaxis.report.tables import number, table
 from toolaxis.shape.part import Part
+from toolaxis.shape.seams import GREATEST, Seam
 
 _COLUMNS = (("face", "right"), ("kind", "left"), ("area mm²", "right"), ("size mm (x y z)", "right"),
             ("least radius mm\nconvex", "right"), ("least radius mm\nconcave", "right"),
             ("normals ±°", "right"), ("notes", "left"))
+_SEAM_COLUMNS = (("faces", "left"), ("edge", "left"), ("gap mm", "right"), ("step mm", "right"),
+                 ("near mm (x y z)", "right"), ("notes", "left"))
+#: Seams that the table lists; the JSON document has all of them.
+_SEAMS = 10
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -36,13 +41,24 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         title = f"{given.part}: {len(found)} faces, {len(part.sculptured)} sculptured, file in {part.unit}"
         print_table(table(title, _COLUMNS, [_row(face) for face in found],
                           "* planes, cylinders and cones are not sculptured"))
+        if part.seams:
+            print_table(table(f"faces that do not meet: {len(part.seams)} pairs, the widest gaps first", _SEAM_COLUMNS,
+                              [_seam_row(seam) for seam in part.seams[:_SEAMS]],
+                              f"steps up to {GREATEST:g} mm are not counted as gouge"))
     return 0
 
 
 def _document(part: Part, found: tuple[FaceSummary, ...]) -> dict[str, Any]:
     return {"schema": "toolaxis.inspect", "version": 1, "source": part.source, "sha256": part.sha256,
             "unit": part.unit, "units": {"length": "mm", "angle": "rad"}, "warnings": list(part.warnings),
-            "diagonal": part.diagonal, "faces": [asdict(face) for face in found]}
+            "diagonal": part.diagonal, "faces": [asdict(face) for face in found],
+            "seams": [seam.document for seam in part.seams]}
+
+
+def _seam_row(seam: Seam) -> list[str]:
+    return [f"{seam.faces[0]} and {seam.faces[1]}", "smooth" if seam.kind == "tangent" else seam.kind,
+            number(seam.gap, 4), number(seam.step, 4), " ".join(f"{x:.2f}" for x in seam.point),
+            "counts as gouge" if seam.counted else ""]
 
 
 def _row(face: FaceSummary) -> list[str]:

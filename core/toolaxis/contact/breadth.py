@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.contact.bounds import BETTER
 from toolaxis.contact.descent import BUDGET, DECIDED, ToolData
 from toolaxis.contact.enclosing_numpy import Curved, enclosing_gap_numpy
+from toolaxis.contact.relief import relief_over_numpy
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.cells import Cells
@@ -272,7 +273,7 @@ class Breadth:
 
     def __init__(self, cells: Cells, tool: ToolData, motions: Array, cutoff: Array) -> None:
         self.cells, self.motions = cells, motions
-        self.pieces, self.limits, (_, _, self.resolution) = tool
+        self.pieces, self.limits, (_, _, self.resolution), self.relief = tool
         n, k = len(motions), len(self.pieces)
         self.least, self.given_up = np.tile(cutoff, (n, 1)), np.full((n, 3), np.inf)
         self.face, self.point = np.full((n, 3), -1), np.zeros((n, 3, 3))
@@ -319,6 +320,9 @@ class Breadth:
         face = self.cells.link[front.node, 2]
         limit = self.limits[face, k]
         asked = limit > -np.inf
+        taken_off = relief_over_numpy(self.relief, face, found.shape[:, :3], found.shape[:, 10])
+        lower, upper = (np.where(k == 0, np.maximum(bound, np.minimum(bound + off, self.relief[2])), bound)
+                        for bound, off in zip((lower, upper), taken_off, strict=True))
         best = np.lexsort((-np.where(asked, upper, np.inf), front.query))
         for row in best[np.flatnonzero(upper[best] < self.least[front.query[best], k[best]])]:
             i, c = front.query[row], k[row]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.bounds import bound_over_cell, bound_over_region
+from toolaxis.contact.relief import Relief, relief_over, relieved
 from toolaxis.contact.sight import Bend, Triple, dot, look, row
 from toolaxis.contact.trimming import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
@@ -23,8 +24,9 @@ TREE, WHOLE, CUT = 0, 1, 2
 HALVE_U, HALVE_V, HALVE_MOTION, BRANCH, START = 0, 1, 2, 3, 4
 
 # pieces (k, 8); limits (faces + 1, 3): what each component must keep, -inf where it is not asked, the last row for
-# nodes above faces; height of the tool's lower end, its greatest radius, resolution (negative: only decide)
-ToolData: TypeAlias = tuple[Array, Array, tuple[float, float, float]]
+# nodes above faces; height of the tool's lower end, its greatest radius, resolution (negative: only decide); what is
+# taken off the cutter's depth near edges
+ToolData: TypeAlias = tuple[Array, Array, tuple[float, float, float], Relief]
 # region (k, 2), derivatives (6, 3), spline scratch (6, 26)
 Work: TypeAlias = tuple[Array, Array, Array]
 # items (DEPTH, 7): u, v, du, dv, middle and half of the motion, lowest bound; tags (DEPTH, 4): node, kind, pieces, what
@@ -68,13 +70,14 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         Face, open pieces as bits, whether the centre (1) or all of the cell (2) is known to be of the face, corners
         that trims leave, and the part of the motion.
     """
-    pieces, limits, (low, wide, resolution) = tool
+    pieces, limits, (low, wide, resolution), relief = tool
     (q, a, b, (e, radius, extra), bend), (tip, way, axis) = cell, motion
     face, mask, real, count, middle, half = tag
     found, tags = state
     c = (-half * way[0], -half * way[1], -half * way[2])
     w = (q[0] - tip[0] - middle * way[0], q[1] - tip[1] - middle * way[1], q[2] - tip[2] - middle * way[2])
     frame, view = (w, axis, a, b, c), look(w, axis)
+    ball = radius
     radius += np.sqrt(dot(c, c))
     outside = max(low - view[1], view[0] - wide) - radius
     left, key = 0, np.inf
@@ -100,6 +103,9 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
                 upper = np.inf
         else:
             lower, upper = bound_over_region(frame, piece, (e, radius, wanted), region, count)
+        if k == 0 and relief[0].shape[0] > 0 and (lower < wanted or upper < found[0, k]):
+            less, more = relief_over(relief, face, q, ball)
+            lower, upper = relieved(lower, less, relief[2]), relieved(upper, more, relief[2])
         if upper < found[0, k]:
             found[0, k], found[2, k], found[3, k], found[4, k] = upper, q[0], q[1], q[2]
             tags[k] = face
@@ -387,7 +393,8 @@ def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array],
     motions, cutoff = asked
     forest = (borrowed(data[0]), borrowed(data[1]), borrowed(data[2]), borrowed(data[3]), borrowed(data[4]),
               borrowed(data[5]), borrowed(data[6]), borrowed(data[7]))
-    cutter = (borrowed(tool[0]), borrowed(tool[1]), tool[2])
+    relief = (borrowed(tool[3][0]), borrowed(tool[3][1]), tool[3][2])
+    cutter = (borrowed(tool[0]), borrowed(tool[1]), tool[2], relief)
     work, stack = (borrowed(room[0]), borrowed(room[1]), borrowed(room[2])), (borrowed(room[3]), borrowed(room[4]))
     found, seen = room[5], room[6]
     state = (borrowed(found), borrowed(seen))

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.breadth import descend_many_numpy
 from toolaxis.contact.descent import ToolData, descend_many, scratch
+from toolaxis.contact.relief import no_relief
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.vectors import as_rows
@@ -132,11 +133,13 @@ def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]
     asked = np.asarray((limits > -np.inf).any(axis=0))
     pieces = pieces[asked[pieces[:, 7].astype(int)]]
     n = len(moves)
+    relief = no_relief(len(cells.faces)) if cells.mismatch is None else cells.mismatch.plain
     total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))
     for first in range(0, len(pieces), _PIECES_AT_ONCE):
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
-        values, tags = _descended(cells, (some, np.vstack([limits, limits.max(axis=0)]), shape), moves, cutoff)
+        asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
+        values, tags = _descended(cells, asked_of, moves, cutoff)
         total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), *tags[:, 3:].T))
     return total
 

@@ -14,6 +14,7 @@ from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witne
 from toolaxis.plan.orientation import REASONS
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
+from toolaxis.shape.seams import GREATEST
 
 Array = NDArray[np.float64]
 
@@ -86,16 +87,16 @@ def _proud(found: Witness, feasibility: Feasibility) -> str:
               if face.label == found.label]
     if found.reason != CUTTER or not behind:
         return ""
-    own, allowed = feasibility.face, feasibility.tolerance.gouge
+    own = feasibility.face
     border = behind[0].evaluate(around(behind[0], _BORDER)).point
     near = border[np.argsort(np.linalg.norm(border - found.point, axis=1), kind="stable")[:_NEAREST]]
     foot = nearest(own, near)
     out = float(dot(near - foot.point, own.normal(foot.uv)).max())
-    if out < 0.5 * allowed:
-        return ""
-    return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: their edge is no more accurate "
-            f"than that, and {allowed:g} mm of gouge are allowed; repair the edge, or plan with a larger "
-            "machining tolerance")
+    if out <= GREATEST:
+        return ""  # what faces miss each other by was taken off already
+    return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: steps up to {GREATEST:g} mm "
+            "are taken as inaccuracy of the file and not counted as gouge, this one is higher; repair the edge, or "
+            "plan with a larger machining tolerance")
 
 
 def tally(ledger: Ledger) -> str:

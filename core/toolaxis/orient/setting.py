@@ -12,6 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.cells import Cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
+from toolaxis.shape.seams import Mismatch, mismatch_of
 from toolaxis.tolerances import Tolerance
 
 Array = NDArray[np.float64]
@@ -33,16 +34,19 @@ class Group:
     faces : tuple of Face
     required : (3,) array
         Least signed distance of cutter, shank and holder, mm.
+    mismatch : Mismatch or None
+        By how much the faces stand out over others that the cutter touches: no depth of the cutter's.
     """
 
     role: str
     faces: tuple[Face, ...]
     required: Array
+    mismatch: Mismatch | None = None
 
     @cached_property
     def cells(self) -> Cells:
         """The faces' cells under one root."""
-        return forest(self.faces)
+        return forest(self.faces).missing(self.mismatch)
 
     @cached_property
     def box(self) -> Array:
@@ -90,8 +94,10 @@ def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: P
         touching = tuple(f for f in around if f.number in numbers)
         others = [*(f for f in around if f.number not in numbers), *others]
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
-    groups = (Group(SKIN, own, np.array([allowance - tolerance.gouge, *far])),
-              Group(TOUCHING, touching, np.array([-tolerance.gouge, *far])),
+    edges, touched = () if part is None else part.edges, {one.number for one in own}
+    skin_off, touching_off = mismatch_of(own, edges, touched, allowance), mismatch_of(touching, edges, touched)
+    groups = (Group(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
+              Group(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
               Group(OTHER, tuple(others), np.array([tolerance.cutter_clearance, *far])))
     return tuple(group for group in groups if group.faces)
 

@@ -39,7 +39,8 @@ def part_document(part: Part) -> dict[str, Any]:
             "warnings": list(part.warnings), "selected": list(part.selected),
             "faces": [_face_document(face) for face in part.faces],
             "edges": [{"faces": list(edge.faces), "kind": edge.kind, "angle": edge.angle,
-                       "polyline": np.asarray(edge.polyline).tolist()} for edge in part.edges],
+                       "polyline": np.asarray(edge.polyline).tolist(), "gap": edge.gap.tolist(),
+                       "step": edge.step.tolist()} for edge in part.edges],
             "bodies": [{"kind": body.kind, "faces": list(body.faces), "closed": body.closed} for body in part.bodies]}
 
 
@@ -49,6 +50,14 @@ def _face_from(record: Mapping[str, Any]) -> Face:
     return Face(surface, tuple(np.array(loop, dtype=float) for loop in record["trims"]), record["flip"],
                 record["number"], record["label"], record["kind"], record["tolerance"],
                 (tuple(record["kinks"][0]), tuple(record["kinks"][1])))
+
+
+def _edge_from(record: Mapping[str, Any]) -> Edge:
+    first, second = record["faces"]
+    # A document of an earlier version does not say how far the borders are apart: then nothing is taken off.
+    gap, step = np.array(record.get("gap", ()), dtype=float), np.array(record.get("step", ()), dtype=float)
+    return Edge((first, second), record["kind"], np.array(record["polyline"], dtype=float), record["angle"], gap,
+                step.reshape(-1, 2))
 
 
 def part_from(document: Mapping[str, Any], sha256: str = "") -> Part:
@@ -70,8 +79,7 @@ def part_from(document: Mapping[str, Any], sha256: str = "") -> Part:
                            f"{NAME!r} version {VERSION} is needed")
     try:
         faces = tuple(_face_from(record) for record in document["faces"])
-        edges = tuple(Edge((e["faces"][0], e["faces"][1]), e["kind"], np.array(e["polyline"], dtype=float), e["angle"])
-                      for e in document["edges"])
+        edges = tuple(_edge_from(record) for record in document["edges"])
         bodies = tuple(Body(b["kind"], tuple(b["faces"]), b["closed"]) for b in document["bodies"])
     except (KeyError, TypeError, IndexError) as reason:
         raise InvalidInput(f"part document is incomplete ({reason!r}): make the plan again") from reason

@@ -1,7 +1,7 @@
 """How faces meet: smoothly, over a convex edge, or in a concave corner."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import radians
 
 import numpy as np
@@ -55,12 +55,20 @@ class Edge:
         Points along the edge, mm.
     angle : float
         Greatest angle between the two normals along the edge, rad.
+    gap : (m,) array
+        How far the two faces' own borders lie beside each other at the polyline's points, mm; empty where that is not
+        known.
+    step : (m, 2) array
+        How far there the border of the first face stands out over the second one, along that one's normal, and the
+        second over the first, mm; negative where it lies below.
     """
 
     faces: tuple[int, int]
     kind: str
     polyline: Array
     angle: float = 0.0
+    gap: Array = field(default_factory=lambda: np.empty(0))
+    step: Array = field(default_factory=lambda: np.empty((0, 2)))
 
 
 def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth: float = SMOOTH) -> tuple[Edge, ...]:
@@ -84,14 +92,38 @@ def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth:
     """
     by_number = {face.number: face for face in faces}
     normals = _on_both_sides(by_number, borders, Face.normal)
+    points = _on_both_sides(by_number, borders, _points_at)
     edges = []
     for k, border in enumerate(borders):
         first, second = by_number[border.faces[0]], by_number[border.faces[1]]
         other = normals[k + len(borders)] * (1.0 if consistent(border, first, second) else -1.0)
         kind, angle = _kind(border, border.left ^ first.flip, (normals[k], other), smooth)
-        if border.faces[0] != border.faces[1] or kind != "tangent":
-            edges.append(Edge(border.faces, kind, border.points, angle))
+        if border.faces[0] == border.faces[1] and kind == "tangent":
+            continue
+        gap, step = _mismatch(border.points, points[k] - points[k + len(borders)], (normals[k], other))
+        edges.append(Edge(border.faces, kind, border.points, angle, gap, step))
     return tuple(edges)
+
+
+def _points_at(face: Face, uv: Array) -> Array:
+    return face.evaluate(uv).point
+
+
+def _mismatch(curve: Array, apart: Array, normals: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Distance of two borders beside each other, and how far either stands out over the other's face, mm.
+
+    Parameters
+    ----------
+    curve : (m, 3) array
+        The edge, mm.
+    apart : (m, 3) array
+        From the second border to the first one, mm.
+    normals : tuple of (m, 3) arrays
+        Of the first face and of the second one.
+    """
+    across = _across(apart, curve)
+    first_over_second, second_over_first = dot(across, normals[1]), -dot(across, normals[0])
+    return np.linalg.norm(across, axis=1), np.stack([first_over_second, second_over_first], axis=1)
 
 
 def consistent(border: Border, first: Face, second: Face) -> bool:
@@ -114,17 +146,17 @@ def gaps(faces: Sequence[Face], borders: Sequence[Border]) -> Array:
     faces : sequence of Face
     borders : sequence of Border
     """
-    points = _on_both_sides({face.number: face for face in faces}, borders, lambda face, uv: face.evaluate(uv).point)
-    off = [_beside(side - border.points, border.points)
+    points = _on_both_sides({face.number: face for face in faces}, borders, _points_at)
+    off = [np.linalg.norm(_across(side - border.points, border.points), axis=1).max()
            for side, border in zip(points, [*borders, *borders], strict=True)]
     return np.asarray(np.array(off).reshape(2, -1).max(axis=0))
 
 
-def _beside(away: Array, curve: Array) -> float:
-    """Greatest length of vectors at the points of a curve, without their share along it."""
+def _across(away: Array, curve: Array) -> Array:
+    """Vectors at the points of a curve without their share along it."""
     along = np.gradient(curve, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True).clip(1e-300)
-    return float(np.linalg.norm(away - dot(away, along)[:, None] * along, axis=1).max())
+    return np.asarray(away - dot(away, along)[:, None] * along)
 
 
 def _on_both_sides(faces: dict[int, Face], borders: Sequence[Border],

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
+from toolaxis.shape.seams import Mismatch
 from toolaxis.shape.subdivision import subdivided
 
 Array = NDArray[np.float64]
@@ -49,6 +50,8 @@ class Cells:
         Trim edges that run through leaf k are ``edges[edge_start[k]:edge_start[k + 1]]``.
     edges : (k, 4) array
         u, v of both ends.
+    mismatch : Mismatch or None
+        By how much the faces stand out over their neighbours, which is taken off the depth of a cutter in them.
     """
 
     faces: tuple[Face, ...]
@@ -58,6 +61,7 @@ class Cells:
     leaf: Array
     edge_start: Indices
     edges: Array
+    mismatch: Mismatch | None = None
 
     @cached_property
     def data(self) -> ForestData:
@@ -78,6 +82,20 @@ class Cells:
         extra = np.where(self.link[:, 3] >= 0, self.leaf[self.link[:, 3], 7], 0.0)
         return (np.column_stack([self.shape, extra, self.bend]), self.link, self.leaf, self.edge_start, self.edges,
                 np.concatenate(knots), np.concatenate(control), np.array(layout, dtype=np.int64))
+
+
+    def missing(self, mismatch: Mismatch | None) -> "Cells":
+        """The same cells with a mismatch of their faces; the arrays of `data` are shared.
+
+        Parameters
+        ----------
+        mismatch : Mismatch or None
+        """
+        if mismatch is None:
+            return self
+        new = replace(self, mismatch=mismatch)
+        new.__dict__["data"] = self.data
+        return new
 
 
 _known: "WeakKeyDictionary[Face, dict[float, Cells]]" = WeakKeyDictionary()

@@ -11,6 +11,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.adjacency import Edge, edges_from_borders
 from toolaxis.shape.face import Face
 from toolaxis.shape.matching import matched, sides_of
+from toolaxis.shape.seams import Seam, seam_warnings, seams
 
 Array = NDArray[np.float64]
 
@@ -109,7 +110,7 @@ class Part:
             whole = cls(numbered)
             sides = [side for face in numbered for side in sides_of(face)] if len(numbered) > 1 else []
             edges = edges_from_borders(numbered, matched(sides, whole.diagonal)) if sides else ()
-        return cls(numbered, tuple(edges), (body,), source)
+        return cls(numbered, tuple(edges), (body,), source, warnings=seam_warnings(edges))
 
     @cached_property
     def _by_number(self) -> dict[int, Face]:
@@ -187,6 +188,11 @@ class Part:
         return tuple(face for face in self.faces if face.kind not in PLAIN_KINDS)
 
     @cached_property
+    def seams(self) -> tuple[Seam, ...]:
+        """Pairs of faces that do not quite meet along an edge, the widest gap first."""
+        return seams(self.edges)
+
+    @cached_property
     def box(self) -> Array:
         """Lower and upper corner of the box around sampled points of all faces, (2, 3) mm."""
         boxes = np.array([face.box for face in self.faces])
@@ -210,7 +216,9 @@ class Part:
         """
         m = np.asarray(matrix, dtype=float)
         faces = tuple(face.transformed(m) for face in self.faces)
-        edges = tuple(replace(edge, polyline=edge.polyline @ m[:3, :3].T + m[:3, 3]) for edge in self.edges)
+        scale = float(np.cbrt(abs(np.linalg.det(m[:3, :3]))))
+        edges = tuple(replace(edge, polyline=edge.polyline @ m[:3, :3].T + m[:3, 3], gap=scale * edge.gap,
+                              step=scale * edge.step) for edge in self.edges)
         original = None if self.original is None else self.original.transformed(m)
         return replace(self, faces=faces, edges=edges, original=original)
 

@@ -22,6 +22,7 @@ from toolaxis.verify.sweep import LOOK, least_over_motion, moment
 Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
 Body: TypeAlias = tuple[Array, tuple[Array, Array, Array, Array]]
+TakenOff: TypeAlias = Callable[[Index, Array], Array]
 
 #: Side of the cells at the start, mm; error at which the search ends, mm, or as a share of the distance.
 CELL, RESOLUTION, SHARE = 3.0, 5e-4, 1e-3
@@ -148,12 +149,14 @@ class _Search:
     Attributes
     ----------
     best : _Found
+    taken_off : callable or None
+        As for `clearance`.
     """
 
     def __init__(self, solids: Array, tiles: Tiles, faces: tuple[Face, ...],
-                 workers: tuple[int, Callable[[float, float], None]]) -> None:
+                 workers: tuple[int, Callable[[float, float], None]], taken_off: TakenOff | None = None) -> None:
         self.solids, self.tiles, self.faces = solids, tiles, faces
-        self.workers = workers
+        self.workers, self.taken_off = workers, taken_off
         self.best = _Found(FAR, -1, np.zeros(3), -1)
 
     def floors(self, balls: Array) -> Array:
@@ -196,9 +199,13 @@ class _Search:
         """Distance of each cell's centre, true where it may be near, and the location at which the motion arrives."""
         order = blocks.order
         value, by = np.full(len(order), FAR), np.full(len(order), -1, dtype=np.int64)
-        out = (value, by, np.ascontiguousarray(cells.point[order]), np.ascontiguousarray(cells.on_face[order]))
+        point = np.ascontiguousarray(cells.point[order])
+        off = np.zeros(len(order)) if self.taken_off is None else self.taken_off(cells.owner[order], point)
+        # A place at a step must not end the search for places beside it, which is farther than its distance tells.
+        counts = np.ascontiguousarray(cells.on_face[order] & (off == 0.0))
         for tile in self.tiles:
-            self._lower(tile, blocks, out, float(cells.radius.max()))
+            self._lower(tile, blocks, (value, by, point, counts), float(cells.radius.max()))
+        value = np.maximum(value, np.minimum(value + off, 0.0))
         result, reached = np.empty_like(value), np.empty_like(by)
         result[order], reached[order] = value, by
         return result, reached
@@ -246,7 +253,8 @@ class _Search:
 
 
 def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
-              enough: float = np.inf, threads: int = 1, progress: Progress = NO_PROGRESS) -> Clearance:
+              enough: float = np.inf, taken_off: TakenOff | None = None, threads: int = 1,
+              progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
     Points all over the faces and their borders are measured against the swept solids, more densely around the nearest.
@@ -262,6 +270,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     faces : tuple of Face
     enough : float
         Distance that is asked for, mm: where the tool stays `AMPLE` times as far away, the search ends early.
+    taken_off : callable, optional
+        What faces miss each other by at points (n, 3) of those with some indices (n,), mm: depths are less by that.
     threads : int
         Threads of the compiled kernel; the result does not depend on it.
     progress : Progress
@@ -281,7 +291,7 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, tiles.uncertainty)
     if not faces:
         return nothing
-    search = _Search(solids, tiles, faces, (threads, partial(progress.report, f"{name} clearance")))
+    search = _Search(solids, tiles, faces, (threads, partial(progress.report, f"{name} clearance")), taken_off)
     error = 0.0
     near = search.first_look()
     for _ in range(_ROUNDS - 1):

@@ -13,21 +13,31 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import dot, unit
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
-from toolaxis.verify.rays import loop_points
+from toolaxis.shape.nearest import Nearest, nearest
+from toolaxis.verify.borders import STEP, Line, in_parameters, line_of, on_border
 
 Array = NDArray[np.float64]
 
-#: How near the end of the part must be to count, mm: a cut wider than that is told by rays farther inside.
-NEAR = 0.05
+#: How near the end of the part must be to count, mm, at least and as a multiple of the depth that is allowed: at edges
+#: up to 170 degrees sharp a ray farther inside that is laid bare deeper than allowed tells of a cut that is.
+NEAR, TIMES = 0.05, 12.0
 #: Rays are laid from the end of the part inwards in these steps: the first, mm, and the ratio of the others.
 FIRST, RATIO = 0.0002, 1.05
-#: Distance of a border's points, mm, pieces between them, and shares of a ray's depth that are looked at.
-_STEP, _PIECES, _SHARES = 0.25, 64, (0.25, 0.5, 0.75, 1.0)
+#: Shares of a ray's depth at which the end beside it is looked for; least depth to which a ray is followed, mm.
+_STATIONS, _LEAST = (0.0, 0.25, 0.5, 0.75, 1.0), 1e-6
+#: Turn of a face's normal down a ray up to which it is plane there.
+_PLANE = 1e-7
+#: Ways down an edge within which it is told to be convex, mm; how many rays are looked at at once.
+_DOWN, _AT_ONCE = (NEAR, NEAR / 5, NEAR / 25), 512
 
 
 class End(NamedTuple):
-    """Where the part ends beside rays: whether it does (k,), points on the end, and normals out of the part (k, 3)."""
+    """Where the part ends beside rays.
+
+    there : (k,) whether it does;
+    point, outwards : (stations, k, 3) points on the end, mm, and normals out of the part there: the nearest to places
+    down the ray.
+    """
 
     there: NDArray[np.bool_]
     point: Array
@@ -35,7 +45,7 @@ class End(NamedTuple):
 
 
 def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[tuple[Face, ...], tuple[Face, ...]],
-                   cut: Callable[[Array, Array], Array]) -> Array:
+                   cut: Callable[[Array, Array, Array], Array], allowed: float) -> tuple[Array, NDArray[np.bool_]]:
     """How deep the cut lies below the part's surface, for rays of a face; the rays' own depth far from edges.
 
     Parameters
@@ -45,109 +55,121 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     rays : (m, 3), (m, 3) and (m,) array
         Feet, mm, normals out of the material, and depths to which the rays are laid bare, mm.
     around : tuple of Face, tuple of Face
-        The faces behind convex edges; all other faces that may continue the part beyond a border.
+        The faces of the part that may lie behind a convex edge; all other faces that may continue the part beyond a
+        border.
     cut : callable
-        Depths laid bare, mm, of rays with given feet and normals.
+        Depths laid bare, mm, of rays with given feet and normals that are followed to given depths.
+    allowed : float
+        Depth that a gouge may have, mm.
 
     Returns
     -------
-    (m,) array, mm: the greatest that any ray tells from the foot up to `NEAR` inwards, in steps of 5 %.
+    (m,) array, mm: the greatest that any ray tells from the foot inwards, as far as counts as near, in steps of 5 %;
+    (m,) array: whether the ray is near an edge.
 
     Notes
     -----
     **Properties**: 1. never above the greatest depth of these rays; 2. a cut deeper and wider than a limit is never
-    told to be below it; 3. a ray farther than `NEAR` from every edge keeps its depth.
+    told to be below it; 3. a ray farther than `NEAR`, and `TIMES` the allowed depth, from every edge keeps its depth.
     """
     foot, normal, depth = rays
-    ends = [*(_behind(other, foot, normal) for other in around[0]),
-            _open(face, foot, normal, (*around[0], *around[1]))]
-    rows = np.flatnonzero(np.any([end.there for end in ends], axis=0))
-    told = depth.copy()
-    if len(rows):
-        some = [End(end.there[rows], end.point[rows], end.outwards[rows]) for end in ends]
-        feet, directions = _inwards(face, foot[rows], normal[rows], some)
-        laid_bare = cut(feet.reshape(-1, 3), directions.reshape(-1, 3)).reshape(feet.shape[:2])
-        told[rows] = np.minimum(depth[rows], _told(feet, directions, laid_bare, some))
-    return told
+    reach = max(NEAR, TIMES * allowed)
+    told, near = depth.copy(), np.zeros(len(foot), dtype=bool)
+    for first in range(0, len(foot), _AT_ONCE):
+        rows = np.arange(first, min(first + _AT_ONCE, len(foot)))
+        ends = [*(_behind(other, (foot[rows], normal[rows], depth[rows]), reach) for other in around[0]),
+                _open(face, (foot[rows], normal[rows]), (*around[0], *around[1]), reach)]
+        here = np.any([end.there for end in ends], axis=0)
+        near[rows], rows = here, rows[here]
+        if len(rows):
+            some = [End(end.there[here], end.point[:, here], end.outwards[:, here]) for end in ends if end.there.any()]
+            feet, directions = _inwards(face, (foot[rows], normal[rows]), some, reach)
+            middle = _middle((feet, directions), some)
+            # What lies beyond the middle is nearer to the other face, and may be air on its side.
+            asked = np.maximum(middle, _LEAST)
+            found = cut(feet.reshape(-1, 3), directions.reshape(-1, 3), asked.reshape(-1)).reshape(asked.shape)
+            told[rows] = np.where(middle > 0.0, np.minimum(found, middle), 0.0).max(axis=1)
+    return told, near
 
 
-def _behind(other: Face, foot: Array, normal: Array) -> End:
-    """The face behind a convex edge, where rays stand near it."""
-    end = End(np.zeros(len(foot), dtype=bool), foot.copy(), normal.copy())
-    rows = np.flatnonzero(((foot > other.box[0] - NEAR) & (foot < other.box[1] + NEAR)).all(axis=1))
+def _behind(other: Face, rays: tuple[Array, Array, Array], reach: float) -> End:
+    """The face behind a convex edge, where rays stand near it: how it lies beside them all the way down."""
+    foot, normal, depth = rays
+    end = _nowhere(foot, normal)
+    rows = np.flatnonzero(((foot > other.box[0] - reach) & (foot < other.box[1] + reach)).all(axis=1))
     if not len(rows):
         return end
     found = nearest(other, foot[rows])
     outwards = other.normal(found.uv)
     away = normal[rows] - dot(normal[rows], outwards)[:, None] * outwards
-    steep = np.linalg.norm(away, axis=1) > 1e-3
-    below = nearest(other, found.point - NEAR * unit(np.where(steep[:, None], away, normal[rows]))).distance
-    convex = steep & (found.distance < NEAR) & (below < 0.3 * NEAR)
-    end.there[rows[convex]], end.point[rows], end.outwards[rows] = True, found.point, outwards
+    steep = (np.linalg.norm(away, axis=1) > 1e-3) & (found.distance < reach)
+    rows, point, down = rows[steep], found.point[steep], -unit(away[steep])
+    if not len(rows):
+        return end
+    convex = _goes_down(other, point, down)
+    rows = rows[convex]
+    if len(rows):
+        end.there[rows] = True
+        at = Nearest(*(values[steep][convex] for values in found))
+        end.point[:, rows], end.outwards[:, rows] = _stations(other, at, (foot[rows], normal[rows], depth[rows]),
+                                                                 reach)
     return end
 
 
-def _open(face: Face, foot: Array, normal: Array, others: tuple[Face, ...]) -> End:
+def _goes_down(other: Face, point: Array, down: Array) -> NDArray[np.bool_]:
+    """Whether a face goes on from points of its border down an edge; a small fillet does so for a short way only."""
+    found = np.zeros(len(point), dtype=bool)
+    for step in _DOWN:
+        rows = np.flatnonzero(~found)
+        if len(rows):
+            found[rows] = nearest(other, point[rows] + step * down[rows]).distance < 0.3 * step
+    return found
+
+
+def _stations(other: Face, at: Nearest, rays: tuple[Array, Array, Array], reach: float) -> tuple[Array, Array]:
+    """Points on a face and its normals there, nearest to places down rays: their feet first, (stations, k, 3) each."""
+    foot, normal, depth = rays
+    outwards = other.normal(at.uv)
+    points, ways = np.tile(at.point, (len(_STATIONS), 1, 1)), np.tile(outwards, (len(_STATIONS), 1, 1))
+    # Rays from as far inwards as is looked at come nearer to the other face at this depth, were it plane.
+    flat = dot(normal, outwards)
+    lowest = 2.0 * reach * np.sqrt((1.0 + flat) / np.maximum(1.0 - flat, 1e-12))
+    down = np.minimum(depth, lowest)[:, None] * normal
+    last = nearest(other, foot - down)
+    points[-1], ways[-1] = last.point, other.normal(last.uv)
+    bent = np.flatnonzero(np.linalg.norm(ways[-1] - outwards, axis=1) > _PLANE)
+    for k, share in enumerate(_STATIONS[1:-1] if len(bent) else (), start=1):
+        found = nearest(other, foot[bent] - share * down[bent])
+        points[k, bent], ways[k, bent] = found.point, other.normal(found.uv)
+    return points, ways
+
+
+def _nowhere(foot: Array, normal: Array) -> End:
+    """No end of the part beside any ray."""
+    shape = (len(_STATIONS), 1, 1)
+    return End(np.zeros(len(foot), dtype=bool), np.tile(foot, shape), np.tile(normal, shape))
+
+
+def _open(face: Face, rays: tuple[Array, Array], others: tuple[Face, ...], reach: float) -> End:
     """The face's own border, where rays stand near it and the part does not go on."""
-    end = End(np.zeros(len(foot), dtype=bool), foot.copy(), normal.copy())
-    lines = [_line(face, loop) for loop in face.outline]
-    uv, along = _on_border(face, foot, lines)
+    foot, normal = rays
+    end = _nowhere(foot, normal)
+    lines = [line_of(face, loop) for loop in face.outline]
+    uv, along = on_border(face, foot, lines, reach)
     point = face.evaluate(uv).point
     across = np.cross(along, face.normal(uv))
-    rows = np.flatnonzero((np.linalg.norm(point - foot, axis=1) < NEAR) & (np.linalg.norm(across, axis=1) > 0.0))
+    rows = np.flatnonzero((np.linalg.norm(point - foot, axis=1) < reach) & (np.linalg.norm(across, axis=1) > 0.0))
     if not len(rows):
         return end
     outwards = unit(across[rows])
-    step = _in_parameters(face, uv[rows], 0.1 * NEAR * outwards)
+    step = in_parameters(face, uv[rows], 0.1 * NEAR * outwards)
     sides = face.contains(uv[rows] + step).astype(int) - face.contains(uv[rows] - step).astype(int)
     alone = (sides != 0) & ~_continued(point[rows], lines, others)
-    end.there[rows[alone]], end.point[rows], end.outwards[rows] = True, point[rows], -sides[:, None] * outwards
+    end.there[rows[alone]], end.point[:, rows], end.outwards[:, rows] = True, point[rows], -sides[:, None] * outwards
     return end
 
 
-class _Line(NamedTuple):
-    """A loop as points no farther apart than `_STEP`: parameters, places, and way to the next along the loop, mm."""
-
-    uv: Array
-    point: Array
-    way: Array
-
-
-def _line(face: Face, loop: Array) -> _Line:
-    uv = loop_points(face, loop, _STEP)
-    point = face.evaluate(uv).point
-    return _Line(uv, point, np.cumsum(np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)))
-
-
-def _on_border(face: Face, foot: Array, lines: list[_Line]) -> tuple[Array, Array]:
-    """Parameters of the nearest point of the border to each foot, and the border's direction there."""
-    from scipy.spatial import cKDTree
-
-    uv, along, least = np.zeros((len(foot), 2)), np.zeros((len(foot), 3)), np.full(len(foot), np.inf)
-    share = np.linspace(-1.0, 1.0, 2 * _PIECES + 1)
-    for line in lines:
-        distance, k = cKDTree(line.point).query(foot)
-        rows = np.flatnonzero(distance < np.minimum(least, _STEP) + NEAR)
-        if not len(rows):
-            continue
-        k, count = k[rows], len(line.uv)
-        back, ahead = line.uv[(k - 1) % count] - line.uv[k], line.uv[(k + 1) % count] - line.uv[k]
-        way = np.maximum(-share, 0.0)[:, None] * back[:, None] + np.maximum(share, 0.0)[:, None] * ahead[:, None]
-        place = line.uv[k][:, None] + way
-        point = face.evaluate(place.reshape(-1, 2)).point.reshape(len(rows), -1, 3)
-        step = np.diff(point, axis=1)
-        size = np.maximum(dot(step, step), 1e-300)
-        at = np.clip(dot(foot[rows][:, None] - point[:, :-1], step) / size, 0.0, 1.0)
-        gap = np.linalg.norm(point[:, :-1] + at[..., None] * step - foot[rows][:, None], axis=2)
-        j, i = gap.argmin(axis=1), np.arange(len(rows))
-        better = gap[i, j] < least[rows]
-        found = place[i, j] + at[i, j][:, None] * (place[i, j + 1] - place[i, j])
-        uv[rows[better]], along[rows[better]] = found[better], step[i, j][better]
-        least[rows[better]] = gap[i, j][better]
-    return uv, along
-
-
-def _continued(point: Array, lines: list[_Line], others: tuple[Face, ...]) -> NDArray[np.bool_]:
+def _continued(point: Array, lines: list[Line], others: tuple[Face, ...]) -> NDArray[np.bool_]:
     """Whether the part goes on beyond points of a border: on another face, or on the same beyond a seam."""
     from scipy.spatial import cKDTree
 
@@ -158,46 +180,58 @@ def _continued(point: Array, lines: list[_Line], others: tuple[Face, ...]) -> ND
             found[rows] = nearest(other, point[rows]).distance < NEAR
     for line in lines:
         tree = cKDTree(line.point)
-        for i, near in enumerate(tree.query_ball_point(point, NEAR + _STEP)):
+        for i, near in enumerate(tree.query_ball_point(point, NEAR + STEP)):
             if near:
                 at, whole = line.way[near], line.way[-1]
                 between = np.abs(at - line.way[tree.query(point[i])[1]])
-                straight = np.linalg.norm(line.point[near] - point[i], axis=1) + _STEP
+                straight = np.linalg.norm(line.point[near] - point[i], axis=1) + STEP
                 found[i] |= bool((np.minimum(between, whole - between) > 4.0 * straight).any())
     return found
 
 
-def _in_parameters(face: Face, uv: Array, way: Array) -> Array:
-    """The steps in (u, v) that lead along tangent vectors, (k, 2)."""
-    d = face.evaluate(uv)
-    e, f, g = dot(d.su, d.su), dot(d.su, d.sv), dot(d.sv, d.sv)
-    a, b, size = dot(way, d.su), dot(way, d.sv), np.maximum(e * g - f * f, 1e-300)
-    return np.stack([(g * a - f * b) / size, (e * b - f * a) / size], axis=1)
-
-
-def _inwards(face: Face, foot: Array, normal: Array, ends: list[End]) -> tuple[Array, Array]:
-    """Feet and normals of rays from each foot on, away from the nearest end, (k, steps, 3) each."""
-    room = np.array([np.where(end.there, dot(end.point - foot, end.outwards), np.inf) for end in ends])
-    outwards = np.array([end.outwards for end in ends])[room.argmin(axis=0), np.arange(len(foot))]
-    first = np.clip(room.min(axis=0), 0.0, NEAR)
-    inwards = -unit(outwards - dot(outwards, normal)[:, None] * normal)
+def _inwards(face: Face, rays: tuple[Array, Array], ends: list[End], reach: float) -> tuple[Array, Array]:
+    """Feet and normals of rays from each foot on, away from the ends beside it, (k, steps, 3) each."""
+    foot, normal = rays
+    room = np.array([np.where(end.there, dot(end.point[0] - foot, end.outwards[0]), np.inf) for end in ends])
+    # The nearest end counts most; in a corner all of them do, so that the way leads to where the part is thickest.
+    weight = np.where(np.isfinite(room), np.maximum(reach - np.maximum(room, 0.0), 1e-3 * reach), 0.0)
+    outwards = np.einsum("ek,ekc->kc", weight, np.array([end.outwards[0] for end in ends]))
+    flat = outwards - dot(outwards, normal)[:, None] * normal
+    sound = np.linalg.norm(flat, axis=1) > 1e-9 * weight.sum(axis=0)
+    nearest_one = np.array([end.outwards[0] for end in ends])[room.argmin(axis=0), np.arange(len(foot))]
+    flat = np.where(sound[:, None], flat, nearest_one - dot(nearest_one, normal)[:, None] * normal)
+    first, inwards = np.clip(room.min(axis=0), 0.0, reach), -unit(flat)
     uv = nearest(face, foot).uv
-    d, (du, dv) = face.evaluate(uv), _in_parameters(face, uv, inwards).T[..., None]
+    d, (du, dv) = face.evaluate(uv), in_parameters(face, uv, inwards).T[..., None]
     bend = dot(d.suu * du**2 + 2 * d.suv * du * dv + d.svv * dv**2, normal)
-    count = int(np.ceil(np.log(NEAR / FIRST) / np.log(RATIO)))
+    count = int(np.ceil(np.log(reach / FIRST) / np.log(RATIO)))
     way = np.maximum(FIRST * RATIO ** np.arange(count + 1) - first[:, None], 0.0)[..., None]
     feet = foot[:, None] + way * inwards[:, None] + 0.5 * (bend[:, None, None] * way**2) * normal[:, None]
     return feet, unit(normal[:, None] - bend[:, None, None] * way * inwards[:, None])
 
 
-def _told(foot: Array, normal: Array, depth: Array, ends: list[End]) -> Array:
-    """The greatest distance of what is cut on the rays of each foot from the part's surface."""
-    told = np.zeros(len(foot))
-    for share in _SHARES:
-        way = share * depth
-        place = foot - way[..., None] * normal
-        for end in ends:
-            beside = dot(end.point[:, None] - place, end.outwards[:, None])
-            way = np.where(end.there[:, None], np.minimum(way, beside), way)
-        told = np.maximum(told, way.max(axis=1))
-    return told
+def _middle(rays: tuple[Array, Array], ends: list[End]) -> Array:
+    """How far rays run before they come nearer to an end than to their own face, (k, steps) mm; infinite where never.
+
+    Parameters
+    ----------
+    rays : (k, steps, 3) arrays
+        Feet and normals.
+    ends : list of End
+
+    Notes
+    -----
+    A plane through p with the normal m out of the part is as far from foot - t normal as the foot is where
+    t (1 - m normal) = m (p - foot).  An end that bulges outwards lies within all its planes, and the nearest one tells;
+    a hollow one lies beyond them, and the farthest does.
+    """
+    foot, normal = rays
+    middle = np.full(foot.shape[:2], np.inf)
+    for end in ends:
+        apart = end.point[:, :, None] - foot
+        out = end.outwards[:, :, None]
+        ways = dot(out, apart) / np.maximum(1.0 - dot(out, normal[None]), 1e-12)
+        bulges = np.all(dot(end.point[:-1] - end.point[1:], end.outwards[:-1]) >= 0.0, axis=0)
+        way = np.where(bulges[:, None], ways.min(axis=0), ways.max(axis=0))
+        middle = np.where(end.there[:, None], np.minimum(middle, way), middle)
+    return middle

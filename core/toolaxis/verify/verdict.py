@@ -11,22 +11,18 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import FAR, Clearance, clearance
-from toolaxis.verify.edges import depth_at_edges
+from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.removal import Remains, Removal
 from toolaxis.verify.solids import cutter_solid, frustum_solids
 from toolaxis.verify.task import Task, motion_of, spot
-from toolaxis.verify.walls import wall_depth
 
 Array = NDArray[np.float64]
 
 #: An operation passes when this share of the area is left no higher than this multiple of the scallop limit.
 SHARE, FACTOR = 0.999, 1.02
-
-#: Rays laid bare too deep that are looked at together: near edges each of them is told by a hundred more.
-DEEP = 2_048
 
 NOT_CHECKED = "not checked"
 
@@ -181,44 +177,35 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     cutter = Removal(cl, task.profile, threads=threads, progress=progress)
     cut = partial(cutter.along, height=_standing(task))
 
+    depths = Depths(task, cut)
+
     def measure(face: Face, point: Array, normal: Array) -> Remains:
         left = cut((point + task.allowance * normal, normal), depth=task.depth)
-        deep = np.flatnonzero(left.gouge > task.tolerance.gouge)
-        for start in range(0, len(deep), DEEP):
-            _deepen(task, face, (point, normal), (left, deep[start:start + DEEP]), cut)
+        depths.correct(face, (point, normal), left)
         return left
 
     targets = tuple(surface_map(face, partial(measure, face), spacing) for face in task.targets)
     skin = [_kept_of(surface_map(face, partial(measure, face), spacing, heights=False)) for face in task.skin]
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
-    edge = clearance(cl, ("cutter at convex edges", cutter_solid(task.profile)), task.touching,
-                     enough=task.tolerance.gouge, threads=threads, progress=progress)
+    edge = _behind_edges(task, depths, threads, progress)
     uncertainty = cutter.uncertainty + max(face.tolerance for face in (*task.targets, *task.skin))
     rooms = {**_rooms(task, threads, progress), **machine_rooms(task, progress)}
     return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
 
 
-def _deepen(task: Task, face: Face, rays: tuple[Array, Array], found: tuple[Remains, NDArray[np.int64]],
-            cut: Callable[..., Remains]) -> None:
-    """Replace the depths of some rays by those below the part's surface: less in thin walls and near edges."""
-    left, deep = found
-    point, normal = rays[0][deep], rays[1][deep]
-    foot = point + task.allowance * normal
-    limit = wall_depth(foot, normal, (*task.targets, *task.skin), task.depth)
-    thin = limit < task.depth
-    if thin.any():
-        less = cut((foot[thin], normal[thin]), depth=np.maximum(limit[thin], 1e-3))
-        left.gouge[deep[thin]], left.gouged_by[deep[thin]] = less.gouge, less.gouged_by
-    beyond = tuple(one for one in (*task.targets, *task.skin, *task.surroundings) if one is not face)
-    left.gouge[deep] = depth_at_edges(
-        face, (point, normal, left.gouge[deep]), (task.touching, beyond),
-        lambda feet, ways: cut((feet + task.allowance * ways, ways), depth=task.depth).gouge)
-
-
 def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
     """What is kept of the map of a face of the skin: the rays that something cut or gouged, and how many there were."""
     return one.touched(), len(one.uv)
+
+
+def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) -> Clearance:
+    """How far faces behind convex edges stay out of the cutter; what the file's faces miss each other by is taken off
+    where they do not."""
+    find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
+                   task.touching, enough=task.tolerance.gouge, threads=threads, progress=progress)
+    found = find()
+    return find(taken_off=depths.missed_behind_edges) if -found.distance > task.tolerance.gouge else found
 
 
 def _needed(task: Task, name: str) -> float:

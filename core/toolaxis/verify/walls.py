@@ -1,28 +1,34 @@
-"""Thin walls: how far a ray may be followed inwards before it leaves the part on the other side."""
+"""Thin walls: how far a ray may be followed inwards before it is nearer to the other side of the part."""
+
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.vectors import dot
 from toolaxis.shape.face import Face
-from toolaxis.verify.rays import Rays, default_spacing, face_rays
+from toolaxis.shape.nearest import nearest
+from toolaxis.verify.rays import SPACING, Rays, face_rays
 
 Array = NDArray[np.float64]
 
-#: Share of a wall's thickness to which gouges are followed: each half belongs to its own side.
-SHARE = 0.5
-#: Share of its diagonal by which a face may leave its box; pairs of a ray and a place of a face that are held together.
-BOX, PAIRS = 1e-3, 500_000
+#: A face looks the other way where the cosine of the angle between its normal and the ray's is below this: a ray near
+#: an edge leaves the part through a face that looks ever so little down.
+AGAINST = -0.04
+#: Places on a side of a face where walls are looked for, steps to the middle of one, and rays looked at at once.
+_SIDE, _STEPS, _AT_ONCE = 100, 6, 512
 
 
 def wall_depth(foot: Array, normal: Array, faces: tuple[Face, ...], depth: float) -> Array:
-    """How far rays may be followed inwards: the depth, or less where a face that looks the other way is nearer.
+    """How far rays may be followed inwards: the depth, or to the middle between their face and one that looks the
+    other way.
 
     Parameters
     ----------
     foot, normal : (m, 3) array
         Feet of the rays, mm, and normals out of the material.
     faces : tuple of Face
-        Those that may be on the other side.
+        Those that may be on the other side, the rays' own among them.
     depth : float
         Greatest depth, mm.
 
@@ -32,28 +38,55 @@ def wall_depth(foot: Array, normal: Array, faces: tuple[Face, ...], depth: float
     """
     limit = np.full(len(foot), depth)
     for face in faces:
-        reach = depth + 2.0 * default_spacing(face) + BOX * face.diagonal
-        low, high = face.box[0] - reach, face.box[1] + reach
-        rows = np.flatnonzero(((foot > low) & (foot < high)).all(axis=1))
-        if len(rows):
-            limit[rows] = np.minimum(limit[rows], _through(foot[rows], normal[rows], face_rays(face), depth))
+        near = np.flatnonzero(((foot > face.box[0] - depth) & (foot < face.box[1] + depth)).all(axis=1))
+        for first in range(0, len(near), _AT_ONCE):
+            rows = near[first:first + _AT_ONCE]
+            start = _first_guess(face, foot[rows], normal[rows], depth)
+            some = rows[np.isfinite(start)]
+            if len(some):
+                middle = _middle(face, foot[some], normal[some], start[np.isfinite(start)])
+                limit[some] = np.minimum(limit[some], middle)
     return limit
 
 
-def _through(foot: Array, normal: Array, rays: Rays, depth: float) -> Array:
-    """The same for one face: infinite where it is not on the other side."""
+def _first_guess(face: Face, foot: Array, normal: Array, depth: float) -> Array:
+    """About how far along rays a face looks the other way, mm; infinite where it does not."""
     from scipy.spatial import cKDTree
 
-    limit = np.full(len(foot), np.inf)
-    tree, middle = cKDTree(rays.point), foot - 0.5 * depth * normal
-    radius = float(np.hypot(0.5 * depth, 1.5 * rays.spacing))
-    count = tree.query_ball_point(middle, radius, return_length=True)
-    for some in np.split(np.arange(len(foot)), np.flatnonzero(np.diff(np.cumsum(count) // PAIRS)) + 1):
-        for i, near in zip(some, tree.query_ball_point(middle[some], radius), strict=True):
-            way = foot[i] - rays.point[near]
-            inwards = way @ normal[i]
-            aside = np.linalg.norm(way - inwards[:, None] * normal[i], axis=1)
-            wall = (inwards > 0) & (aside <= 1.5 * rays.spacing) & (rays.normal[near] @ normal[i] < -0.2)
-            if wall.any():
-                limit[i] = SHARE * float(inwards[wall].min())
-    return limit
+    start = np.full(len(foot), np.inf)
+    rays = _places(face)
+    radius = np.hypot(0.5 * depth, 1.5 * rays.spacing)
+    for i, near in enumerate(cKDTree(rays.point).query_ball_point(foot - 0.5 * depth * normal, radius)):
+        inwards = (foot[i] - rays.point[near]) @ normal[i]
+        wall = (inwards > 0) & (rays.normal[near] @ normal[i] < AGAINST)
+        if wall.any():
+            start[i] = min(float(np.median(inwards[wall])), depth)
+    return start
+
+
+def _places(face: Face) -> Rays:
+    """Places all over a face, fewer on a large one than it is judged at."""
+    return face_rays(face, max(SPACING, sqrt(face.area) / _SIDE))
+
+
+def _middle(face: Face, foot: Array, normal: Array, start: Array) -> Array:
+    """How far along rays the middle of a wall is whose other side a face is, mm; infinite where it is no wall there.
+
+    Where the nearest place of the face lies across the wall, its plane tells how far the middle is; a few steps lead to
+    the place that is nearest to the middle itself.
+    """
+    way = start
+    for _ in range(_STEPS):
+        found = nearest(face, foot - way[:, None] * normal)
+        outwards = face.normal(found.uv)
+        against = dot(outwards, normal)
+        across = against < AGAINST
+        way = np.where(across, dot(outwards, found.point - foot) / np.maximum(1.0 - against, 1.0), 1.5 * way)
+        way = np.maximum(way, 0.0)
+    found = nearest(face, foot - way[:, None] * normal)
+    outwards = face.normal(found.uv)
+    beyond = dot(outwards, found.point - foot + way[:, None] * normal)
+    # The way to the face must be square to it and as long as the way to the ray's foot: else the face ends before.
+    sound = (dot(outwards, normal) < AGAINST) & (found.distance <= 1.02 * np.abs(beyond) + 1e-6)
+    sound &= np.abs(beyond - way) <= 0.02 * way + 1e-6
+    return np.asarray(np.where(sound, way, np.inf))
