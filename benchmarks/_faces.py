@@ -16,16 +16,17 @@ _KINDS = (("memory", r"MemoryError|out of memory|Unable to allocate"),
           ("exception", r"^failed\b"),
           ("not found in limit", r"within the limit|limit of work|work limit"),
           ("left to clean-up", r"left to clean-up"),
-          ("normals spread", r"the normals of face|limits and normals leave no axis|more than a hemisphere"))
+          ("normals spread", r"the normals of face|its normals spread|limits and normals leave no axis|"
+                             r"more than a hemisphere"))
 #: The same by the constraint that an axis breaks, where nothing else is known.
 _CONSTRAINTS = (("gouge", r"gouges"), ("holder", r"the holder"), ("shank", r"the shank"),
-                ("cutter at walls", r"the cutter (meets|comes)"), ("wanders", r"wanders"),
-                ("normals spread", r"leans|no axis sees"), ("limits", r"outside the limits"))
+                ("cutter at walls", r"the cutter (meets|comes|collides|is not)"), ("wanders", r"wanders|flat bottom"),
+                ("normals spread", r"leans|no axis sees|deg from a normal"), ("limits", r"outside the limits"))
 #: What the axes of a search were refused for, as the reasons count them.
 _COUNTED = {"gouge": "with a gouge", "holder": "with a collision of the holder",
             "shank": "with a collision of the shank", "cutter at walls": "with a collision of the cutter",
-            "wanders": "with a contact that wanders", "limits": "outside the limits",
-            "normals spread": "on the back of the surface"}
+            "wanders": "(?:with a contact that wanders|too near to a normal)", "limits": "outside the limits",
+            "normals spread": "(?:on the back of the surface|too far from a normal)"}
 _STAGE, _JUDGED = re.compile(r"^face (\d+)\S* \(\d+ of \d+\)"), re.compile(r"^(\S+) \(\d+ of \d+\)")
 
 

@@ -111,6 +111,11 @@ def test_open_faces_are_grouped_by_what_most_axes_break() -> None:
     tally = "of 1404 axes 300 on the back of the surface, 1063 with a gouge, 41 with a collision of the holder"
     assert kind_of(["no axis found: the holder meets face 3 by 2 mm at (0, 0, 0)", tally]) == "gouge"
     assert kind_of(["the normals of face 3 fill more than a hemisphere, and no axis is within"]) == "normals spread"
+    now = "1404 axes tested: 300 too far from a normal, 41 too near to a normal for the flat bottom, 9 with a gouge"
+    assert kind_of([now]) == "wanders"
+    assert kind_of(["infeasible: no single axis reaches all of face 3: its normals spread up to"]) == "normals spread"
+    assert kind_of(["the axis is only 0.10 deg from a normal of face 1: a flat bottom needs a lead"]) == "wanders"
+    assert kind_of(["the axis is 93.10 deg from a normal of face 1, and the cutter reaches"]) == "normals spread"
     assert kind_of(["failed: IndexError: index 0 is out of bounds"]) == "exception"
     assert kind_of(["the shank meets face 7 by 1 mm at (0, 0, 0)"]) == "shank" and kind_of(["?"]) == "other"
 

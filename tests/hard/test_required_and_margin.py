@@ -20,6 +20,6 @@ def test_a_refusal_for_want_of_room_adds_up() -> None:
     floor = _flat([0, 0, 0], [14, 0, 0], [0, 8, 0])
     found = ta.best_axis(floor, tool, 0.2, "cone:0,0,1,0.5", obstacles=plates)
     text = next(why for why in found.reasons if "comes within" in why)
-    told = re.search(r"within ([\d.]+) mm of face \d+, less than the required ([\d.]+) mm and ([\d.]+) mm to", text)
+    told = re.search(r"within ([\d.]+) mm of face \d+ at .*; ([\d.]+) mm is required, and ([\d.]+) mm more to", text)
     distance, required, margin = map(float, told.groups())
     assert distance <= required + margin + 1e-9

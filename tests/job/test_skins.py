@@ -139,3 +139,15 @@ def test_lists_with_joined_faces() -> None:
         ta.plan(part, TOOL, 0.1, faces=[(1, 2, 3)])
     with pytest.raises(InvalidInput, match=r"face 2 is joined to face 1\+2"):
         ta.plan(part, TOOL, 0.1, faces="1+2,2")
+
+
+def test_skins_that_join_nothing_say_so() -> None:
+    """Found: `--faces skins` that joined nothing said nothing."""
+    apart = ta.load([sheet(), sheet(away=40.0)])
+    found, left = with_joined(apart, "skins")
+    assert left is None and [face.label for face in found.faces] == ["1", "2"]
+    (said,) = (text for text in found.warnings if "skins" in text)
+    assert said == ("--faces skins joins nothing: each of the 2 sculptured faces is machined by itself, since none "
+                    "continues another one smoothly")
+    joined, _ = with_joined(ta.load(patches(sheet())), "skins")
+    assert not any("joins nothing" in text for text in joined.warnings)

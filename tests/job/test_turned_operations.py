@@ -131,7 +131,7 @@ def test_where_the_proof_refuses_the_copy_the_axis_is_searched_anew_and_it_is_sa
     assert planner.asked == [4] and not made.done and made.number not in found.blades.copies
     assert made.orientation.reasons[-1] == "searched"
     assert "the turned axis of op01-face2 was refused here" in made.orientation.reasons[0]
-    assert "meets face 10" in made.orientation.reasons[0] or "of face 10" in made.orientation.reasons[0]
+    assert "with face 10" in made.orientation.reasons[0] or "of face 10" in made.orientation.reasons[0]
     assert sorted(found.blades.copies.values()) == [1, 1]
 
 

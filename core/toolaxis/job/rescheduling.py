@@ -13,6 +13,7 @@ from toolaxis.orient.blade import CLEARANCE, Swing
 from toolaxis.orient.blade_path import Rescheduled, reschedule_path
 from toolaxis.orient.moving import kept, prove_moving, spans_of
 from toolaxis.orient.proof import COMPONENTS
+from toolaxis.orient.reasons import place
 from toolaxis.orient.setting import OTHER, SKIN, Group
 from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
 from toolaxis.post.locations import CutterLocations
@@ -145,8 +146,10 @@ def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, pr
 
 
 def _said(witness: Witness) -> str:
-    where = f"{f'face {witness.label}' if witness.label else 'the part'} at {np.round(witness.point, 2).tolist()}"
+    where = f"face {witness.label} at {place(witness.point)}" if witness.label else "the part"
     name = "cutter" if witness.reason == GOUGE else COMPONENTS[max(witness.reason - CUTTER, 0)]
     if witness.distance < 0:
         return f"the {name} goes {-witness.distance:.3f} mm into {where}"
+    if not np.isfinite(witness.distance):
+        return f"the {name} comes too near to {where}"
     return f"the {name} comes within {witness.distance:.3f} mm of {where}"

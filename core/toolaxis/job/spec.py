@@ -286,7 +286,9 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
         found = skins(part)
         for numbers in found.joined:
             part = join(part, numbers)
-        return replace(part, selected=()).with_warnings(*found.reasons), None
+        alone = () if found.joined else (f"--faces skins joins nothing: each of the {len(found.single)} sculptured "
+                                         "faces is machined by itself" + _where_apart(found.reasons),)
+        return replace(part, selected=()).with_warnings(*alone, *found.reasons), None
     if not isinstance(faces, Iterable) or isinstance(faces, str):
         return part, faces
     rows: list[Any] = []
@@ -297,6 +299,11 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
             row = members[0]
         rows.append(row)
     return part, rows
+
+
+def _where_apart(reasons: tuple[str, ...]) -> str:
+    """What follows where no skin is found: nothing where reasons follow that say why."""
+    return "" if reasons else ", since none continues another one smoothly"
 
 
 def with_rings(part: Part, faces: Any) -> tuple[Part, Any]:

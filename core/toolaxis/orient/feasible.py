@@ -275,6 +275,19 @@ class Feasibility:
             return Witness(LIMITS, float(self.limits.excess(t)[0]), words=refusal(self.limits, t))
         return self.turned_away(t) or self.worst(t, self.dense)
 
+    def screened(self, axis: Array) -> Witness | None:
+        """What screening has against an axis, at its own contacts; None where it has nothing, or knows no place.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        some = self.sparse
+        trouble = self.trouble(axis, some)
+        hit = trouble.reason != FREE
+        bad = hit & ~trouble.wall
+        return self.witness_of(trouble, bad if bad.any() else hit, some.uv)
+
     def turned_away(self, axis: Array) -> Witness | None:
         """What the angles between an axis and all normals forbid, proven between samples too, or None.
 

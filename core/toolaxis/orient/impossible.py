@@ -7,7 +7,7 @@ import numpy as np
 from toolaxis.contact.descent import BUDGET
 from toolaxis.contact.distances import bounded, motions
 from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.reasons import place
+from toolaxis.orient.reasons import place, told_apart
 from toolaxis.orient.setting import SKIN
 from toolaxis.orient.standing import FINE
 from toolaxis.shape.face import Face
@@ -33,9 +33,12 @@ def spread_too_wide(feasibility: Feasibility) -> str:
     if cap.centre.any() and cap.radius <= most + 1e-9:
         return ""
     rim = feasibility.face.evaluate(feasibility.normals.kept[cap.rim]).point
-    size = f"a cap of {degrees(cap.radius):.1f} deg" if cap.centre.any() else "more than a hemisphere"
-    return (f"the normals of face {feasibility.face.label} fill {size}, and no axis is within {degrees(most):.1f} deg "
-            f"of those at {', '.join(place(p) for p in rim)}")
+    spread = degrees(cap.radius) if cap.centre.any() else 90.0
+    angle, limit = told_apart(spread, degrees(most), 1)
+    size = f"up to {angle} deg to all sides of their middle" if cap.centre.any() else "over more than a hemisphere"
+    return (f"no single axis reaches all of face {feasibility.face.label}: its normals spread {size}, as at "
+            f"{', '.join(place(p) for p in rim)}, and the cutter reaches {limit} deg from the axis; divide the face "
+            "into sub-surfaces with an axis each (--regions N)")
 
 
 def tight_fillet(face: Face, tool: Tool) -> str:
@@ -84,5 +87,6 @@ def corner_too_large(feasibility: Feasibility) -> str:
     i = int(np.argmax(depth))
     if depth[i] <= limit:
         return ""
-    return (f"a ball of the corner radius {radius:g} mm gouges face {feasibility.face.label} by {depth[i]:.3f} mm in "
-            f"the contact at {place(some.point[i])}, and every position of the cutter there contains it")
+    deep, allowed = told_apart(float(depth[i]), limit, 3)
+    return (f"the corner radius {radius:g} mm gouges face {feasibility.face.label} by {deep} mm at "
+            f"{place(some.point[i])} with every axis; {allowed} mm is allowed: use a smaller corner radius")

@@ -22,11 +22,11 @@ from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held,
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.reasons import direction, nothing_to_cut, sentence, tally, why_none
+from toolaxis.orient.reasons import Refusal, direction, main_first, nothing_to_cut, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search
-from toolaxis.orient.verdicts import BACK, CUTTER, Witness
+from toolaxis.orient.verdicts import BACK, CUTTER, FREE, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
@@ -278,7 +278,7 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     attempts : int
         How often each is tried, repaired between; 1 to take them as they are.
     """
-    refused: list[str] = []
+    refused: list[Refusal] = []
     found = least_made(job.worth, held(ledger, found), job.made)
     best: tuple[float, Orientation, int] | None = None
     for k in range(len(found)):
@@ -290,15 +290,15 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     if best is not None:
         _, accepted, k = best
         others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
-        return replace(accepted, reasons=(*accepted.reasons, *refused, tally(ledger)), map=ledger.map(),
+        return replace(accepted, reasons=(*accepted.reasons, *(one.words for one in refused), tally(ledger)),
+                       map=ledger.map(),
                        evaluations=ledger.evaluations, lobes=others)
     if ledger.proven:
         outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
     else:
         outcome, lead = "not_found", "no axis found"
-    if not found:
-        refused = [f"{lead}: {why_none(ledger)}"]
-    return Orientation(None, outcome=outcome, reasons=(*refused, tally(ledger)), map=ledger.map(),
+    words = main_first(refused) if found else [f"{lead}: {why_none(ledger)}"]
+    return Orientation(None, outcome=outcome, reasons=(*words, tally(ledger)), map=ledger.map(),
                        evaluations=ledger.evaluations)
 
 
@@ -306,7 +306,7 @@ def _sound(job: Task, one: Candidate) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str],
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[Refusal],
               attempts: int) -> tuple[Orientation | None, float]:
     """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused.
 
@@ -321,10 +321,12 @@ def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[str],
             result, proof, missed = finished(job, candidate)
             if proof.witness is None:
                 if missed > _MISSED:
-                    refused.append(f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face")
+                    words = f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face"
+                    refused.append(Refusal(FREE, missed, words))
                 return result, missed
             witness = proof.witness
-        refused.append(f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}")
+        words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
+        refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
         candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
     return None, 0.0

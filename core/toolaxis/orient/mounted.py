@@ -208,7 +208,8 @@ def with_room(limits: AxisLimits | None, axis: Array, found: Witness, required: 
         if all(part is None for part in parts):
             return None
         return AllOf(tuple(new or old for new, old in zip(parts, limits.parts, strict=True)))
-    if not isinstance(limits, Mounting) or not found.words or not limits.judges_bodies or not len(limits.reached):
+    if not isinstance(limits, Mounting) or not found.words or not limits.judges_bodies or not len(limits.reached) \
+            or not np.isfinite(found.distance):
         return None
     rows = limits.solutions(axis)
     if not len(rows) or limits.out_of_travel(limits.reached, axis):

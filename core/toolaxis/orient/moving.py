@@ -19,10 +19,10 @@ from toolaxis.contact.distances import bounded, judged, motions
 from toolaxis.contact.gouge import depth_from_distance
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.orient.crossing import OVER
-from toolaxis.orient.proof import COMPONENTS, Proof
+from toolaxis.orient.proof import COMPONENTS, Proof, worst_motion
 from toolaxis.orient.setting import OTHER, SKIN, Group
-from toolaxis.orient.standing import COARSE, FINE
-from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
+from toolaxis.orient.standing import FINE
+from toolaxis.orient.verdicts import Witness
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.assembly import Tool
 
@@ -245,13 +245,4 @@ def _witness(tool: Tool, group: Group, spans: Spans, required: Array) -> Witness
 
 
 def _worst(tool: Tool, group: Group, moves: Array, required: Array) -> Witness:
-    fine = FINE if group.role != OTHER else COARSE
-    table = np.tile(np.where(np.isneginf(required), -inf, 0.0), (len(group.faces), 1))
-    found = bounded(group.cells, tool, moves, np.maximum(required, 0.0) + 2 * fine, fine, table)
-    known = [name == "cutter" or name in tool.outlines for name in COMPONENTS]
-    amount = np.where(np.isneginf(required) | ~np.array(known), -inf, required - found.lower)
-    i, c = np.unravel_index(int(np.argmax(amount)), amount.shape)
-    code = GOUGE if group.role == SKIN and c == 0 else CUTTER + int(c)
-    k = int(found.face[i, c])
-    return Witness(code, max(float(amount[i, c]), 0.0), group.faces[k].label if k >= 0 else "", found.point[i, c],
-                   distance=float(found.lower[i, c]))
+    return worst_motion(tool, group, moves, required, np.maximum(required, 0.0))

@@ -21,6 +21,8 @@ COMPONENTS = ("cutter", "shank", "holder")
 _BATCH = 400
 #: Resolution of reported clearances, mm.
 _ROUGH = 0.005
+#: How far the nearest face of a motion is looked for that turns out to keep its distances, mm.
+_FAR = 50.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,16 +104,42 @@ def _broken(tool: Tool, group: Group, moves: Array) -> Witness | None:
     """The worst motion that is not proven to keep its distances from a group, or None."""
     blocked = judged(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
     rows = np.flatnonzero(blocked >= 0)
-    if not len(rows):
-        return None
+    return worst_motion(tool, group, moves[rows], group.required, group.required) if len(rows) else None
+
+
+def worst_motion(tool: Tool, group: Group, moves: Array, required: Array, cutoff: Array) -> Witness:
+    """The worst of motions that were not proven to keep their distances from a group.
+
+    Parameters
+    ----------
+    tool : Tool
+    group : Group
+    moves : (n, 3, 3) array
+        At least one.
+    required : (3,) array
+        Distances to keep, mm; -inf for components that are not asked for.
+    cutoff : (3,) array
+        Distances beyond which motions are not told apart, mm.
+
+    Notes
+    -----
+    A motion that lies so near to its limit that deciding gave it up may turn out to keep it when it is measured: of
+    that the nearest face is named all the same.
+    """
     fine = FINE if group.role != OTHER else COARSE
-    found = bounded(group.cells, tool, moves[rows], group.required + 2 * fine, fine)
-    amount = group.required - found.lower
-    i, c = np.unravel_index(int(np.argmax(settled(amount))), amount.shape)
-    code = GOUGE if group.role == SKIN and c == 0 else CUTTER + int(c)
+    asked = np.array([name == "cutter" or name in tool.outlines for name in COMPONENTS]) & ~np.isneginf(required)
+    table = np.tile(np.where(asked, 0.0, -np.inf), (len(group.faces), 1))
+    found = bounded(group.cells, tool, moves, cutoff + 2 * fine, fine, table)
+    amount = np.where(asked, required - found.lower, -np.inf)
+    i, c = (int(k) for k in np.unravel_index(int(np.argmax(settled(amount))), amount.shape))
+    if found.face[i, c] < 0:
+        found, i = bounded(group.cells, tool, moves[[i]], _FAR, fine, table), 0
     k = int(found.face[i, c])
-    return Witness(code, max(float(amount[i, c]), 0.0), group.faces[k].label if k >= 0 else "", found.point[i, c],
-                   distance=float(found.lower[i, c]))
+    missed = max(float(required[c] - found.lower[i, c]), 0.0)
+    code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
+    if k < 0:
+        return Witness(code, missed)
+    return Witness(code, missed, group.faces[k].label, found.point[i, c], distance=float(found.lower[i, c]))
 
 
 def _least(tool: Tool, group: Group, moves: Array, components: tuple[int, ...], most: float) -> dict[int, float]:

@@ -1,11 +1,16 @@
 """Why an axis is refused, in sentences: which face, where, which constraint, and by how much."""
 
+from collections import Counter
+from collections.abc import Sequence
 from math import degrees
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.vectors import dot
+from toolaxis.contact.gouge import depth_from_distance
+from toolaxis.numeric.ties import settled
+from toolaxis.numeric.vectors import angle_between, dot
 from toolaxis.orient.contacts import around
 from toolaxis.orient.feasible import Feasibility
 from toolaxis.orient.ledger import Ledger
@@ -15,13 +20,22 @@ from toolaxis.plan.orientation import REASONS
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.seams import GREATEST
+from toolaxis.tolerances import Tolerance
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
-COUNTED = ("free", "outside the limits", "on the back of the surface",
-           "with a contact that wanders over the flat bottom", "with a gouge", "with a collision of the cutter",
-           "with a collision of the shank", "with a collision of the holder")
-
+_COMPONENTS = ("cutter", "shank", "holder")
+#: What axes are refused for, in the order of `REASONS`.
+_FOR = ("", "by the limits", "as too far from a normal", "as too near to a normal", "for a gouge",
+        "for a collision of the cutter", "for a collision of the shank", "for a collision of the holder")
+#: What axes have passed that get so far, by the first reason that is found out afterwards.
+_PASSED = {LIMITS: "", BACK: " inside the limits", WANDERS: " that see all of the face",
+           GOUGE: " that limits and normals allow"}
+#: What an axis misses, in the order of `REASONS`: after its count.
+COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal for the flat bottom",
+           "with a gouge", "with a collision of the cutter", "with a collision of the shank",
+           "with a collision of the holder")
 
 #: Points of a border, and how many of them next to a place are looked at for a step at an edge.
 _BORDER, _NEAREST = 400, 20
@@ -37,6 +51,27 @@ def direction(axis: Array) -> str:
     return "(" + ", ".join(f"{round(float(x), 4) + 0.0:g}" for x in axis) + ")"
 
 
+def amount(value: float) -> str:
+    """A length that is not negative as messages write it, mm: two decimals, more where there would be nothing left."""
+    return f"{value:.2f}" if value >= 0.095 or value == 0 else f"{value:.2g}" if value >= 1e-4 else "0.0001"
+
+
+def told_apart(value: float, limit: float, digits: int) -> tuple[str, str]:
+    """A value and the limit that it misses, with as many decimals as it takes to tell them apart.
+
+    Parameters
+    ----------
+    value, limit : float
+    digits : int
+        The fewest decimals.
+    """
+    for more in range(digits, 10):
+        pair = f"{abs(value):.{more}f}", f"{abs(limit):.{more}f}"
+        if pair[0] != pair[1]:
+            break
+    return pair
+
+
 def sentence(found: Witness, feasibility: Feasibility) -> str:
     """What one witness says.
 
@@ -45,29 +80,82 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
     found : Witness
     feasibility : Feasibility
     """
-    own, tolerance = feasibility.face.label, feasibility.tolerance
-    at = f"at {place(found.point)}"
     if found.words:
         return found.words
     if found.reason == LIMITS:
-        return f"the axis is {degrees(found.amount):.2f} deg outside the limits"
-    if found.reason == BACK:
-        return (f"the axis leans {degrees(found.amount):.2f} deg farther than "
-                f"{degrees(feasibility.greatest_angle):.1f} deg from the normal of face {own} {at}: the cutter's "
-                "bottom does not reach there")
-    if found.reason == WANDERS:
-        least = degrees(feasibility.least_angle)
-        angle = max(least - degrees(found.amount), 0.0)
-        return (f"the axis comes within {angle:.2f} deg of a normal of face {own} {at}, less than {least:.2f} "
-                "deg: the contact wanders over the flat bottom")
+        return f"the axis is {degrees(abs(found.amount)):.2f} deg outside the limits"
+    if found.reason in (BACK, WANDERS):
+        return _angle(found, feasibility)
     if found.reason == GOUGE:
-        return f"the cutter gouges face {found.label or own} by {-found.distance:.3f} mm {at}"
-    name = ("cutter", "shank", "holder")[found.reason - CUTTER]
-    needed = (tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)[found.reason - CUTTER]
-    how = f"meets face {found.label} by {-found.distance:.2g} mm" if found.distance <= 0 else (
-        f"comes within {found.distance:.3g} mm of face {found.label}, less than the required {needed:g} mm and "
-        f"{MARGIN:g} mm to be sure,")
-    return f"the {name} {how} {at}{_proud(found, feasibility)}"
+        return _gouge(found, feasibility)
+    return _collision(found, feasibility)
+
+
+def _at(found: Witness) -> str:
+    """Where it happens; nothing where that is not known."""
+    return f" at {place(found.point)}" if np.isfinite(found.point).all() else ""
+
+
+def _angle(found: Witness, feasibility: Feasibility) -> str:
+    """An axis that leans too far from a normal, or too little."""
+    of = f"a normal of face {feasibility.face.label}{_at(found)}"
+    if found.reason == BACK:
+        most = degrees(feasibility.greatest_angle)
+        angle, limit = told_apart(most + degrees(abs(found.amount)), most, 2)
+        return f"the axis is {angle} deg from {of}, and the cutter reaches {limit} deg at most"
+    least = degrees(feasibility.least_angle)
+    angle, limit = told_apart(max(least - degrees(abs(found.amount)), 0.0), least, 2)
+    return f"the axis is only {angle} deg from {of}: a flat bottom needs a lead of {limit} deg"
+
+
+def _gouge(found: Witness, feasibility: Feasibility) -> str:
+    """A cutter that goes too deep into the skin."""
+    which, allowed = found.label or feasibility.face.label, feasibility.tolerance.gouge
+    tool, stock = feasibility.tool, feasibility.allowance
+    below = f" below the allowance of {stock:g} mm" if stock > 0 else ""
+    depth = float(depth_from_distance(tool, np.asarray(found.distance), stock))
+    if not np.isfinite(depth):
+        return f"the cutter gouges face {which} by more than the allowed {allowed:g} mm{_at(found)}"
+    deep, limit = told_apart(depth, allowed, 3)
+    if depth > allowed:
+        return f"the cutter gouges face {which} by {deep} mm{below}{_at(found)}; {limit} mm is allowed"
+    return (f"the cutter comes too close to the allowed gouge of {allowed:g} mm on face {which}{_at(found)}: it goes "
+            f"{deep} mm deep{below}, and the rest is needed between the points of a pass")
+
+
+def _collision(found: Witness, feasibility: Feasibility) -> str:
+    """A component that is too near to a face."""
+    name, needed = _COMPONENTS[found.reason - CUTTER], _needed(feasibility.tolerance)[found.reason - CUTTER]
+    which = f"face {found.label}" if found.label else "what stands around"
+    behind = found.reason == CUTTER and _behind_edges(found, feasibility)
+    if not np.isfinite(found.distance):
+        return f"the {name} comes too near to {which}{_at(found)}: {needed:g} mm is required"
+    if behind:
+        allowed = feasibility.tolerance.gouge
+        deep, limit = told_apart(max(-found.distance, 0.0), allowed, 3)
+        if -found.distance > allowed:
+            return (f"the cutter gouges {which} behind an edge by {deep} mm{_at(found)}; {limit} mm is allowed"
+                    f"{_proud(found, behind[0], feasibility)}")
+        return (f"the cutter comes too close to the allowed gouge of {allowed:g} mm on {which} behind an edge"
+                f"{_at(found)}: it goes {deep} mm deep{_proud(found, behind[0], feasibility)}")
+    if found.distance < 0:
+        return f"the {name} collides with {which} by {amount(-found.distance)} mm{_at(found)}"
+    if found.distance <= needed + MARGIN:
+        near, _ = told_apart(found.distance, needed + MARGIN, 2)
+        return (f"the {name} comes within {near} mm of {which}{_at(found)}; {needed:g} mm is required, and {MARGIN:g} "
+                "mm more to be sure")
+    return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
+
+
+def _needed(tolerance: Tolerance) -> tuple[float, float, float]:
+    """Clearances of cutter, shank and holder, mm."""
+    return tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance
+
+
+def _behind_edges(found: Witness, feasibility: Feasibility) -> list[Face]:
+    """The face that a witness names where it meets the machined skin at a convex edge; none where it does not."""
+    return [face for group in feasibility.groups if group.role == TOUCHING for face in group.faces
+            if face.label == found.label]
 
 
 def nothing_to_cut(face: Face) -> str:
@@ -81,26 +169,22 @@ def nothing_to_cut(face: Face) -> str:
             "passes; divide the face (--regions), or use a smaller cutter")
 
 
-def _proud(found: Witness, feasibility: Feasibility) -> str:
+def _proud(found: Witness, behind: Face, feasibility: Feasibility) -> str:
     """Where the cutter meets a face behind a convex edge because that face stands out over the machined one."""
-    behind = [face for group in feasibility.groups if group.role == TOUCHING for face in group.faces
-              if face.label == found.label]
-    if found.reason != CUTTER or not behind:
-        return ""
     own = feasibility.face
-    border = behind[0].evaluate(around(behind[0], _BORDER)).point
+    border = behind.evaluate(around(behind, _BORDER)).point
     near = border[np.argsort(np.linalg.norm(border - found.point, axis=1), kind="stable")[:_NEAREST]]
     foot = nearest(own, near)
     out = float(dot(near - foot.point, own.normal(foot.uv)).max())
     if out <= GREATEST:
         return ""  # what faces miss each other by was taken off already
-    return (f", where face {found.label} stands {out:.2g} mm out over face {own.label}: steps up to {GREATEST:g} mm "
-            "are taken as inaccuracy of the file and not counted as gouge, this one is higher; repair the edge, or "
-            "plan with a larger machining tolerance")
+    return (f". Face {found.label} stands {amount(out)} mm out over face {own.label} there, more than the "
+            f"{GREATEST:g} mm that are taken as inaccuracy of the file: repair the edge, or plan with a larger "
+            "machining tolerance")
 
 
 def tally(ledger: Ledger) -> str:
-    """How many axes were refused, and for what.
+    """How many axes were tested, and for what they were refused.
 
     Parameters
     ----------
@@ -108,31 +192,74 @@ def tally(ledger: Ledger) -> str:
     """
     counts = np.bincount(ledger.reason, minlength=len(REASONS))
     parts = [f"{counts[k]} {COUNTED[k]}" for k in range(1, len(REASONS)) if counts[k]]
-    return f"of {len(ledger.axes)} axes " + (", ".join(parts) if parts else "none was refused")
+    return f"{len(ledger.axes)} axes tested: " + (", ".join(parts) if parts else "none was refused")
 
 
-def closest(ledger: Ledger) -> int | None:
-    """Row of the forbidden axis that comes closest to being free: past the normals if any is, then by the amount."""
-    for early in (GOUGE, WANDERS, BACK, LIMITS):
-        rows = np.flatnonzero(ledger.reason >= early)
-        if len(rows):
-            return int(rows[np.argmin(ledger.amount[rows])])
-    return None
+class Refusal(NamedTuple):
+    """An axis that a closer look or its passes' proof refused: of what kind (index into `REASONS`), by how much, and
+    what is said of it."""
+
+    reason: int
+    amount: float
+    words: str
 
 
-def why_none(ledger: Ledger) -> str:
-    """The constraint that stops the axis which comes closest.
+def main_first(refused: Sequence[Refusal]) -> list[str]:
+    """What is said of refused axes: the most frequent kind first, of each kind the nearest miss first.
+
+    Parameters
+    ----------
+    refused : sequence of Refusal
+    """
+    count = Counter(one.reason for one in refused)
+    return [one.words for one in sorted(refused, key=lambda one: (-count[one.reason], one.reason, one.amount))]
+
+
+def decisive(ledger: Ledger) -> IntArray:
+    """Rows of the forbidden axes with what stops most of those that get farthest, the nearest miss first.
+
+    Limits and normals exclude most of the sphere for any face: what they leave decides, if they leave anything; then
+    what the flat bottom leaves.
 
     Parameters
     ----------
     ledger : Ledger
     """
-    row = closest(ledger)
-    if row is None:
-        return "no axis was looked at"
-    axis = ledger.axes[row]
-    feasibility = ledger.feasibility
-    found = feasibility.witness(axis)
+    for early in (GOUGE, WANDERS, BACK, LIMITS):
+        rows = np.flatnonzero(ledger.reason >= early)
+        if len(rows):
+            kind = np.bincount(ledger.reason[rows]).argmax()
+            rows = rows[ledger.reason[rows] == kind]
+            return np.asarray(rows[np.argsort(settled(ledger.amount[rows]), kind="stable")])
+    return np.empty(0, dtype=np.intp)
+
+
+def why_none(ledger: Ledger) -> str:
+    """What stops most axes, with the one that comes closest.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    rows = decisive(ledger)
+    if not len(rows):
+        return "no axis was tested"
+    code, axis = int(ledger.reason[rows[0]]), ledger.axes[rows[0]]
+    found = _stopping(ledger, axis, code)
     if found is None:
-        found = Witness(int(ledger.reason[row]), float(ledger.amount[row]))
-    return f"{sentence(found, feasibility)}, for the axis {direction(axis)} that comes closest"
+        found = Witness(code, float(ledger.amount[rows[0]]))
+    stage = min(code, GOUGE)
+    passed = int((ledger.reason >= stage).sum())
+    count = f"all {passed}" if passed == len(rows) else f"{len(rows)} of the {passed}"
+    return (f"{count} axes{_PASSED[stage]} are refused {_FOR[code]}; with the closest of them, {direction(axis)}, "
+            f"{sentence(found, ledger.feasibility)}")
+
+
+def _stopping(ledger: Ledger, axis: Array, code: int) -> Witness | None:
+    """What stops an axis, of the kind that the ledger knows; None where it can no more be told."""
+    feasibility = ledger.feasibility
+    known = [found for middle, angle, found in ledger.closed if angle_between(axis, middle) <= angle]
+    for found in (feasibility.witness(axis), *known, feasibility.screened(axis)):
+        if found is not None and found.reason == code:
+            return found
+    return None

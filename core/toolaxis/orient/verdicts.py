@@ -36,14 +36,14 @@ class Witness(NamedTuple):
     """The one place that decides against an axis.
 
     reason : index into `REASONS`;  amount : by how much the limit is missed, mm or rad;  label : of the face in the
-    way;  point : (3,) where it happens;  uv : (2,) of the contact;  distance : its component's signed distance, mm;
-    words : what a limit itself says.
+    way;  point : (3,) where it happens, nan where that is not known;  uv : (2,) of the contact;  distance : its
+    component's signed distance, mm, nan where that is not known;  words : what a limit itself says.
     """
 
     reason: int
     amount: float
     label: str = ""
-    point: Array = np.zeros(3)
+    point: Array = np.full(3, np.nan)
     uv: Array = np.zeros(2)
-    distance: float = 0.0
+    distance: float = np.nan
     words: str = ""

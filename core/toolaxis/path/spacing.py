@@ -181,10 +181,9 @@ class _Strips:
         used[self.across.index[cutting, 1:3]] = True
         bad = np.flatnonzero(~good & used)
         if bad.size:
-            where = self.chart.uv(self.across.measured[bad[:1]], np.array([self._step]))[0]
-            raise InvalidInput(f"strip width is {self.measured[bad[0]].tolist()} at uv {where.tolist()} of face "
-                               f"{self.chart.face.label}: the axis {self.cut.axis.tolist()} gouges or stands "
-                               "upright there; choose one that is free over the whole face")
+            axis = ", ".join(f"{round(float(x), 4) + 0.0:g}" for x in self.cut.axis)
+            raise InvalidInput(f"the axis ({axis}) leaves no usable strip on {self._place(int(bad[0]))}: it gouges "
+                               "there, or is normal to the surface; choose another axis")
 
     def check_progress(self, last: float) -> None:
         """Refuse the last place asked for if it is no farther than the pass before, as lines with no strip keep it.
@@ -196,10 +195,13 @@ class _Strips:
         """
         if not self._step > last:
             least = int(np.nan_to_num(self.measured).min(axis=1).argmin())
-            where = self.chart.uv(self.across.measured[[least]], np.array([self._step]))[0]
-            raise InvalidInput(f"strip width is {self.measured[least].tolist()} at uv {where.tolist()} of face "
-                               f"{self.chart.face.label}: passes do not advance there, as where they meet in a pole; "
+            raise InvalidInput(f"passes do not advance on {self._place(least)}: their lines meet there, as in a pole; "
                                "cut along the other parameter")
+
+    def _place(self, row: int) -> str:
+        """A measured line at the last place asked for, in words."""
+        u, v = self.chart.uv(self.across.measured[[row]], np.array([self._step]))[0] + 0.0
+        return f"face {self.chart.face.label} at u {u:.4g}, v {v:.4g}"
 
 
 def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Progress = NO_PROGRESS) -> Spacing:
