@@ -52,7 +52,7 @@ class Progress:
         stage : str
             What is being done.
         done, total : float
-            Work done and work in all, in any common unit.
+            Work done and work in all, in any common unit; zero in all where it is not known.
 
         Raises
         ------

@@ -27,7 +27,7 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 
 _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
-           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance"}
+           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}

@@ -10,6 +10,7 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import Stopping
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
+from toolaxis.work import LIMIT, MOVING
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -93,6 +94,11 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="what is least: cutting length (default), number of passes, or the time that --machine takes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--limit", type=float, default=LIMIT, metavar="WORK",
+                     help="most work for one sub-surface, its axis and the proof of its passes, counted in thousands "
+                          "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "
+                          f"axis that moves is allowed {MOVING:.0f} times that (default: {LIMIT:.0f}, about half a "
+                          "minute on one core)")
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",

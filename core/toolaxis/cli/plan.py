@@ -46,7 +46,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         strategy=given.strategy, roughness=_roughness(given),
                         feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, tolerance=spec.inputs.tolerance,
                         regions=spec.regions,
-                        rapid=spec.inputs.rapid, compare=given.compare,
+                        rapid=spec.inputs.rapid, compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         progress=progress)
             if made.outcome == "cancelled" and not made.operations:
@@ -67,7 +67,7 @@ def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                    given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid)
+                    given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place

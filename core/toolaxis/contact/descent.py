@@ -359,16 +359,15 @@ def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work
             exchange(stack, bottom)
 
 
-def scratch(data: ForestData) -> tuple[Array, Array, Array, Array, Indices, Array, Indices]:
+def scratch(most_edges: int) -> tuple[Array, Array, Array, Array, Indices, Array, Indices]:
     """Arrays in which `descend_many` works.
 
     Parameters
     ----------
-    data : tuple
-        The forest.
+    most_edges : int
+        Trim edges through a leaf at most, `Cells.most_edges`.
     """
-    longest = int(np.diff(data[3]).max(initial=0))
-    return (np.empty((2 * longest + 4, 2)), np.empty((6, 3)), np.empty((6, 26)), np.empty((DEPTH, 7)),
+    return (np.empty((2 * most_edges + 4, 2)), np.empty((6, 3)), np.empty((6, 26)), np.empty((DEPTH, 7)),
             np.empty((DEPTH, 4), dtype=np.int64), np.empty((5, 3)), np.empty(5, dtype=np.int64))
 
 

@@ -14,6 +14,7 @@ from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
 from toolaxis.shape.cells import Cells
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -21,6 +22,8 @@ Indices = NDArray[np.int64]
 _PIECES_AT_ONCE = 60
 #: Motions between two moments to stop.
 _MOTIONS_AT_ONCE = 256
+#: As many bounds as take as long as a question without any motion, and a motion without any bound.
+_QUESTION, _MOTION = 2000, 20
 
 
 class Found(NamedTuple):
@@ -147,7 +150,8 @@ def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]
 def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
-    room = scratch(cells.data) if _compiled.available else None
+    room = scratch(cells.most_edges) if _compiled.available else None
+    spend(_QUESTION)
     for first in range(0, len(moves), _MOTIONS_AT_ONCE):
         breathe()
         some = slice(first, first + _MOTIONS_AT_ONCE)
@@ -155,6 +159,7 @@ def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tup
             values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
         else:
             descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
+        spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
     return values, tags
 
 

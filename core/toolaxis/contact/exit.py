@@ -267,7 +267,8 @@ def _pole_between(job: Job, s: float, ahead: float) -> float:
 
 
 @compiled
-def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road, memory: Memory) -> float:
+def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road,
+               memory: Memory) -> tuple[float, int]:
     """The first exit by steps along the cross curve.
 
     Parameters
@@ -278,9 +279,11 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
 
     Returns
     -------
-    float
-        s of the exit, or where the polyline of the steps reaches the cap, or the pole at which an iso-curve ends and
-        the normal turns over.
+    s : float
+        Of the exit, or where the polyline of the steps reaches the cap, or the pole at which an iso-curve ends and the
+        normal turns over.
+    steps : int
+        How many it took.
     """
     setting, _, cross = job
     s0, stride = move
@@ -291,7 +294,9 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
     pace = sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2)
     s = s0
     walked = 0.0
+    steps = 0
     while pace > 1e-300:
+        steps += 1
         ahead = s + stride / pace
         lifted_point(setting, cross, ahead, lengths[0], memory)
         if a * state[2, 0] + b * state[2, 1] + c * state[2, 2] < 0.0:
@@ -299,19 +304,19 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
             if not isnan(pole):
                 before = pole + _BEFORE * (s - pole)
                 if swept_distance(job, lengths, before, road, memory)[0] < 0.0:
-                    return pole
-                return _root(job, lengths, s, before, (road, memory))
+                    return pole, steps
+                return _root(job, lengths, s, before, (road, memory)), steps
         a, b, c = state[2, 0], state[2, 1], state[2, 2]
         piece = sqrt((state[0, 0] - x) ** 2 + (state[0, 1] - y) ** 2 + (state[0, 2] - z) ** 2)
         pace = max(sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2), 0.25 * pace)
         x, y, z = state[0, 0], state[0, 1], state[0, 2]
         least = scan_pass(setting, road[0], (road[2], road[3]), point, road[1])
         if least >= 0.0 and _deepest(job, lengths, road, memory)[0] >= 0.0:
-            return _root(job, lengths, s, ahead, (road, memory))
+            return _root(job, lengths, s, ahead, (road, memory)), steps
         walked += piece
         if piece <= 1e-3 * abs(stride):
-            return ahead
+            return ahead, steps
         if walked >= lengths[2]:
-            return ahead - (ahead - s) * min(1.0, (walked - lengths[2]) / piece)
+            return ahead - (ahead - s) * min(1.0, (walked - lengths[2]) / piece), steps
         s = ahead
-    return s
+    return s, steps

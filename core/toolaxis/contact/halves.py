@@ -31,8 +31,8 @@ from toolaxis.numeric.compiled import compiled
 Array = NDArray[np.float64]
 Geometry: TypeAlias = tuple[SurfaceData, float, Array]
 """Surface, sign of its normal, cutter."""
-Bench: TypeAlias = tuple[Road, Memory, Array, Array, tuple[Nodes, Nodes]]
-"""Room for the pass, for one point, for three vectors, for the frame, and for two plane sections."""
+Bench: TypeAlias = tuple[Road, Memory, Array, Array, tuple[Nodes, Nodes], Array]
+"""Room for the pass, for one point, for three vectors, for the frame, and for two plane sections; steps taken, (1,)."""
 MARCH = 2.0
 """Added to a contact's last number it forbids Newton's method, to compare the two ways."""
 SOFT = 10.0
@@ -42,6 +42,8 @@ Sizes: TypeAlias = tuple[float, float, float]
 
 WINDOW = 2.5
 """Length of the pass on either side of the contact that counts, in radii of the tool."""
+CAREFUL = 40
+"""As many steps of the march as take as long as what comes before it at a contact."""
 SPACING = 1 / 6
 """Distance of the nodes of the pass, in radii of the tool."""
 NODE = 1 / 16
@@ -80,7 +82,7 @@ def _frame_at(surface: SurfaceData, sign: float, contact: Array, scratch: Scratc
 def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, float], bench: Bench,
                stride: float) -> float:
     """s of the exit on one side; start = (s0, w0, s, w), with s = s0 where there is no guess."""
-    road, memory, room, _, _ = bench
+    road, memory, room, _, _, steps = bench
     s0, w0, s, w = start
     if s != s0:
         table = road[0]
@@ -94,7 +96,9 @@ def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, flo
                 far += (memory[2][0, c] - room[1, c]) ** 2
             if far < (0.9 * lengths[2]) ** 2:
                 return s
-    return march_exit(job, lengths, (s0, stride), road, memory)
+    s, taken = march_exit(job, lengths, (s0, stride), road, memory)
+    steps[0] += taken
+    return s
 
 
 @compiled
@@ -148,8 +152,9 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
     """Half widths at one contact: towards lower and upper s, the cross curve's parameter."""
     surface, sign, cutter = geometry
     h, lift, radius = sizes
-    (table, gaps, _, _), memory, room, frame, rooms = bench
+    (table, gaps, _, _), memory, room, frame, rooms, steps = bench
     d = memory[3][0]
+    steps[0] += CAREFUL
     if not _frame_at(surface, sign, contact, memory[3], frame):
         return 0.0, 0.0
     if axis[0] * frame[2, 0] + axis[1] * frame[2, 1] + axis[2] * frame[2, 2] < cutter[3] - 1e-9:
@@ -171,7 +176,7 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
         stride = min(stride, max(width / 6.0, 0.05 * stride))
     if contact[6] >= MARCH:
         s_step = 0.0
-    found = ((table, gaps, first, last), memory, room, frame, rooms)
+    found = ((table, gaps, first, last), memory, room, frame, rooms, steps)
     low = _side_exit(job, lengths, (s0, w0, s0 - s_step, w0 - w_step), found, -stride)
     high = _side_exit(job, lengths, (s0, w0, s0 + s_step, w0 + w_step), found, stride)
     if contact[6] % 2.0 == 1.0:
@@ -182,20 +187,22 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
 @compiled
 def new_bench() -> Bench:
     road = (np.empty((2 * SIDE_NODES + 1, 7)), np.empty((2 * SIDE_NODES + 1, 2)), 0, 0)
-    return road, new_memory(new_scratch()), np.empty((3, 3)), np.empty((3, 3)), (new_nodes(), new_nodes())
+    return (road, new_memory(new_scratch()), np.empty((3, 3)), np.empty((3, 3)), (new_nodes(), new_nodes()),
+            np.zeros(1))
 
 
 @compiled
-def section_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
-    """Half widths at n contacts into out (n, 2), towards lower and upper parameter of the cross curves."""
+def section_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> float:
+    """Half widths at n contacts into out (n, 2), towards lower and upper parameter of the cross curves; steps taken."""
     bench = new_bench()
     for k in range(contacts.shape[0]):
         out[k, 0], out[k, 1] = contact_widths(geometry, contacts[k], axes[k], sizes, bench)
+    return float(bench[5][0])
 
 
 @compiled
-def step_half_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
-    """Half widths in the step parameter at n contacts with k axes each into out (k, n, 2).
+def step_half_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> float:
+    """Half widths in the step parameter at n contacts with k axes each into out (k, n, 2); steps taken with care.
 
     axes is (k, n, 3), or (k, 1, 3) where the axes are the same for all contacts.
     """
@@ -243,3 +250,4 @@ def step_half_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Si
                     done += 1 if found else 0
             if done < 2:
                 out[i, j, 0], out[i, j, 1] = contact_widths(geometry, contact, axis, sizes, bench)
+    return float(bench[5][0])

@@ -6,12 +6,15 @@ from numpy.typing import NDArray
 from toolaxis.contact.swept import meridian_distance
 from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
 _GOLDEN = 0.6180339887498949
 #: Steps of the golden section between the positions around the least one: to a thousandth of their distance.
 _STEPS = 15
+#: As many bounds of distances as take as long as the distances of no points, and of one.
+_QUESTION, _POINT = 20, 5
 
 
 def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes: Array) -> Array:
@@ -36,6 +39,7 @@ def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes:
     the distance to the cutter swept along the pass.
     """
     rows, at, turn = (np.ascontiguousarray(part, dtype=float) for part in (points, tips, axes))
+    spend(_QUESTION + _POINT * rows.shape[0] * rows.shape[1])
     if _compiled.available:
         out = np.empty(rows.shape[:2])
         _least(cutter, rows, (at, turn), out)

@@ -19,11 +19,14 @@ from toolaxis.shape.differential import curvature_form, normals
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
 #: Angles on the ring at which its height is taken, from the contact towards left, rad; the contact is in the middle.
 ANGLES = np.linspace(-pi, pi, 121)[:-1]
+#: As many bounds of distances as take as long as the feet of no points, and a step of Newton's for one.
+_QUESTION, _FOOT = 8000, 2
 CONTACT = 60
 #: Points of the front half of the ring, that of the contact among them, and both ways outwards from it.
 FRONT = np.flatnonzero(np.abs(ANGLES) <= pi / 2 + 1e-9)
@@ -271,6 +274,7 @@ def rings(setting: Setting, stand: Stand, start: Array | None = None) -> Rings:
 
 def _feet(face: Face, points: Array, uv: Array, rounds: int) -> tuple[Array, Array]:
     """Feet of perpendiculars to a face and its extension, by Newton's method, and the heights above them, mm."""
+    spend(_QUESTION + _FOOT * rounds * len(points))
     (u0, u1), (v0, v1) = face.surface.domain
     most = 0.1 * np.array([u1 - u0, v1 - v0])
     for _ in range(rounds):

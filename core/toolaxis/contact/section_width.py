@@ -20,6 +20,7 @@ from toolaxis.numeric.vectors import axis_rows, dot
 from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ _PLACES, _REACH, _CLOSER, _FEWEST = 56, 2.0, 1.3, 16
 _SECTION_STEPS, _END_STEPS = 8, 6
 #: By how much a place may still miss the section before the last step, mm: steps converge like squares.
 _CLOSE = 1e-5
+#: As many bounds of distances as take as long as no widths; each place takes as long as one.
+_QUESTION = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +63,7 @@ class Sections:
         """Widths left and right, (n, 2) mm, of the cutter with unit axes (n, 3); see `section_width`."""
         numbers = cutter_numbers(self.tool, self.scallop, self.allowance)
         tip = tips(self.point, self.normal, axis, self.tool, self.allowance)
+        spend(_QUESTION + self.lifted[..., 0].size)
         off = cutter_distances(numbers, self.lifted - tip[:, None, None], axis[:, None, None])
         first = np.concatenate([np.full((*off.shape[:2], 1), -min(self.scallop, self.tool.radius)), off], axis=2)
         places = np.concatenate([[0.0], self.places])

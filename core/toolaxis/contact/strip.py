@@ -18,8 +18,13 @@ from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
+
+#: As many bounds of distances as take as long as the half widths of no contact, those of one, and one step of the march
+#: that finds them where Newton's method does not.
+_QUESTION, _CONTACT, _STEP = 500, 40, 6
 
 
 def _checked(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[Geometry, Sizes]:
@@ -46,19 +51,21 @@ def contact_rows(uv: ArrayLike, feed: Feed, sections: bool) -> Array:
 
 def _fill(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
     """Half widths of n contacts with an axis each, by the kernel or by its twin with the kernel for what is left."""
+    spend(_QUESTION + _CONTACT * len(contacts))
     if _compiled.available:
-        section_widths(geometry, contacts, axes, sizes, out)
+        spend(_STEP * section_widths(geometry, contacts, axes, sizes, out))
         return
     out[:], found = half_widths_numpy(geometry, contacts, axes, sizes)
     rest = np.empty(((~found).sum(), 2))
-    section_widths(geometry, contacts[~found], axes[~found], sizes, rest)
+    spend(_STEP * section_widths(geometry, contacts[~found], axes[~found], sizes, rest))
     out[~found] = rest
 
 
 def _fill_steps(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
     """Half widths in the step parameter of n contacts with k axes, likewise."""
     if _compiled.available:
-        step_half_widths(geometry, contacts, axes, sizes, out)
+        spend(_QUESTION + _CONTACT * len(axes) * len(contacts))
+        spend(_STEP * step_half_widths(geometry, contacts, axes, sizes, out))
         return
     for k in range(len(axes)):
         _fill(geometry, contacts, np.broadcast_to(axes[k], (len(contacts), 3)), sizes, out[k])

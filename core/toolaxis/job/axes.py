@@ -19,6 +19,7 @@ from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
 from toolaxis.orient.worth import FEEDS
+from toolaxis.path.chart import IsoChart
 from toolaxis.path.layout import Layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -87,18 +88,23 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
 
 
 class Remembering(Task):
-    """A task that keeps the passes it made last: those of the axis that was accepted, when a search is over.
+    """A task that keeps the passes it made: the axis that is accepted need not be the last one that was tried."""
 
-    Attributes
-    ----------
-    path : ToolPath or None
-    """
-
-    path: ToolPath | None
+    _made: dict[tuple[bytes, str], ToolPath]
 
     def __init__(self, job: Task) -> None:
         super().__init__(job.feasibility, job.worth, job.groups, job.chord, job.progress, job.direction)
-        object.__setattr__(self, "path", None)
+        object.__setattr__(self, "_made", {})
+
+    def path_of(self, found: Orientation) -> ToolPath | None:
+        """The passes that were made with an axis and its feed; None where there is no axis.
+
+        Parameters
+        ----------
+        found : Orientation
+            From a search with this task.
+        """
+        return None if found.axis is None else self._made[unit(found.axis).tobytes(), found.feed]
 
     def traced(self, placed: Layout) -> ToolPath:
         """Passes with their links.
@@ -108,7 +114,8 @@ class Remembering(Task):
         placed : Layout
         """
         path = super().traced(placed)
-        object.__setattr__(self, "path", path)
+        assert isinstance(placed.chart, IsoChart)
+        self._made[placed.cut.axis.tobytes(), placed.chart.feed] = path
         return path
 
 
@@ -173,7 +180,7 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
     if witness is not None:
         reasons = (f"infeasible: {sentence(witness, job.feasibility)}",)
         found = Orientation(None, found.feed, outcome="infeasible", reasons=reasons)
-    return found, None if found.axis is None else job.path
+    return found, job.path_of(found)
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:

@@ -46,6 +46,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import MOVING, Budget, OutOfWork, limited
 
 Array = NDArray[np.float64]
 
@@ -337,6 +338,12 @@ class Job:
                         for piece, axis in rows]), options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
+        """The operation of a sub-surface, with no more work than is allowed."""
+        times = MOVING if self.inputs.method in _MOVING else 1.0
+        with limited(Budget(self.inputs.limit, times)):
+            return self._with_axis(target, place, progress)
+
+    def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""
         face, axis, number = target.face, target.axis, place[0] + 1
         if target.ended is not None:
@@ -359,6 +366,8 @@ class Job:
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
         except Cancelled:
             raise
+        except OutOfWork as reason:
+            return Operation(number, face, Orientation(None, outcome="not_found", reasons=(str(reason),)))
         except ToolAxisError as reason:  # this face cannot be done; the others can
             return _refused(number, face, reason)
         if found.outcome == "cancelled":
@@ -394,7 +403,7 @@ class Job:
         """The fixed axis that the method finds for a task, and its passes."""
         job = Remembering(task)
         found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
-        return found, None if found.axis is None else job.path
+        return found, job.path_of(found)
 
     @property
     def _limits(self) -> AxisLimits | None:

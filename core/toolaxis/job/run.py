@@ -39,6 +39,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.joined import GREATEST_CORNER
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import LIMIT
 
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
@@ -48,8 +49,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: ToleranceLike = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
          limits: AxisLimits | str | None = None, offset: ArrayLike | None = None,
-         rapid: float = 10000.0, roughness: float | None = None, compare: bool = False, workers: int | None = None,
-         progress: Progress = NO_PROGRESS) -> Plan:
+         rapid: float = 10000.0, roughness: float | None = None, compare: bool = False, limit: float = LIMIT,
+         workers: int | None = None, progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
 
     Parameters
@@ -116,6 +117,11 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         Greatest Ra across the feed, mm, for the strategy "multiscale" only: 0.0016 (1.6 um) unless given.
     compare : bool
         Also plan the same faces by the other methods; what they come to stands in the plan's baselines.
+    limit : float
+        Most work for one sub-surface, its axis and the proof of its passes, in thousands of bounds of distances.  When
+        it is used up, the best axis that is proven is taken, or the outcome is "not_found" with that reason.  Work is
+        counted, not timed: the plan is the same on every run.  An axis that moves is allowed `MOVING` times that; see
+        `toolaxis.work`.
     workers : int, optional
         Processes that plan sub-surfaces side by side, on Linux and outside FreeCAD; as many as there are cores unless
         given. The result is the same for any number.
@@ -144,7 +150,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else written(allowed)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), Tolerance.of(tolerance), float(rapid), roughness_for(strategy, roughness))
+                    float(spindle), Tolerance.of(tolerance), float(rapid), roughness_for(strategy, roughness),
+                    float(limit))
     if objective == "time":
         known_machine(mounting)
     if strategy != "indexed" and mounting is not None:

@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.work import spend
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Bools = NDArray[np.bool_]
@@ -25,6 +27,8 @@ _SLOPE = 0.02
 _TIGHT = {"maxiter": 2_000, "maxfun": 4_000, "ftol": 1e-13, "gtol": 1e-8}
 #: How often bounds that hold are exchanged, and by how much angles may pass them, rad.
 _EXCHANGES, _TOUCH = 60, 1e-10
+#: As many bounds of distances as take as long as solving for so many angles, by the cube of their number.
+_SOLVED = 0.004
 #: Greatest turn between two nodes, along a pass and from pass to pass, rad: more would be a jump.
 _MOST = 0.5
 
@@ -232,6 +236,7 @@ def _least_form(form: Array, low: Array, high: Array) -> Array:
         free = held == 0
         if free.all():
             break
+        spend(_SOLVED * float(free.sum()) ** 3)
         x = np.where(held < 0, low, np.where(held > 0, high, x))
         x[free] = np.linalg.solve(form[np.ix_(free, free)], -form[np.ix_(free, ~free)] @ x[~free])
         slope = form @ x

@@ -1,6 +1,7 @@
 """The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +26,7 @@ from toolaxis.orient.proof import Proof, prove
 from toolaxis.orient.reasons import Refusal, direction, main_first, nothing_to_cut, sentence, tally, why_none
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
-from toolaxis.orient.sphere import repaired, search
+from toolaxis.orient.sphere import repaired, search, so_far
 from toolaxis.orient.verdicts import BACK, CUTTER, FREE, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
@@ -38,6 +39,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import OutOfWork, better_may_exist, up_to
 
 Array = NDArray[np.float64]
 
@@ -50,6 +52,8 @@ CROSSING = 5.0
 _ATTEMPTS = 4
 #: Share of a face that passes may miss, away from walls, before the next best axis is tried.
 _MISSED = 5e-4
+#: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
+_SEARCHED, _ORDERED = 0.5, 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,19 +255,44 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
     """
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
     ledger = Ledger(job.feasibility, job.worth, job.progress, first)
+    result: Orientation | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
-        attempts = 1 if method in RULES else _ATTEMPTS
-        result = settled(job, ledger, METHODS[method](ledger), attempts)
+        result = _settled(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
             return result
         ledger = Ledger(ledger.feasibility, job.worth, job.progress, first)
-        return better_of(result, settled(job, ledger, METHODS[method](ledger), attempts))
+        return better_of(result, _settled(job, ledger, method))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
                            evaluations=ledger.evaluations, map=ledger.map())
+    except OutOfWork as reason:
+        if result is not None and result.axis is not None:
+            return _ended(result)
+        return Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
+                           evaluations=ledger.evaluations, map=ledger.map())
+
+
+def _settled(job: Task, ledger: Ledger, method: str) -> Orientation:
+    """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
+    if method in RULES:
+        return settled(job, ledger, METHODS[method](ledger), 1)
+    try:
+        with up_to(_SEARCHED):
+            found = METHODS[method](ledger)
+    except OutOfWork as reason:
+        result = _first_accepted(job, ledger, held(ledger, so_far(ledger)))
+        return _ended(result) if result.axis is not None else replace(
+            result, outcome="not_found", reasons=(str(reason), *result.reasons))
+    return settled(job, ledger, found)
+
+
+def _ended(result: Orientation) -> Orientation:
+    """An axis that is proven, with the word that the limit of work ended the search for a better one."""
+    words = better_may_exist()
+    return result if words in result.reasons else replace(result, reasons=(*result.reasons, words))
 
 
 def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
@@ -277,22 +306,42 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
         The best of each lobe, best first.
     attempts : int
         How often each is tried, repaired between; 1 to take them as they are.
+
+    Raises
+    ------
+    OutOfWork
+        When the work that was allowed is done, and none was accepted.
     """
+    found = held(ledger, found)
+    with suppress(OutOfWork), up_to(_ORDERED):
+        found = least_made(job.worth, found, job.made)
+    return _first_accepted(job, ledger, found, attempts)
+
+
+def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
+    """The first candidate that the proof accepts, or why there is none; a later one where that misses less."""
     refused: list[Refusal] = []
-    found = least_made(job.worth, held(ledger, found), job.made)
     best: tuple[float, Orientation, int] | None = None
-    for k in range(len(found)):
-        accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
-        if accepted is not None and (best is None or missed < best[0]):
-            best = missed, accepted, k
-        if best is not None and best[0] <= _MISSED:
-            break
+    others: tuple[Orientation, ...] = ()
+    ended = False
+    try:
+        for k in range(len(found)):
+            accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
+            if accepted is not None and (best is None or missed < best[0]):
+                best = missed, accepted, k
+            if best is not None and best[0] <= _MISSED:
+                break
+        if best is not None:
+            others = tuple(_other(job, one) for one in found[best[2] + 1:] if _sound(job, one))
+    except OutOfWork:
+        if best is None:
+            raise
+        ended = best[0] > _MISSED  # else only other lobes were left to be looked at
     if best is not None:
-        _, accepted, k = best
-        others = tuple(_other(job, one) for one in found[k + 1:] if _sound(job, one))
-        return replace(accepted, reasons=(*accepted.reasons, *(one.words for one in refused), tally(ledger)),
-                       map=ledger.map(),
-                       evaluations=ledger.evaluations, lobes=others)
+        accepted = best[1]
+        result = replace(accepted, reasons=(*accepted.reasons, *(one.words for one in refused), tally(ledger)),
+                         map=ledger.map(), evaluations=ledger.evaluations, lobes=others)
+        return _ended(result) if ended else result
     if ledger.proven:
         outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
     else:

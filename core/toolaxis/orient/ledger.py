@@ -14,10 +14,13 @@ from toolaxis.orient.verdicts import BACK, FREE, GOUGE, LIMITS, Verdicts, Witnes
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
 _BATCH = 64
+#: As many bounds of distances as take as long as the price of an axis when it is screened.
+_AXIS = 2000
 
 
 @dataclass
@@ -114,8 +117,9 @@ class Ledger:
         """
         first = len(self.axes)
         for start in range(0, len(axes), _BATCH):
-            self.progress.report("axes", len(self.axes), 0)  # how many it takes is known when they are found
+            self.progress.report("axes", 0, 0)  # how many it takes is known when they are found
             rows = axes[start:start + _BATCH]
+            spend(_AXIS * len(rows))
             verdict, price = self.feasibility.screen(rows), self.worth.screen(rows)
             charge = np.array([self.worth.charge(float(length), float(u)) if u > 0 else 1.0
                                for length, u in zip(price.length.min(axis=1), verdict.unreached, strict=True)])[:, None]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -23,6 +24,8 @@ _AT_ONCE, _PAIRS = 4096, 200_000
 _SPECK = 0.01
 #: Cells that are kept; what is divided beyond that is made anew whenever it is asked for.
 _KEPT = 50_000
+#: As many bounds of distances as take as long as making no cell, and one.
+_QUESTION, _CELL = 3000, 3
 
 
 class FaceCells(NamedTuple):
@@ -120,6 +123,7 @@ class NormalCells:
         return found.chosen(met), met.reshape(parents, -1).sum(axis=1)
 
     def _looked(self, rect: Array, bounds: Array, near: Bools) -> FaceCells:
+        spend(_QUESTION + _CELL * len(rect))
         middle = (rect[:, 0::2] + rect[:, 1::2]) / 2
         half = (rect[:, 1::2] - rect[:, 0::2]) / 2
         crossed, inside = near.copy(), np.ones(len(rect), dtype=bool)

@@ -225,6 +225,24 @@ def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
     return ranked(ledger, distinct(sorted(done, key=lambda c: c.value)))
 
 
+def so_far(ledger: Ledger) -> list[Candidate]:
+    """The best axis of each lobe among those that were looked at, best first, by their screened prices.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Of a search that was ended.
+    """
+    price, feed = ledger.price, ledger.values.argmin(axis=1)
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    rows = lobes(ledger.axes, price, order)[:_LOBES]
+    if not rows:
+        return []
+    whole = ledger.worth.screen(ledger.axes[rows])  # nothing charged for what stays
+    return [Candidate(ledger.axes[i], int(feed[i]), float(price[i]), float(whole.passes[k, feed[i]]),
+                      float(whole.length[k, feed[i]]), float(ledger.unreached[i])) for k, i in enumerate(rows)]
+
+
 def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
     """Candidates with ties at the top decided: the larger clearance first, then the smaller angle to the mean normal.
 

@@ -16,6 +16,7 @@ from toolaxis.path.lean import lean_ratios, lean_table, screening_cutter
 from toolaxis.path.material import Intervals, intervals
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,9 @@ _AT = 1e-6
 #: Lines are kept this share of the range off its ends: there the noise of a loop along the end, and no more than that,
 #: would decide which parts of a line are inside.
 _EDGE = 1e-5
+
+#: As many bounds of distances as take as long as a contact with its tip.
+_POINT = 5
 
 #: Places each way from which the size of a chart is taken.
 _EXTENT = 9
@@ -293,6 +297,7 @@ def tip_points(chart: Chart, cut: Cut, along: ArrayLike, step: ArrayLike) -> tup
     contact, tip, normal : (n, 3) arrays, mm
     """
     uv = chart.uv(np.asarray(along, dtype=float), np.asarray(step, dtype=float))
+    spend(_POINT * len(uv))
     normal = chart.face.normal(uv)
     point = chart.face.evaluate(uv).point
     return point, tips(point, normal, cut.axes(chart.face, uv), cut.tool, cut.allowance), normal

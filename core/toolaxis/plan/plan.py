@@ -16,6 +16,7 @@ from toolaxis.plan.timing import Order
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
+from toolaxis.work import LIMIT
 
 Array = NDArray[np.float64]
 
@@ -59,6 +60,9 @@ class Inputs:
         Rate of rapid traverse in links, mm/min; for times only.
     roughness : float
         Greatest Ra across the feed, mm; 0 where none was asked for.
+    limit : float
+        Most work for one sub-surface, its axis and the proof of its passes, in thousands of bounds of distances; see
+        `toolaxis.work`.
 
     Raises
     ------
@@ -77,6 +81,7 @@ class Inputs:
     tolerance: Tolerance = field(default_factory=Tolerance)
     rapid: float = 10000.0
     roughness: float = 0.0
+    limit: float = LIMIT
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -88,6 +93,8 @@ class Inputs:
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
+        if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):
+            raise InvalidInput(f"limit is {self.limit}: it must be a finite number above zero (most work for a face)")
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")

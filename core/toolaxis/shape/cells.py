@@ -83,6 +83,11 @@ class Cells:
         return (np.column_stack([self.shape, extra, self.bend]), self.link, self.leaf, self.edge_start, self.edges,
                 np.concatenate(knots), np.concatenate(control), np.array(layout, dtype=np.int64))
 
+    @cached_property
+    def most_edges(self) -> int:
+        """Number of trim edges through the leaf that has most of them."""
+        return int(np.diff(self.edge_start).max(initial=0))
+
 
     def missing(self, mismatch: Mismatch | None) -> "Cells":
         """The same cells with a mismatch of their faces; the arrays of `data` are shared.
