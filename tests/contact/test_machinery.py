@@ -163,7 +163,7 @@ def test_a_head_against_a_wall_of_the_part() -> None:
     wall = ta.Face.from_bspline(np.stack([np.full_like(y, 50.0), y, z], axis=-1))
     mounting = Mounting(head_table(TABLE, HEAD), (0.0, 0.0, 50.0), TOOL.gauge_length)
     found = nearest_meeting(mounting, [0.0, 0.0], [[0.0, 15, 0]], around(plate(), wall), most=30)
-    assert found is not None and found.one == "head" and found.distance == pytest.approx(-10, abs=0.05)
+    assert found is not None and found.one == "head" and found.distance == pytest.approx(-10, rel=0.05)
     short = ta.Face.from_bspline(np.stack([np.full_like(y, 50.0), y, z * 90 / 160], axis=-1))
     found = nearest_meeting(mounting, [0.0, 0.0], [[0.0, 15, 0]], around(plate(), short), most=30)
     assert found is not None and found.one == "head" and found.distance == pytest.approx(10, abs=0.05)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.bounds import bound_over_cell, bound_over_region
-from toolaxis.contact.relief import Relief, relief_over, relieved
+from toolaxis.contact.relief import Relief, relieved_bounds
 from toolaxis.contact.sight import Bend, Triple, dot, look, row
 from toolaxis.contact.trimming import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
@@ -104,8 +104,7 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         else:
             lower, upper = bound_over_region(frame, piece, (e, radius, wanted), region, count)
         if k == 0 and relief[0].shape[0] > 0 and (lower < wanted or upper < found[0, k]):
-            less, more = relief_over(relief, face, q, ball)
-            lower, upper = relieved(lower, less, relief[2]), relieved(upper, more, relief[2])
+            lower, upper = relieved_bounds(relief, (face, q, ball), (lower, upper, wanted))
         if upper < found[0, k]:
             found[0, k], found[2, k], found[3, k], found[4, k] = upper, q[0], q[1], q[2]
             tags[k] = face

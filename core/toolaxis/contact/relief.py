@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.sight import Triple
 from toolaxis.numeric.compiled import built_in
-from toolaxis.shape.seams import REACH
+from toolaxis.shape.seams import GREATEST, REACH
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -37,6 +37,34 @@ def no_relief(faces: int) -> Relief:
 def relieved(distance: float, relief: float, stock: float) -> float:
     """A signed distance with what is taken off the depth below the stock that is left, mm."""
     return max(distance, min(distance + relief, stock))
+
+
+@built_in
+def relieved_bounds(relief: Relief, ball: tuple[int, Triple, float], bounds: tuple[float, float, float],
+                    ) -> tuple[float, float]:
+    """Bounds of a signed distance over a cell, less deep by what is taken off there, mm.
+
+    Most cells are spared the look at the edges: those that no relief brings up to what is wanted, and those too large
+    or too far above for one that counts.
+
+    Parameters
+    ----------
+    relief : tuple
+    ball : (int, (float, float, float), float)
+        Index of the face, -1 for several; centre and radius of a ball around the cell.
+    bounds : (float, float, float)
+        Lower and upper bound, and what is wanted.
+    """
+    face, centre, radius = ball
+    lower, upper, wanted = bounds
+    stock = relief[2]
+    if face < 0:
+        return lower, relieved(upper, GREATEST, stock)
+    helps = lower < min(wanted, stock) and lower + GREATEST >= wanted and radius < 2.0 * REACH
+    if not helps and upper >= stock:
+        return lower, upper
+    less, more = relief_over(relief, face, centre, radius)
+    return relieved(lower, less, stock), relieved(upper, more, stock)
 
 
 @built_in
@@ -73,7 +101,10 @@ def relief_over(relief: Relief, face: int, centre: Triple, radius: float) -> tup
         if size > 0.0:
             share = min(max((wx * dx + wy * dy + wz * dz) / size, 0.0), 1.0)
         wx, wy, wz = wx - share * dx, wy - share * dy, wz - share * dz
-        away = np.sqrt(wx * wx + wy * wy + wz * wz)
+        square = wx * wx + wy * wy + wz * wz
+        if square > (2.0 * REACH + radius) ** 2:
+            continue
+        away = np.sqrt(square)
         greatest = max(greatest, height * faded(away - radius))
         least = max(least, height * faded(away + radius))
     if face < 0:

@@ -23,7 +23,7 @@ from toolaxis.shape.subdivision import subdivided
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-FINENESS = 0.001
+FINENESS = 0.02
 
 ForestData: TypeAlias = tuple[Array, Indices, Array, Indices, Array, Array, Array, Indices]
 

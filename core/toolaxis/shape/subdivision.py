@@ -15,7 +15,10 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-_COARSEST, _FINEST = 16, 64
+_COARSEST, _FINEST = 4, 32
+#: Trim edges that may run through a leaf unless it is below that share of the face's diagonal: each look at a part of a
+#: leaf clips all of them.
+_EDGES, _CROWDED = 8, 4096
 _DEEPEST = 48
 _ROUNDING = 1e-12
 _MARGIN = 1e-9
@@ -224,7 +227,9 @@ class _Builder:
         longest = 2 * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) + 2 * e
         fine = (e <= self.fineness + self.extra) & (longest <= self.face.diagonal / _COARSEST)
         least = max(self.face.diagonal / _FINEST, self.fineness + 2 * self.extra)  # a face without area has no diagonal
-        done = fine | (longest <= least) | (len(self.levels) >= _DEEPEST)
+        crowded = np.bincount(level.owner, minlength=len(half)) > _EDGES
+        crowded &= longest > max(self.face.diagonal / _CROWDED, self.fineness + 2 * self.extra)
+        done = ((fine | (longest <= least)) & ~crowded) | (len(self.levels) >= _DEEPEST)
         return np.column_stack([d.point, a, b, e, bend, rest]), level.single & done
 
     def split(self) -> None:
@@ -379,7 +384,7 @@ def subdivided(face: Face, fineness: float) -> Tree:
     ----------
     face : Face
     fineness : float
-        Distance e at which cells of at most 1/16 of the face's diagonal are left as they are, mm; cells below 1/64
+        Distance e at which cells of at most a quarter of the face's diagonal are left as they are, mm; cells below 1/32
         of the diagonal are never split.
 
     Raises
