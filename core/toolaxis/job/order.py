@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.indexing import RETRACT, Stop, trouble_at_the_ends, trouble_between
-from toolaxis.contact.machinery import Surroundings, free_solutions
+from toolaxis.contact.machinery import FLAT, Surroundings, free_solutions
 from toolaxis.errors import about
 from toolaxis.feed.profile import travel_time
 from toolaxis.job.in_motion import kept_clear, refused
@@ -122,7 +122,7 @@ def _around(plan: Plan) -> Surroundings:
     """Part and obstacles, and the distance that machine bodies keep."""
     bodies = [plan.part, *plan.obstacles]
     judged = plan.machine is not None and plan.machine.machine.bodies
-    faces = tuple(forest(body.faces) for body in bodies if len(body.faces)) if judged else ()
+    faces = tuple(forest(body.faces, FLAT / 10) for body in bodies if len(body.faces)) if judged else ()
     return Surroundings(plan.tool, faces, plan.inputs.tolerance.holder_clearance)
 
 

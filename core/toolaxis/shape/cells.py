@@ -23,6 +23,7 @@ from toolaxis.shape.subdivision import subdivided
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+#: How fine trees are unless said otherwise, mm: what they leave open is worked out where it is asked.
 FINENESS = 0.02
 
 ForestData: TypeAlias = tuple[Array, Indices, Array, Indices, Array, Array, Array, Indices]
@@ -35,10 +36,9 @@ class Cells:
     Attributes
     ----------
     faces : tuple of Face
-    shape : (n, 11) array
-        q, a, b (three numbers each), e and R of every node, mm.
-    bend : (n, 10) array
-        A, B, C (three numbers each) and e' of every node, mm.
+    nodes : (n, 22) array
+        Of every node, mm: q, a, b (three numbers each), e and R (`shape`); what is added to e; A, B, C (three numbers
+        each) and e' (`bend`).
     link : (n, 5) array of int
         Left and right child (-1 for none), face (index in `faces`, -1 above them), leaf (-1 above leaves), and
         whether q is a point of the face (1 or 0), or the whole cell is (2).
@@ -55,20 +55,26 @@ class Cells:
     """
 
     faces: tuple[Face, ...]
-    shape: Array
-    bend: Array
+    nodes: Array
     link: Indices
     leaf: Array
     edge_start: Indices
     edges: Array
     mismatch: Mismatch | None = None
 
+    @property
+    def shape(self) -> Array:
+        """q, a, b, e and R of every node, (n, 11)."""
+        return self.nodes[:, :11]
+
+    @property
+    def bend(self) -> Array:
+        """A, B, C and e' of every node, (n, 10)."""
+        return self.nodes[:, 12:]
+
     @cached_property
     def data(self) -> ForestData:
-        """The tuple that kernels take: the trees, then the surfaces, all in a row.
-
-        The first array is shape, what is added to e, and bend.
-        """
+        """The tuple that kernels take: the trees, then the surfaces, all in a row."""
         knots: list[Array] = []
         control: list[Array] = []
         layout = []
@@ -90,7 +96,7 @@ class Cells:
 
 
     def missing(self, mismatch: Mismatch | None) -> "Cells":
-        """The same cells with a mismatch of their faces; the arrays of `data` are shared.
+        """The same cells with a mismatch of their faces; the arrays are shared.
 
         Parameters
         ----------
@@ -98,9 +104,7 @@ class Cells:
         """
         if mismatch is None:
             return self
-        new = replace(self, mismatch=mismatch)
-        new.__dict__["data"] = self.data
-        return new
+        return replace(self, mismatch=mismatch)
 
 
 _known: "WeakKeyDictionary[Face, dict[float, Cells]]" = WeakKeyDictionary()
@@ -113,7 +117,7 @@ def cells(face: Face, fineness: float = FINENESS) -> Cells:
     ----------
     face : Face
     fineness : float
-        Distance e at which cells are fine enough, mm.
+        As for `toolaxis.shape.subdivision.subdivided`, mm.
 
     Raises
     ------
@@ -123,7 +127,8 @@ def cells(face: Face, fineness: float = FINENESS) -> Cells:
     found = _known.setdefault(face, {})
     if fineness not in found:
         tree = subdivided(face, fineness)
-        found[fineness] = Cells((), *tree)
+        added = np.where(tree.link[:, 3] >= 0, tree.leaf[tree.link[:, 3], 7], 0.0)
+        found[fineness] = Cells((), np.column_stack([tree.shape, added, tree.bend]), *tree[2:])
     return replace(found[fineness], faces=(face,))
 
 
@@ -148,11 +153,10 @@ def joined(parts: Sequence[Cells]) -> Cells:
     edges = np.cumsum([0, *(len(p.edges) for p in parts)])
     nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
     top_shape, top_link = _branches(np.stack([p.shape[0] for p in parts]), nodes[:-1])
-    top_bend = np.tile([*[0.0] * 9, np.inf], (len(top_shape), 1))
+    top = np.column_stack([top_shape, np.zeros((len(top_shape), 10)), np.full(len(top_shape), np.inf)])
     links = [_shifted(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
     start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
-    return Cells(tuple(f for p in parts for f in p.faces), np.vstack([top_shape, *(p.shape for p in parts)]),
-                 np.vstack([top_bend, *(p.bend for p in parts)]),
+    return Cells(tuple(f for p in parts for f in p.faces), np.vstack([top, *(p.nodes for p in parts)]),
                  np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
                  np.vstack([p.edges for p in parts]))
 
@@ -164,7 +168,7 @@ def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
     ----------
     faces : sequence of Face
     fineness : float
-        Distance e at which cells are fine enough, mm.
+        As for `toolaxis.shape.subdivision.subdivided`, mm.
 
     Raises
     ------

@@ -15,7 +15,10 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+#: Shares of the face's diagonal above which cells are always split, and below which they are split no more.
 _COARSEST, _FINEST = 4, 32
+#: Multiples of the fineness that a cell's parallelogram, and its second-order form, may miss the face by.
+_FLAT, _CURVED = 10.0, 0.1
 #: Trim edges that may run through a leaf unless it is below that share of the face's diagonal: each look at a part of a
 #: leaf clips all of them.
 _EDGES, _CROWDED = 8, 4096
@@ -225,7 +228,8 @@ class _Builder:
         bounds = self.bounds[level.base[:, 0], level.base[:, 2]]
         e, rest = remainder(bounds, half) + self.extra, second_remainder(bounds[:, 3:], half) + self.extra
         longest = 2 * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) + 2 * e
-        fine = (e <= self.fineness + self.extra) & (longest <= self.face.diagonal / _COARSEST)
+        fine = (e <= _FLAT * self.fineness + self.extra) & (rest <= _CURVED * self.fineness + self.extra)
+        fine &= longest <= self.face.diagonal / _COARSEST
         least = max(self.face.diagonal / _FINEST, self.fineness + 2 * self.extra)  # a face without area has no diagonal
         crowded = np.bincount(level.owner, minlength=len(half)) > _EDGES
         crowded &= longest > max(self.face.diagonal / _CROWDED, self.fineness + 2 * self.extra)
@@ -384,8 +388,8 @@ def subdivided(face: Face, fineness: float) -> Tree:
     ----------
     face : Face
     fineness : float
-        Distance e at which cells of at most a quarter of the face's diagonal are left as they are, mm; cells below 1/32
-        of the diagonal are never split.
+        mm: cells of at most a quarter of the face's diagonal are left as they are where e is at most ten times that and
+        e' a tenth; cells below 1/32 of the diagonal are split only where many trim edges run.
 
     Raises
     ------
