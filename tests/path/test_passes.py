@@ -249,7 +249,7 @@ def test_a_part_of_the_face_that_turns_away_may_be_left_out():
         return np.asarray(face.normal(uv)[:, 2] > 0.15)
 
     ball = Tool.ball(6)
-    with pytest.raises(InvalidInput, match="strip width"):
+    with pytest.raises(InvalidInput, match="no usable strip"):
         passes(face, ball, [0, 0, 1], H, "v")
     path = passes(face, ball, [0, 0, 1], H, "v", reach=reach)
     assert path.passes > 10 and path.normal[_cut_points(path), 2].min() >= 0.15 - 1e-3
