@@ -15,12 +15,13 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-#: Shares of the face's diagonal above which cells are always split, and below which they are split no more.
+#: The diagonal of the face divided by these is the length above which cells are always split, and the one below which
+#: they are not split for being curved.
 _COARSEST, _FINEST = 4, 32
 #: Multiples of the fineness that a cell's parallelogram, and its second-order form, may miss the face by.
 _FLAT, _CURVED = 10.0, 0.1
-#: Trim edges that may run through a leaf unless it is below that share of the face's diagonal: each look at a part of a
-#: leaf clips all of them.
+#: A leaf with more trim edges than the first number is split, because each look at a part of it clips all of them; the
+#: diagonal divided by the second number is the length below which it stays.
 _EDGES, _CROWDED = 8, 4096
 _DEEPEST = 48
 _ROUNDING = 1e-12
