@@ -21,6 +21,7 @@ from toolaxis.orient.verdicts import BACK, FREE, GOUGE, WANDERS, Witness
 from toolaxis.path.count import count
 from toolaxis.plan.orientation import OUTCOMES, REASONS
 from toolaxis.progress import Progress
+from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.torus(8, 1)
@@ -227,3 +228,10 @@ def test_allowance_leaves_stock(make):
     job = task(face, TOOL, H, allowance=0.3)
     path = job.made(found.axis, found.feed)
     assert segment_penetration(TOOL, path.cl, found.axis, (face,), allowance=0.298).max() <= 0.0005
+
+
+def test_how_far_a_cutter_reaches_is_told_in_tenths_where_no_spread_is_told():
+    t, s = np.meshgrid(np.linspace(0, 5.2, 12), np.linspace(-1.2, 1.2, 7), indexing="ij")
+    drop = Face.from_bspline(20 * np.stack([np.cos(s) * np.cos(t), np.cos(s) * np.sin(t), np.sin(s)], axis=-1))
+    found = best_axis(drop, Tool.ball(6), H)
+    assert "over more than a hemisphere" in found.reasons[0] and "reaches 90.0 deg" in found.reasons[0]

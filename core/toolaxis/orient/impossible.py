@@ -33,9 +33,11 @@ def spread_too_wide(feasibility: Feasibility) -> str:
     if cap.centre.any() and cap.radius <= most + 1e-9:
         return ""
     rim = feasibility.face.evaluate(feasibility.normals.kept[cap.rim]).point
-    spread = degrees(cap.radius) if cap.centre.any() else 90.0
-    angle, limit = told_apart(spread, degrees(most), 1)
-    size = f"up to {angle} deg to all sides of their middle" if cap.centre.any() else "over more than a hemisphere"
+    if cap.centre.any():
+        angle, limit = told_apart(degrees(cap.radius), degrees(most), 1)
+        size = f"up to {angle} deg to all sides of their middle"
+    else:
+        size, limit = "over more than a hemisphere", f"{degrees(most):.1f}"
     return (f"no single axis reaches all of face {feasibility.face.label}: its normals spread {size}, as at "
             f"{', '.join(place(p) for p in rim)}, and the cutter reaches {limit} deg from the axis; divide the face "
             "into sub-surfaces with an axis each (--regions N)")
