@@ -65,8 +65,8 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
 
     Where the axis moves, its passes are drawn, and where it makes two contacts, the cutter at the widest of them.
 
-    The operation on the largest face also gets what takes longer: the study of estimate and count, and the axis of the
-    paper's sectors marked on its hemisphere.
+    In a plan that was compared with other methods the operation on the largest face also gets what takes longer: the
+    study of estimate and count, and the axis of the paper's sectors marked on its hemisphere.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     copies = {} if plan.blades is None else plan.blades.copies
     originals = [op for op in plan.operations if op.number not in copies]
     done = [op for op in originals if op.done]
-    largest = max(done, key=lambda op: op.face.area, default=None)
+    studied = max(done, key=lambda op: op.face.area, default=None) if plan.baselines else None
     for index, op in enumerate(originals):
         progress.report("drawing", index, len(originals))
         job = search_task(plan, op, Progress(None, progress.cancelled))
         if op.orientation.map is not None:
-            marks = {**_marks(op), **_baselines(plan, job, op is largest)}
+            marks = {**_marks(op), **_baselines(plan, job, op is studied)}
             hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
                                op.name).savefig(folder / f"{op.name}-axes.png", dpi=DPI)
         if op.done:
@@ -112,7 +112,7 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
         if op.done:
             widths_picture(width_lines(plan, op, job), (op.face, plan.tool),
                            op.name).savefig(folder / f"{op.name}-widths.png", dpi=DPI)
-        if op is largest:
+        if op is studied:
             _draw_study(plan, op, job, folder)
 
 
