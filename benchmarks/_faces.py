@@ -27,6 +27,8 @@ _COUNTED = {"gouge": "with a gouge", "holder": "with a collision of the holder",
             "shank": "with a collision of the shank", "cutter at walls": "with a collision of the cutter",
             "wanders": "(?:with a contact that wanders|too near to a normal)", "limits": "outside the limits",
             "normals spread": "(?:on the back of the surface|too far from a normal)"}
+#: Share of its area that a face's operations have, at least, where all of them were made.
+_WHOLE = 0.99
 _STAGE, _JUDGED = re.compile(r"^face (\d+)\S* \(\d+ of \d+\)"), re.compile(r"^(\S+) \(\d+ of \d+\)")
 
 
@@ -116,6 +118,9 @@ def outcomes(areas: Mapping[int, float], plan: Document | None, planned: Ran, ve
         if some:
             found = _of_operations(some, verdicts, judged)
             found["verified_area"] = min(area, sum(_verified(op, verdicts, areas) for op in some))
+            in_work = plan is not None and plan.get("outcome") == "cancelled" and begun[-1:] == [str(number)]
+            if found["verified"] and in_work and sum(op["area"] for op in some) < _WHOLE * area:
+                found |= {"outcome": "open", "kind": f"not finished: {why_stopped(planned)}", "verified": False}
         else:
             found = _without_plan(str(number), planned, begun)
             found["verified_area"] = 0.0

@@ -137,3 +137,9 @@ def test_faces_lost_with_another_ones_exception_are_told_from_it() -> None:
     assert [row["kind"] for row in rows] == ["", "time", "not begun: time"]
     assert [row["verified_area"] for row in rows] == [7.5, 0.0, 0.0]
     assert [row["verified"] for row in rows] == [True, False, False]
+    piece = {**plan["operations"][0], "name": "op02-face7a", "face": 7, "faces": [7], "area": 5.0}
+    plan = {"outcome": "cancelled", "operations": [*plan["operations"], piece]}
+    verdict = {"operations": [*verdict["operations"], {**verdict["operations"][0], "name": "op02-face7a"}]}
+    rows = outcomes({3: 10.0, 7: 20.0, 9: 30.0}, plan, stopped, verdict, stopped)
+    assert [row["kind"] for row in rows] == ["", "not finished: time", "not begun: time"], "a quarter of it is not all"
+    assert rows[1]["verified_area"] == 3.75 and not rows[1]["verified"]

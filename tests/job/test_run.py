@@ -195,6 +195,23 @@ def test_a_face_with_a_kink_is_divided_there(tmp_path: Path) -> None:
     assert verdict.passed, verdict.reasons
 
 
+def test_a_face_of_a_hundred_small_facets_is_left_in_one_sentence() -> None:
+    """A tip cap of plane strips took seven seconds for each of 142 facets."""
+    from toolaxis.shape.kinks import with_kinks
+
+    angle = np.radians(2.0) * np.arange(21)
+    rim = np.stack([30 * np.sin(angle), 30 * np.cos(angle)], axis=1)
+    strip = np.array([[[x, y, z] for y in (0.0, 0.5)] for x, z in rim])
+    even = np.concatenate([[0.0], np.linspace(0, 1, 21), [1.0]])
+    facets = with_kinks(ta.Face.from_bspline(strip, degree=(1, 1), knots=(even, [0, 0, 1, 1])))
+    made = ta.plan(facets, "ball:6", 0.1)
+    assert made.outcome == "incomplete" and [op.face.label for op in made.operations] == ["1"]
+    why, = made.operations[0].orientation.reasons
+    assert why.startswith("face 1 is left to clean-up as a whole: kinks cut its 10.5 mm2 into 20 facets")
+    assert made.operations[0].zones[0].area == pytest.approx(facets.area)
+    assert len(ta.plan(facets, "ball:1", 0.1, machine="cone:0,0,1,60").operations) == 20
+
+
 def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
                                                                monkeypatch: pytest.MonkeyPatch) -> None:
     from toolaxis.job import baselines

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
+from toolaxis.job.targets import faceted
 from toolaxis.orient.impossible import tight_fillet
 from toolaxis.partition.blades import Bladed, NoPattern, blades_of
 from toolaxis.partition.buried import uncovered
@@ -18,7 +19,7 @@ from toolaxis.partition.turned import Counterpart, best_motion, counterpart, off
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
-from toolaxis.shape.kinks import letters, split_at_kinks
+from toolaxis.shape.kinks import letters
 from toolaxis.shape.part import PLAIN_KINDS, Body, Part
 from toolaxis.tools.assembly import Tool
 
@@ -28,8 +29,6 @@ Array = NDArray[np.float64]
 ALIKE = 1e-3
 #: Closed bodies smaller than this share of the part's diagonal are there by mistake.
 _STRAY = 5e-3
-#: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
-_FACETS = 8
 #: Greatest turn of normals across a strip of an edge, and of a fillet, rad.
 _NOSE, _FILLET = np.radians(95.0), np.radians(50.0)
 
@@ -252,7 +251,7 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
     """
     refused = too_narrow(pattern, tool, clearance)
     left = {face.number: why for face in pattern.first
-            for why in [_facets(face, tool) or _tight(face, pattern.blades.side_of(face.number), tool)] if why}
+            for why in [faceted(face, tool) or _tight(face, pattern.blades.side_of(face.number), tool)] if why}
     divided: list[Face] = []
     whole: list[Face] = []
     for face in pattern.first:
@@ -266,15 +265,6 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
         else:
             whole += strips(face, _FILLET) if name == "fillet" else (face,)
     return Share(tuple(divided), tuple(whole), refused, left)
-
-
-def _facets(face: Face, tool: Tool) -> str:
-    """Why a face is left to clean-up: kinks cut it into facets, too many and too small for axes; empty where not."""
-    count = len(split_at_kinks(face))
-    if count <= _FACETS or face.area > count * tool.radius**2:
-        return ""
-    return (f"face {face.number} is left to clean-up as a whole: kinks cut its {face.area:.1f} mm2 into {count} facets "
-            "that are too small for axes of their own; make it smooth in CAD to have it machined")
 
 
 def _tight(face: Face, side: str, tool: Tool) -> str:

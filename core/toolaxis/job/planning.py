@@ -184,7 +184,7 @@ class Job:
         made = self._as_asked(faces, progress)
         free = "auto" in (self.regions, self.orientations) or (self.regions is None and self.orientations is not None)
         if self.inputs.objective != "time" or not free or made.outcome == "cancelled" \
-                or len(made.operations) == len(smooth_pieces((*faces, *self.whole))):
+                or len(made.operations) == len(smooth_pieces((*faces, *self.whole), self.tool)):
             return made
         whole = replace(self, regions=None, orientations=None)._as_asked(faces, progress.within("undivided"))
         most = self.orientations if isinstance(self.orientations, int) else np.inf
@@ -195,7 +195,7 @@ class Job:
         options: tuple[Option, ...] = ()
         order = [face.number for face in (*faces, *self.whole)]
         given = given_targets(self.part, self.division, order)
-        pieces = smooth_pieces(face for face in faces if face.number not in given)
+        pieces = smooth_pieces((face for face in faces if face.number not in given), self.tool)
         faces = [target.face for target in pieces if target.ended is None]
         try:
             targets: list[Target] = []
@@ -204,7 +204,7 @@ class Job:
             elif faces:
                 targets = self._divided(faces, progress)
             targets += [target for target in pieces if target.ended is not None]
-            targets += smooth_pieces(face for face in self.whole if face.number not in given)
+            targets += smooth_pieces((face for face in self.whole if face.number not in given), self.tool)
             targets = with_given(targets, given, [] if self.orientations else order)
             if self.inputs.method == "one":
                 return self._alike(targets, progress)

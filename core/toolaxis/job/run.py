@@ -218,7 +218,7 @@ def _bladed(job: Job, compare: bool, progress: Progress) -> tuple[Plan | None, t
 def _compared(job: Job, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
     """A plan with what other methods come to."""
     plain = replace(job, regions=None, orientations=None, division=())
-    pieces = [target.face for target in smooth_pieces(faces)]
+    pieces = [target.face for target in smooth_pieces(faces, job.tool) if target.ended is None]
     return went_on(went_on(made, _in_time), lambda plan: compared(
         plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))
 

@@ -18,9 +18,11 @@ from toolaxis.orient.indexed import Task
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
+from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part
+from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 
@@ -28,6 +30,8 @@ Array = NDArray[np.float64]
 LOCKED, REFUSED_LOCK, REFUSED_HINT = "locked by hand: ", "locked axis refused: ", "axis kept so far refused: "
 #: Share of a face that may lie in two sub-surfaces, or of a sub-surface outside its face, by how finely it is looked.
 _SLACK, _GRID = 0.01, 48
+#: A face of more facets, each smaller on the mean than the square of the cutter's radius, is not machined.
+_FACETS = 16
 
 
 class Target(NamedTuple):
@@ -121,22 +125,45 @@ def lost(face: Face, why: Fault) -> Target:
     return Target(face, ended=failed(1, face, why))
 
 
-def smooth_pieces(faces: Iterable[Face]) -> list[Target]:
-    """Faces divided where they have kinks.
+def faceted(face: Face, tool: Tool) -> str:
+    """Why a face is left to clean-up: kinks cut it into facets, too many and too small for axes; empty where not.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    """
+    count = len(split_at_kinks(face))
+    if count <= _FACETS or face.area > count * tool.radius**2:
+        return ""
+    return (f"face {face.number} is left to clean-up as a whole: kinks cut its {face.area:.1f} mm2 into {count} facets "
+            "that are too small for axes of their own; make it smooth in CAD to have it machined")
+
+
+def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:
+    """Faces divided where they have kinks; those that are left to clean-up for too many of them have ended.
 
     Parameters
     ----------
     faces : iterable of Face
+    tool : Tool
     """
     found: list[Target] = []
     for face in faces:
         try:
-            found += map(Target, split_at_kinks(face))
+            why = faceted(face, tool)
+            found += [_left_whole(face, why)] if why else map(Target, split_at_kinks(face))
         except Cancelled:
             raise
         except Exception as reason:
             found.append(lost(face, fault(reason)))
     return found
+
+
+def _left_whole(face: Face, why: str) -> Target:
+    """A face that is left to clean-up before an axis was looked for."""
+    none = Orientation(None, outcome="not_found", reasons=(why,))
+    return Target(face, ended=Operation(1, face, none, zones=(Zone(face.outline, face.area),)))
 
 
 def not_divided(part: Part, division: Sequence[SubSurface]) -> tuple[str, ...]:
