@@ -157,3 +157,9 @@ def test_invalid_parts_and_numbers_are_refused(make, sentence):
 
 def test_warnings_add_up():
     assert chain(["convex"]).with_warnings("a").with_warnings("b", "c").warnings == ("a", "b", "c")
+
+
+def test_parts_and_faces_are_told_in_one_line() -> None:
+    part = Part.from_faces([strip((1, 0)), strip((0, 1), 2)])
+    assert repr(part) == "<Part of 2 faces, 2 sculptured>"
+    assert repr(part.faces) == "(<Face 1, bspline>, <Face 2, bspline>)"

@@ -224,6 +224,11 @@ class Plan:
         """
         return self.part if self.blades is None else self.blades.apart(self.part, number)
 
+    def __repr__(self) -> str:
+        """One line: all paths written out are thousands."""
+        done = sum(op.done for op in self.operations)
+        return f"<Plan of {len(self.operations)} operations, {done} with a path: {self.outcome}>"
+
     @property
     def not_checked(self) -> tuple[str, ...]:
         """What the collision check left out because it was not given."""

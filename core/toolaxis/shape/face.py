@@ -89,6 +89,10 @@ class Face:
             if signed_area(loop) == 0.0:
                 raise InvalidInput(f"trim loop {index} of face {self.label} encloses no area: give a closed loop")
 
+    def __repr__(self) -> str:
+        """One line: all arrays written out are thousands."""
+        return f"<Face {self.label}, {self.kind}>"
+
     @property
     def numbers(self) -> tuple[int, ...]:
         """Numbers of the faces that it was joined from; its own where it is one face."""

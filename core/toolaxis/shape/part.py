@@ -112,6 +112,10 @@ class Part:
             edges = edges_from_borders(numbered, matched(sides, whole.diagonal)) if sides else ()
         return cls(numbered, tuple(edges), (body,), source, warnings=seam_warnings(edges))
 
+    def __repr__(self) -> str:
+        """One line: all arrays written out are thousands."""
+        return f"<Part of {len(self.faces)} faces, {len(self.sculptured)} sculptured>"
+
     @cached_property
     def _by_number(self) -> dict[int, Face]:
         return {face.number: face for face in self.faces}
