@@ -1,9 +1,14 @@
 """Found: what strips leave beside a wall was told from contacts alone; the judge found more left than the plan said."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 import toolaxis as ta
 from toolaxis.orient.indexed import evaluate_axis, task
+from toolaxis.verify.task import Task as Judged
+from toolaxis.verify.verdict import judge
 
 
 def test_what_the_strips_leave_is_told() -> None:
@@ -16,6 +21,12 @@ def test_what_the_strips_leave_is_told() -> None:
     found = evaluate_axis(face, tool, [0.2, 0, 0.98], 0.1, obstacles=walls, feed="u")
     assert found.outcome == "feasible", found.reasons
     job = task(face, tool, 0.1, obstacles=walls)
-    uncut = job.laid(found.axis, "u").uncut
-    assert job.feasibility.unreached(found.axis) < uncut - 0.001, "contacts alone tell it all: find another case"
-    assert found.unreached >= uncut
+    path = job.made(found.axis, "u")
+    zones = job.left_by(path)
+    assert found.unreached == sum(zone.area for zone in zones) / face.area
+    assert job.feasibility.unreached(found.axis) < found.unreached, "contacts alone tell it all: find another case"
+    asked = Judged("op", path.cl, path.axis, path.kind, tool.profile, (face,), 0.1)
+    assert 1 - judge(asked).share_within == pytest.approx(found.unreached, abs=5e-4)
+    declared = tuple(face.trimmed(zone.loops) for zone in zones)
+    seen = judge(replace(asked, left=declared))
+    assert seen.passed and seen.share_within >= 0.9995, seen.reasons

@@ -70,7 +70,7 @@ def test_a_pass_along_the_edge_is_free(case, tolerance, parts):
     kind = np.full(len(places), Motion.CUT, dtype=np.int8)
     own = [face for face in groups[SKIN].faces if face.number != case.face]
     found = judge(Task("op", places, np.tile(axis, (len(places), 1)), kind, case.tool.profile, (part.face(case.face),),
-                       0.02, clean_up=1.0, skin=tuple(own), touching=behind.faces, tolerance=limit))
+                       0.02, left=(part.face(case.face),), skin=tuple(own), touching=behind.faces, tolerance=limit))
     assert found.passed, found.reasons
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import Cancelled, InvalidInput
-from toolaxis.job.axes import Remembering, rule_of_thumb, search_task, try_axis, with_operations
+from toolaxis.job.axes import rule_of_thumb, try_axis, with_operations
 from toolaxis.job.judge import verify
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
@@ -18,17 +18,6 @@ def test_the_plans_own_axis_comes_to_what_the_plan_says(small_plan: Plan) -> Non
     assert np.allclose(again.path.cl, op.path.cl, atol=1e-9)
     assert np.allclose(again.frame.part_from_work, op.frame.part_from_work)
     assert again.orientation.map is op.orientation.map
-
-
-def test_the_passes_of_an_axis_are_not_those_of_another_that_was_tried_after_it(small_plan: Plan) -> None:
-    """Where passes miss some of the face other axes are tried too, and the first one may still be the best."""
-    op = small_plan.operations[0]
-    own, seen = op.orientation, op.orientation.map
-    other = seen.axis[np.argsort(seen.length)[(seen.reason == 0).sum() // 2]]
-    job = Remembering(search_task(small_plan, op))
-    first, _ = job.made(own.axis, own.feed), job.made(other, own.feed)
-    assert job.path_of(own) is first
-    assert np.allclose(first.axis, own.axis) and not np.allclose(other, own.axis)
 
 
 def test_another_axis_costs_more_and_may_be_taken_over(small_plan: Plan) -> None:

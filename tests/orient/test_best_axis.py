@@ -151,13 +151,12 @@ def test_next_to_a_wall_a_clean_up_zone_stays_and_is_told(make):
     found = best_axis(part.faces[0], HELD, H, part=part)
     assert found.outcome == "feasible"
     job = task(part.faces[0], HELD, H, part=part)
-    at_contacts = job.feasibility.unreached(found.axis)
-    laid = job.laid(found.axis, found.feed)
-    assert found.unreached == pytest.approx(max(at_contacts, laid.uncut), abs=1e-12)
-    assert found.unreached == pytest.approx(at_contacts, rel=0.1)
+    path = job.made(found.axis, found.feed)
+    zones = job.left_by(path)
+    assert found.unreached == pytest.approx(sum(zone.area for zone in zones) / part.faces[0].area, abs=1e-12)
+    assert found.unreached == pytest.approx(job.feasibility.unreached(found.axis), rel=0.1)
     assert found.clearance["cutter"] >= 0.1 - 0.006 and found.clearance["holder"] >= 1.0 - 0.006
     assert (found.unreached > 0) == any("clean-up" in reason for reason in found.reasons)
-    path = job.made(found.axis, found.feed)
     wall = next(group for group in job.groups if group.role == OTHER)
     assert path.cl[:, 1].max() < wall.faces[0].box[1, 1]
     assert prove(path, HELD, job.groups).witness is None

@@ -82,7 +82,7 @@ def test_zones_and_machined_area_are_the_face(made: tuple[Task, ToolPath]) -> No
 def test_the_judge_finds_the_same_area_left(made: tuple[Task, ToolPath]) -> None:
     job, path = made
     face = job.worth.face
-    given = Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (face,), SCALLOP, clean_up=1.0)
+    given = Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (face,), SCALLOP)
     seen = judge(given, spacing=0.12)
     share = sum(zone.area for zone in left_over(face, TOOL, path, SCALLOP)) / face.area
     assert 1 - seen.share_within == pytest.approx(share, abs=1.5e-3)

@@ -191,7 +191,7 @@ def judged(remaining: float, gouge: float) -> SurfaceMap:
     deep[300] = gouge
     none = np.full(len(uv), -1)
     return SurfaceMap(face, uv, point, np.ones(len(uv)), np.zeros(len(uv), dtype=bool), left, deep, none, none, 1.0,
-                      None, None)
+                      None, None, np.zeros(len(uv), dtype=bool))
 
 
 def test_maps_show_what_is_beyond_the_limits(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ def cut_along_the_edge(tips, axis, target=TOP, **change):
     tips, axis = np.atleast_2d(tips), np.asarray(axis) / np.linalg.norm(axis)
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     given = {"touching": (SIDE,), "tolerance": Tolerance(gouge=0.002), **change}
-    return judge(Task("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02, clean_up=1.0, **given),
+    return judge(Task("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02, left=(target,), **given),
                  spacing=0.2)
 
 

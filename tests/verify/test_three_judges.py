@@ -66,7 +66,7 @@ def judged(solid, tool, tips, axis, tolerance, role="skin"):
     given = {role: solid.faces[1:]} if role != "alone" else {}
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     axes = np.tile(axis, (len(tips), 1))
-    return judge(Task("op", tips, axes, kind, tool.profile, solid.faces[:1], 0.02, clean_up=1.0,
+    return judge(Task("op", tips, axes, kind, tool.profile, solid.faces[:1], 0.02, left=solid.faces[:1],
                       tolerance=Tolerance(gouge=tolerance), **given), spacing=min(0.25, 0.2 * tool.corner_radius))
 
 

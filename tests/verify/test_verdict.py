@@ -82,12 +82,48 @@ def test_missing_pass_is_a_zone_not_reached(plane_passes):
     assert "on face 7" in found.reasons[0]
 
 
-def test_declared_clean_up_is_allowed_for(plane_passes):
-    most = task(plane_passes, targets=(rectangle([-8, -8, 0], [16, 0, 0], [0, 32, 0], 7),), clean_up=0.45)
-    found = judge(most, spacing=0.5)
+WIDE = rectangle([-8, -8, 0], [16, 0, 0], [0, 32, 0], 7)
+
+
+def beyond(y):
+    """The piece of the wide floor on the far side of y."""
+    v = (y + 8) / 32
+    return WIDE.trimmed((np.array([[0, v], [1, v], [1, 1], [0, 1.0]]),))
+
+
+def test_in_declared_zones_nothing_is_asked_for(plane_passes):
+    bare = task(plane_passes, targets=(WIDE,))
+    lost = judge(bare, spacing=0.5)
+    assert not lost.passed
+    assert lost.share_within == pytest.approx(0.55, abs=0.05)
+    assert lost.zones[0].reason == "not reached"
+    edge = 9.8  # a little before the strip of the last pass ends
+    found = judge(replace(bare, left=(beyond(edge),)), spacing=0.5)
     assert found.passed
-    assert found.share_within == pytest.approx(0.55, abs=0.05)
-    assert found.zones[0].reason == "not reached"
+    assert found.share_within == 1.0
+    assert not found.zones
+    assert found.scallop_max <= 0.02 * 1.02
+    assert found.declared == pytest.approx(16 * (24 - edge), rel=0.02)
+
+
+def test_a_zone_declared_too_small_does_not_hide_what_lies_beside_it(plane_passes):
+    """The same share of the area elsewhere would hide it, were shares compared."""
+    bare = task(plane_passes, targets=(WIDE,))
+    found = judge(replace(bare, left=(beyond(12.0),)), spacing=0.5)
+    assert not found.passed
+    assert found.zones[0].low[1] == pytest.approx(9.9, abs=0.5)
+    assert found.zones[0].high[1] < 12.0
+    assert "of the area that is not left to clean-up is within" in found.reasons[0]
+    good = WIDE.trimmed((np.array([[0, 0], [1, 0], [1, 0.48], [0, 0.48]]),))  # all of it is machined
+    assert not judge(replace(bare, left=(good,)), spacing=0.5).passed
+
+
+def test_just_outside_of_a_zone_is_a_strip_in_which_nothing_is_asked_for(plane_passes):
+    """Outlines are straight between their vertices: a hundredth of the cutter's radius beside them is theirs."""
+    floor = replace(FLOOR, number=7, label="7")
+    half = floor.trimmed((np.array([[0, 0], [0.5, 0], [0.5, 1], [0, 1.0]]),))
+    found = judge(task(plane_passes, targets=(floor,), left=(half,)), spacing=0.05)
+    assert found.declared == pytest.approx(16 * (8 + 0.01 * 6), rel=2e-3)
 
 
 def test_planted_gouge_is_named_with_face_place_and_motion(plane_passes):
@@ -116,7 +152,7 @@ def test_gouge_into_the_skin_counts(plane_passes):
 
 
 def test_link_through_what_the_passes_leave_is_named(plane_passes):
-    gap = task(plane_passes, targets=(rectangle([-8, -8, 0], [16, 0, 0], [0, 32, 0], 7),), clean_up=0.45)
+    gap = task(plane_passes, targets=(WIDE,), left=(beyond(9.8),))
     assert judge(gap, spacing=0.5).link_cut is None
     home = gap.tips[-1:] + np.array([[0.0, 4.0, 0.0]])
     # The lowest point of the corner is 5 sin 10 deg + 1 - cos 10 deg below the tip: here 0.3 mm above the face.
@@ -169,7 +205,7 @@ def test_verdict_of_many_and_its_sentences(plane_passes):
 
 
 @pytest.mark.parametrize(("change", "message"), [
-    ({"scallop": 0.0}, "scallop limit"), ({"targets": ()}, "machines no face"), ({"clean_up": 1.5}, "clean-up share"),
+    ({"scallop": 0.0}, "scallop limit"), ({"targets": ()}, "machines no face"), ({"left": (WIDE,)}, "does not machine"),
     ({"allowance": np.nan}, "allowance")])
 def test_bad_tasks_are_named(plane_passes, change, message):
     with pytest.raises(InvalidInput, match=message):

@@ -16,6 +16,9 @@ from toolaxis.progress import Progress
 from toolaxis.report.tables import verdict_table
 from toolaxis.verify.verdict import Verdict
 
+#: Operations that are named with what they leave; the others are counted.
+_TOLD = 10
+
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
     """Judge a plan's folder, write verdict.json and the maps beside it, and print the verdict.
@@ -48,10 +51,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         print_json(document)
     else:
         print_table(verdict_table(plan, verdict))
-    for op in plan.operations:
-        if op.done and op.orientation.unreached > 0:
-            say(f"toolaxis: {op.name}: the plan leaves {100 * op.orientation.unreached:.1f} % of the area, at "
-                "walls, to clean-up: that share was not asked for")
+    for line in set_aside(verdict):
+        say(f"toolaxis: {line}")
     missing = not_judged(plan, verdict)
     if missing:
         say(f"toolaxis: not checked: {', '.join(missing)}")
@@ -76,3 +77,19 @@ def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress) -> Non
         say("toolaxis: stopped while drawing; the verdict is whole, pictures are missing")
     except Exception as reason:
         say(f"toolaxis: warning: pictures are missing ({type(reason).__name__}: {reason}); the verdict is whole")
+
+
+def set_aside(verdict: Verdict) -> list[str]:
+    """Where the plan leaves zones to a clean-up tool, and how much that is: no scallop height was asked for there.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    """
+    some = [op for op in verdict.operations if op.declared > 0]
+    told = [f"{op.name}: {op.declared:.2f} mm2, {100 * op.declared / op.area:.2f} % of the area, lie in zones that the "
+            "plan leaves to clean-up: no scallop height was asked for there" for op in some[:_TOLD]]
+    if len(some) > _TOLD:
+        area = sum(op.declared for op in some[_TOLD:])
+        told.append(f"the same is true of {len(some) - _TOLD} further operations, {area:.2f} mm2 in all")
+    return told

@@ -17,38 +17,70 @@ Array = NDArray[np.float64]
 RESOLUTION = 1e-6
 _HALVINGS = 60
 _ROWS = 64
+#: Motions that follow each other are looked at together.
+_GROUP = 16
 
 
 @compiled
-def _least(cutter: Array, widest: float, moves: Array, points: Array, most: float, out: Array) -> None:
-    """Points and moves (middle, half way, half length) in the frame whose z is the axis."""
+def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
+    """The least of a bound and the distance of a point to the cutter on one motion.
+
+    Along a motion the distance is convex: beyond the middle it stays above the line from the other end to the middle.
+    """
+    up, half = (0.0, 0.0, 1.0), move[6]
+    x, y, z = point[0] - move[0], point[1] - move[1], point[2] - move[2]
+    value = float(signed_distance(cutter, up, x, y, z))
+    if value - half >= best:
+        return best
+    before = float(signed_distance(cutter, up, x + move[3], y + move[4], z + move[5]))
+    after = float(signed_distance(cutter, up, x - move[3], y - move[4], z - move[5]))
+    best = min(best, value, before, after)
+    if 2.0 * value - max(before, after, value) >= best:
+        return best
+    low, high = -1.0, 1.0
+    for _ in range(_HALVINGS):
+        if (high - low) * half < RESOLUTION:
+            break
+        s, t = low + (high - low) / 3.0, high - (high - low) / 3.0
+        one = float(signed_distance(cutter, up, x - s * move[3], y - s * move[4], z - s * move[5]))
+        other = float(signed_distance(cutter, up, x - t * move[3], y - t * move[4], z - t * move[5]))
+        best = min(best, one, other)
+        if min(one, other) - (high - low) * half >= best:
+            break
+        if one < other:
+            high = t
+        else:
+            low = s
+    return best
+
+
+@compiled
+def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
+    """Points and moves (middle, half way, half length) in the frame whose z is the axis; the nearest group first.
+
+    Distances are told between told[0], from which on nothing less is looked for, and told[1].
+    """
     up = (0.0, 0.0, 1.0)
+    groups = balls.shape[0]
+    bound = np.empty(groups)
     for i in range(points.shape[0]):
-        best = most
-        for k in range(moves.shape[0]):
-            half = moves[k, 6]
-            x, y, near = points[i, 0] - moves[k, 0], points[i, 1] - moves[k, 1], widest + half + best
-            if x * x + y * y >= near * near:
+        nearest = 0
+        for g in range(groups):
+            x, y, z = points[i, 0] - balls[g, 0], points[i, 1] - balls[g, 1], points[i, 2] - balls[g, 2]
+            bound[g] = signed_distance(cutter, up, x, y, z) - balls[g, 3]
+            if bound[g] < bound[nearest]:
+                nearest = g
+        best = told[1]
+        for turn in range(-1, groups):
+            if best <= told[0]:
+                break
+            g = nearest if turn < 0 else turn
+            if bound[g] >= best or turn == nearest:
                 continue
-            z = points[i, 2] - moves[k, 2]
-            value = signed_distance(cutter, up, x, y, z)
-            if value - half >= best:
-                continue
-            best = min(best, value)
-            low, high = -1.0, 1.0
-            for _ in range(_HALVINGS):
-                if (high - low) * half < RESOLUTION:
+            for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
+                best = _least_of(cutter, moves[k], points[i], best)
+                if best <= told[0]:
                     break
-                s, t = low + (high - low) / 3.0, high - (high - low) / 3.0
-                one = signed_distance(cutter, up, x - s * moves[k, 3], y - s * moves[k, 4], z - s * moves[k, 5])
-                other = signed_distance(cutter, up, x - t * moves[k, 3], y - t * moves[k, 4], z - t * moves[k, 5])
-                best = min(best, one, other)
-                if min(one, other) - (high - low) * half >= best:
-                    break
-                if one < other:
-                    high = t
-                else:
-                    low = s
         out[i] = best
 
 
@@ -78,7 +110,7 @@ def distance_to_removed_numpy(tool: Tool, axis: Array, starts: Array, ends: Arra
 
 
 def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: ArrayLike, points: ArrayLike,
-                        most: float = np.inf) -> Array:
+                        most: float = np.inf, least: float = -np.inf) -> Array:
     """Signed distance of points to the union of a cutter's positions on straight motions.
 
     Parameters
@@ -91,8 +123,9 @@ def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: Ar
         Tips at both ends of each motion, mm.
     points : (n, 3) array_like
         mm
-    most : float
-        Distances greater than this are told as this, mm: they take less time.
+    most, least : float
+        Distances greater than `most` are told as this, mm, and where one is not above `least` no lesser one is looked
+        for: both take less time.
 
     Returns
     -------
@@ -108,7 +141,7 @@ def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: Ar
     -----
     The distance to a convex cutter is a convex function of its place, and changes by no more than the place does: a
     motion whose middle is farther away than the best one by half its length is left out, on others the least is
-    found by thirds.
+    found by thirds.  So are groups of motions that follow each other.
 
     **Properties**: 1. it never rises with more motions; 2. it turns with tool and points.
     """
@@ -121,6 +154,18 @@ def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: Ar
     half = (b - a) / 2
     moves = np.ascontiguousarray(np.column_stack([(a + b) / 2 @ frame, half @ frame, np.linalg.norm(half, axis=1)]))
     out = np.empty(len(p))
-    _least(cutter_numbers(tool, tool.radius / 2, 0.0), max(tool.radius, tool.profile.top_radius), moves,
-           np.ascontiguousarray(p @ frame), float(most), out)
+    _least(cutter_numbers(tool, tool.radius / 2, 0.0), _balls(moves), moves, np.ascontiguousarray(p @ frame),
+           (float(least), float(most)), out)
     return out
+
+
+def _balls(moves: Array) -> Array:
+    """Centres of groups of motions, and how far any place on them is from there, (g, 4)."""
+    first = np.arange(0, len(moves), _GROUP)
+    owner = np.arange(len(moves)) // _GROUP
+    count = np.diff(np.append(first, len(moves)))
+    balls = np.empty((len(first), 4))
+    balls[:, :3] = np.add.reduceat(moves[:, :3], first) / count[:, None] if len(first) else 0.0
+    far = np.linalg.norm(moves[:, :3] - balls[owner, :3], axis=1) + moves[:, 6]
+    balls[:, 3] = np.maximum.reduceat(far, first) if len(first) else 0.0
+    return balls

@@ -19,8 +19,6 @@ from toolaxis.orient.polish import counted
 from toolaxis.orient.reasons import sentence
 from toolaxis.orient.sector import roman_axis
 from toolaxis.orient.worth import FEEDS
-from toolaxis.path.chart import IsoChart
-from toolaxis.path.layout import Layout
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -87,38 +85,6 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
     return work_coordinates(found.axis, feeds, datum, middle)
 
 
-class Remembering(Task):
-    """A task that keeps the passes it made: the axis that is accepted need not be the last one that was tried."""
-
-    _made: dict[tuple[bytes, str], ToolPath]
-
-    def __init__(self, job: Task) -> None:
-        super().__init__(job.feasibility, job.worth, job.groups, job.chord, job.progress, job.direction)
-        object.__setattr__(self, "_made", {})
-
-    def path_of(self, found: Orientation) -> ToolPath | None:
-        """The passes that were made with an axis and its feed; None where there is no axis.
-
-        Parameters
-        ----------
-        found : Orientation
-            From a search with this task.
-        """
-        return None if found.axis is None else self._made[unit(found.axis).tobytes(), found.feed]
-
-    def traced(self, placed: Layout) -> ToolPath:
-        """Passes with their links.
-
-        Parameters
-        ----------
-        placed : Layout
-        """
-        path = super().traced(placed)
-        assert isinstance(placed.chart, IsoChart)
-        self._made[placed.cut.axis.tobytes(), placed.chart.feed] = path
-        return path
-
-
 def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None,
              progress: Progress = NO_PROGRESS) -> Operation:
     """The operation as it would be with a given axis, judged as the search judges its own.
@@ -145,11 +111,12 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
         When the user asked to stop.
     """
     with heard(progress):
-        found, path = judged(search_task(plan, op, progress), axis, feed)
+        job = search_task(plan, op, progress)
+        found, path = judged(job, axis, feed)
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if path is None:
         return Operation(op.number, op.face, found)
-    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum))
+    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum), job.left_by(path))
 
 
 def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation, ToolPath | None]:
@@ -167,20 +134,19 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
     Cancelled
         When the user asked to stop.
     """
-    job = Remembering(task)
-    t = held_axis(job.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
-    witness = job.feasibility.witness(t)
-    found = Orientation(None, outcome="infeasible")
+    t = held_axis(task.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
+    witness = task.feasibility.witness(t)
+    found, path = Orientation(None, outcome="infeasible"), None
     if witness is None:
-        ledger = Ledger(job.feasibility, job.worth, job.progress)
+        ledger = Ledger(task.feasibility, task.worth, task.progress)
         ledger.look(t[None])
-        found, proof, _ = finished(job, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
-        witness = proof.witness
-    job.progress.check()
+        done = finished(task, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
+        found, path, witness = done.orientation, done.path, done.proof.witness
+    task.progress.check()
     if witness is not None:
-        reasons = (f"infeasible: {sentence(witness, job.feasibility)}",)
-        found = Orientation(None, found.feed, outcome="infeasible", reasons=reasons)
-    return found, job.path_of(found)
+        reasons = (f"infeasible: {sentence(witness, task.feasibility)}",)
+        return Orientation(None, found.feed, outcome="infeasible", reasons=reasons), None
+    return found, path
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:

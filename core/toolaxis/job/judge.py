@@ -97,11 +97,12 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Task:
         return tuple(own for group in around if group.role in roles for face in group.faces
                      if (face.number, face.label) != (op.face.number, op.face.label) for own in own_pieces(face))
 
+    left = tuple(own for zone in op.zones if zone.at_wall for own in own_pieces(op.face.trimmed(zone.loops)))
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
     return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, own_pieces(op.face),
                 plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines,
-                plan.inputs.tolerance, min(1.0, op.orientation.unreached),
+                plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,
                 machine=None if machine is None else machine.machine, place=on_table,
                 tool_length=plan.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
                 before=_end_of(last))
@@ -180,7 +181,8 @@ def _clearances(found: Mapping[str, Clearance | str]) -> dict[str, Any]:
 def _operation_document(op: OperationVerdict) -> dict[str, Any]:
     return {"name": op.name, "faces": list(op.faces), "passed": op.passed, "reasons": list(op.reasons),
             "scallop_limit": op.scallop_limit, "allowance": op.allowance, "scallop_max": _number(op.scallop_max),
-            "share_within": op.share_within, "gouge_max": op.gouge_max if op.measured else None,
+            "share_within": op.share_within, "declared": op.declared,
+            "gouge_max": op.gouge_max if op.measured else None,
             "gouge_allowed": op.gouge_allowed, "clearance": _clearances(op.clearance),
             "worst_scallop": [_place(p) for p in op.worst_scallop],
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],

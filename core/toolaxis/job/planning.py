@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault, piece_of
 from toolaxis.job.abreast import abreast
-from toolaxis.job.axes import Remembering, frame_of, judged
+from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.baselines import compared
 from toolaxis.job.failures import failed
 from toolaxis.job.pattern import Pattern, shared_out
@@ -401,9 +401,7 @@ class Job:
 
     def _found(self, task: Task, start: Array | None) -> tuple[Orientation, ToolPath | None]:
         """The fixed axis that the method finds for a task, and its passes."""
-        job = Remembering(task)
-        found = searched(job, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
-        return found, job.path_of(found)
+        return searched(task, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
 
     @property
     def _limits(self) -> AxisLimits | None:

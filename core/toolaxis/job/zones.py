@@ -2,16 +2,14 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from toolaxis.errors import Cancelled, fault
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
 from toolaxis.job.failures import failed_after
 from toolaxis.orient.impossible import corner_too_large, tight_fillet
-from toolaxis.orient.reasons import place
+from toolaxis.orient.reasons import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.path.beyond_layers import beyond_layers
-from toolaxis.path.left_over import FACTOR, also_machined, excess, left_over
+from toolaxis.path.left_over import FACTOR, also_machined, excess
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -23,7 +21,6 @@ from toolaxis.tools.assembly import Tool
 #: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
 #: than this share of it: what it machines is not worth an operation.
 WHOLLY = 0.9
-_LEFT, _UNDERCUT = "is left to clean-up", "undercut"
 
 
 def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Plan:
@@ -47,7 +44,7 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
         return plan
     stage = progress.within("clean-up zones")
     plan = _without_fillets(plan, stage)
-    asked = [op for op in plan.operations if op.done]
+    asked = [op for op in plan.operations if op.done and _outlined(plan, op)]
     while asked:
         found = abreast(lambda k, inner: with_zones(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
         if found.cancelled:
@@ -55,8 +52,9 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
         made = {op.number: replace(op, face=asked[k].face) for k, op in found.results.items()}
         made |= {asked[k].number: failed_after(asked[k], why) for k, why in found.faults.items()}
         plan = replace(plan, operations=tuple(made.get(op.number, op) for op in plan.operations))
-        lost = {op.face.number for op in made.values() if not op.done}  # what it would have machined stays
-        asked = [op for op in plan.operations if op.done and op.face.number in lost]
+        # What operations lose would have machined stays, for others too.
+        lost = {op.face.number for op in made.values() if not op.done}
+        asked = [op for op in plan.operations if op.done and op.face.number in lost and _outlined(plan, op)]
     some = any(op.done for op in plan.operations)
     return replace(plan, outcome=outcome_of(plan.operations, plan.blades) if some else "incomplete")
 
@@ -86,6 +84,11 @@ def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
     return corner_too_large(search_task(plan, op, progress).feasibility)
 
 
+def _outlined(plan: Plan, op: Operation) -> bool:
+    """Whether what an operation leaves can be outlined: of a fixed axis, and of layers around a blade."""
+    return op.orientation.lead is None or plan.inputs.method.startswith("blade")
+
+
 def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
     """The zones that one operation of a plan leaves.
 
@@ -93,7 +96,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     ----------
     plan : Plan
     op : Operation
-        With a path.
+        With a path, of a fixed axis or of layers around a blade.
     progress : Progress
 
     Raises
@@ -104,11 +107,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     assert op.path is not None and op.orientation.axis is not None
     if plan.inputs.method.startswith("blade"):
         return beyond_layers(op.face, op.path, op.orientation.feed)
-    if op.orientation.lead is not None:  # a constant lead is taken only where it serves the whole sub-surface
-        return ()
-    axis, feasibility = op.orientation.axis, search_task(plan, op, progress).feasibility
-    zones = left_over(op.face, plan.tool, op.path, plan.inputs.scallop, plan.inputs.allowance,
-                      lambda uv: ~feasibility.reach(uv, axis), progress)
+    zones = search_task(plan, op, progress).left_by(op.path)
     if not zones:
         return ()
     height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
@@ -150,26 +149,18 @@ def told(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
         Without a path where the sub-surface is narrower than the cutter and more than `WHOLLY` of it would be left.
     """
     found, area = op.orientation, op.face.area
-    share = min(1.0, sum(zone.area for zone in zones if zone.at_wall) / area)
-    if share > WHOLLY and mean_width(op.face) < 2 * tool.radius:
-        return _left_whole(op, f"the best axis would leave {100 * share:.1f} % of it")
-    notes = [why for why in found.reasons if not why.endswith(_LEFT) and not why.startswith(_UNDERCUT)]
-    if share > 0:
-        notes.insert(0, f"{100 * share:.1f} % of the area lies at walls and {_LEFT}")
-    under = [zone for zone in zones if not zone.at_wall]
-    if under:
-        at = op.face.evaluate(np.concatenate([zone.loops[0] for zone in under[:1]]).mean(axis=0)).point[0]
-        notes.append(f"{_UNDERCUT}: {sum(zone.area for zone in under):.2f} mm2 at the border stay higher than the "
-                     f"scallop limit, the largest zone, {under[0].area:.2f} mm2, around {place(at)}: machine that edge "
-                     "again with a neighbour's axis, or give the sub-surface a smoother border")
-    width = area * (1 - share) / found.length if found.length > 0 else 0.0
-    return replace(op, zones=zones, orientation=replace(found, unreached=share, average_strip_width=width,
-                                                        reasons=tuple(notes)))
+    at_walls = min(1.0, sum(zone.area for zone in zones if zone.at_wall) / area)
+    if at_walls > WHOLLY and mean_width(op.face) < 2 * tool.radius:
+        return _left_whole(op, f"the best axis would leave {100 * at_walls:.1f} % of it")
+    notes = (*left_reasons(zones, op.face), *(why for why in found.reasons if not tells_of_left(why)))
+    width = area * (1 - at_walls) / found.length if found.length > 0 else 0.0
+    return replace(op, zones=zones, orientation=replace(found, unreached=at_walls, average_strip_width=width,
+                                                        reasons=notes))
 
 
 def _left_whole(op: Operation, why: str) -> Operation:
     """A sub-surface that is left to a clean-up tool as a whole."""
-    reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {_LEFT} as a whole: {why}"
+    reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {LEFT_OVER} as a whole: {why}"
     none = Orientation(None, op.orientation.feed, reasons=(reason, *op.orientation.reasons), unreached=1.0,
                        evaluations=op.orientation.evaluations, map=op.orientation.map, lobes=op.orientation.lobes)
     return Operation(op.number, op.face, none, zones=(Zone(op.face.outline, op.face.area),))

@@ -301,7 +301,7 @@ def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
     if job.worth.objective == "time":
         raise InvalidInput("strategy 'four-plus-one' goes by length or passes: leave out the objective time")
     search, refused = Clamping(job, machine_of(job)), list[str]()
-    fixed = searched(job)
+    fixed, _ = searched(job)
     best: list[tuple[Orientation, ToolPath | None]] = []
     for one in Finder(search).found(fixed):
         found = _tried(search, one, fixed, refused)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,17 +24,30 @@ from toolaxis.orient.mounted import REFUSED, at_face, better_of, combined, held,
 from toolaxis.orient.pace import pace_of
 from toolaxis.orient.polish import Candidate
 from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.reasons import Refusal, direction, main_first, nothing_to_cut, sentence, tally, why_none
+from toolaxis.orient.reasons import (
+    Refusal,
+    direction,
+    left_reasons,
+    main_first,
+    nothing_to_cut,
+    sentence,
+    stays_high,
+    tally,
+    why_none,
+)
 from toolaxis.orient.sector import by_mean_normal, by_roman, sectors
 from toolaxis.orient.setting import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.orient.sphere import repaired, search, so_far
-from toolaxis.orient.verdicts import BACK, CUTTER, FREE, Witness
+from toolaxis.orient.verdicts import BACK, CUTTER, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
+from toolaxis.path.left_over import OVERLOOKED, left_over
 from toolaxis.path.linking import Linking
+from toolaxis.path.mending import Made, completed
 from toolaxis.path.tracing import trace
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -50,10 +64,10 @@ RULES = ("roman", "normal")
 #: Height above everything at which links cross at least, mm.
 CROSSING = 5.0
 _ATTEMPTS = 4
-#: Share of a face that passes may miss, away from walls, before the next best axis is tried.
-_MISSED = 5e-4
 #: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
 _SEARCHED, _ORDERED = 0.5, 0.4
+#: Where further passes make the cut so many times as long, the other feed is tried too.
+_LONGER = 1.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +153,29 @@ class Task:
         axis : (3,) array
         feed : str
         """
-        return self.traced(self.laid(axis, feed))
+        return self.completed(self.laid(axis, feed)).path
+
+    def completed(self, placed: Layout) -> Made:
+        """Passes with the further ones that it takes to leave little on which the cutter may stand.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
+        axis = placed.cut.axis
+        return completed(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+
+    def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
+        """Zones that passes leave higher than the scallop limit, the largest first.
+
+        Parameters
+        ----------
+        path : ToolPath
+            With one fixed axis.
+        """
+        worth, axis = self.worth, path.axis[0]
+        return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
+                         lambda uv: ~self.feasibility.reach(uv, axis), self.progress)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -239,11 +275,12 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
                progress=progress)
-    return searched(job, method, starts)
+    return searched(job, method, starts)[0]
 
 
-def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None) -> Orientation:
-    """The axis that `best_axis` finds for a task.
+def searched(job: Task, method: str = "sphere",
+             starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
+    """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
 
     Parameters
     ----------
@@ -255,11 +292,11 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
     """
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
     ledger = Ledger(job.feasibility, job.worth, job.progress, first)
-    result: Orientation | None = None
+    result: tuple[Orientation, ToolPath | None] | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
-            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
+            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
         result = _settled(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
             return result
@@ -267,15 +304,15 @@ def searched(job: Task, method: str = "sphere", starts: ArrayLike | None = None)
         return better_of(result, _settled(job, ledger, method))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
-                           evaluations=ledger.evaluations, map=ledger.map())
+                           evaluations=ledger.evaluations, map=ledger.map()), None
     except OutOfWork as reason:
-        if result is not None and result.axis is not None:
+        if result is not None and result[0].axis is not None:
             return _ended(result)
         return Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
-                           evaluations=ledger.evaluations, map=ledger.map())
+                           evaluations=ledger.evaluations, map=ledger.map()), None
 
 
-def _settled(job: Task, ledger: Ledger, method: str) -> Orientation:
+def _settled(job: Task, ledger: Ledger, method: str) -> tuple[Orientation, ToolPath | None]:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
     if method in RULES:
         return settled(job, ledger, METHODS[method](ledger), 1)
@@ -283,20 +320,23 @@ def _settled(job: Task, ledger: Ledger, method: str) -> Orientation:
         with up_to(_SEARCHED):
             found = METHODS[method](ledger)
     except OutOfWork as reason:
-        result = _first_accepted(job, ledger, held(ledger, so_far(ledger)))
-        return _ended(result) if result.axis is not None else replace(
-            result, outcome="not_found", reasons=(str(reason), *result.reasons))
+        result, path = _first_accepted(job, ledger, held(ledger, so_far(ledger)))
+        if result.axis is not None:
+            return _ended((result, path))
+        return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
     return settled(job, ledger, found)
 
 
-def _ended(result: Orientation) -> Orientation:
+def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
     """An axis that is proven, with the word that the limit of work ended the search for a better one."""
-    words = better_may_exist()
-    return result if words in result.reasons else replace(result, reasons=(*result.reasons, words))
+    words, (result, path) = better_may_exist(), found
+    known = words in result.reasons
+    return (result if known else replace(result, reasons=(*result.reasons, words))), path
 
 
-def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
-    """The best candidate that the proof accepts, or why there is none.
+def settled(job: Task, ledger: Ledger, found: list[Candidate],
+            attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+    """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
     ----------
@@ -318,71 +358,90 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _
     return _first_accepted(job, ledger, found, attempts)
 
 
-def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate], attempts: int = _ATTEMPTS) -> Orientation:
-    """The first candidate that the proof accepts, or why there is none; a later one where that misses less."""
+def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate],
+                    attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+    """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
-    best: tuple[float, Orientation, int] | None = None
-    others: tuple[Orientation, ...] = ()
-    ended = False
-    try:
-        for k in range(len(found)):
-            accepted, missed = _accepted(job, ledger, found[k], refused, attempts)
-            if accepted is not None and (best is None or missed < best[0]):
-                best = missed, accepted, k
-            if best is not None and best[0] <= _MISSED:
-                break
-        if best is not None:
-            others = tuple(_other(job, one) for one in found[best[2] + 1:] if _sound(job, one))
-    except OutOfWork:
+    for k, one in enumerate(found):
+        best = _accepted(job, ledger, one, refused, attempts)
         if best is None:
-            raise
-        ended = best[0] > _MISSED  # else only other lobes were left to be looked at
-    if best is not None:
-        accepted = best[1]
-        result = replace(accepted, reasons=(*accepted.reasons, *(one.words for one in refused), tally(ledger)),
-                         map=ledger.map(), evaluations=ledger.evaluations, lobes=others)
-        return _ended(result) if ended else result
+            continue
+        others: tuple[Orientation, ...] = ()
+        with suppress(OutOfWork):  # only other feeds and lobes are left to be looked at
+            best = _other_feed(job, ledger, best) or best
+            others = tuple(_other(job, other) for other in found[k + 1:] if _sound(job, other))
+        reasons = (*best.orientation.reasons, *(why.words for why in refused), tally(ledger))
+        return replace(best.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations,
+                       lobes=others), best.path
     if ledger.proven:
         outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
     else:
         outcome, lead = "not_found", "no axis found"
     words = main_first(refused) if found else [f"{lead}: {why_none(ledger)}"]
     return Orientation(None, outcome=outcome, reasons=(*words, tally(ledger)), map=ledger.map(),
-                       evaluations=ledger.evaluations)
+                       evaluations=ledger.evaluations), None
 
 
 def _sound(job: Task, one: Candidate) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[Refusal],
-              attempts: int) -> tuple[Orientation | None, float]:
-    """The orientation of a candidate, repaired a few times where the proof refuses it; None when it stays refused.
+class Finished(NamedTuple):
+    """What became of a candidate.
 
-    With it the share of the face that its passes miss though nothing stands beside it.
+    one : Candidate
+    orientation : Orientation
+    proof : Proof, refused too where passes leave more than `OVERLOOKED` of the face on which the cutter may stand
+    path : ToolPath or None, the very passes that were proven; None where none can be laid
+    longer : float, cutting length over that without further passes
     """
+
+    one: Candidate
+    orientation: Orientation
+    proof: Proof
+    path: ToolPath | None
+    longer: float = 1.0
+
+    @property
+    def value(self) -> float:
+        """What is to be least, with the further passes."""
+        return self.one.value * self.longer
+
+
+def _other_feed(job: Task, ledger: Ledger, done: Finished) -> Finished | None:
+    """The same axis with the other feed, where that takes less after further passes; None where it does not."""
+    one, feed = done.one, 1 - done.one.feed
+    if done.longer <= _LONGER or job.worth.feed is not None:
+        return None
+    other = Candidate(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
+    if not other.value < done.value:
+        return None
+    again = finished(job, other)
+    return again if again.proof.witness is None and again.value < done.value else None
+
+
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[Refusal],
+              attempts: int) -> Finished | None:
+    """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: Candidate | None = one
     for attempt in range(attempts):
         if candidate is None:
-            return None, 0.0
+            return None
         witness = ledger.feasibility.witness(candidate.axis)
         if witness is None:
-            result, proof, missed = finished(job, candidate)
-            if proof.witness is None:
-                if missed > _MISSED:
-                    words = f"the axis {direction(candidate.axis)} misses {100 * missed:.1f} % of the face"
-                    refused.append(Refusal(FREE, missed, words))
-                return result, missed
-            witness = proof.witness
+            done = finished(job, candidate)
+            if done.proof.witness is None:
+                return done
+            witness = done.proof.witness
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
         candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
-    return None, 0.0
+    return None
 
 
-def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
-    """Passes made and proven for one candidate, and the share of the face that they miss, walls aside.
+def finished(job: Task, one: Candidate) -> Finished:
+    """Passes made and proven for one candidate.
 
     Parameters
     ----------
@@ -393,21 +452,34 @@ def finished(job: Task, one: Candidate) -> tuple[Orientation, Proof, float]:
     try:
         placed = job.laid(one.axis, feed)
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
-        return Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), 0.0
+        return Finished(one, Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), None)
     if not len(placed.pieces):
-        return Orientation(None, feed), Proof(Witness(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))), 0.0
-    path = job.traced(placed)
-    beyond = stopped(job.feasibility, path, job.groups)
-    proof = Proof(beyond) if beyond else prove(path, job.worth.tool, job.groups, job.worth.allowance,
-                                               progress=job.progress)
-    unreached, missed = job.feasibility.unreached(one.axis), placed.uncut
-    if unreached > 0:
-        unreached, missed = max(unreached, missed), 0.0
+        why = Witness(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
+        return Finished(one, Orientation(None, feed), Proof(why), None)
+    made = job.completed(placed)
+    proof = _proven(job, made.path)
+    if proof.witness is not None and made.placed is not placed:  # further passes are no reason to refuse an axis
+        path = job.traced(placed)
+        made = Made(placed, path, job.left_by(path))
+        proof = _proven(job, path)
+    path, area = made.path, job.worth.face.area
+    if proof.witness is None and made.undercut > OVERLOOKED * area:
+        proof = Proof(Witness(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
+    unreached = min((made.left - made.undercut) / area, 1.0)
     length = path.length(Motion.CUT)
-    area = job.worth.face.area * (1 - unreached)
-    notes = () if unreached == 0 else (f"{100 * unreached:.1f} % of the area lies at walls and is left to clean-up",)
-    return Orientation(one.axis, feed, path.passes, one.passes, length, area / length if length > 0 else 0.0,
-                       proof.gouge, proof.clearance, "feasible", notes, unreached=unreached), proof, missed
+    width = area * (1 - unreached) / length if length > 0 else 0.0
+    words = left_reasons(made.zones, job.worth.face)
+    found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
+                        "feasible", words, unreached=unreached)
+    return Finished(one, found, proof, path, made.longer)
+
+
+def _proven(job: Task, path: ToolPath) -> Proof:
+    """The proof of a path, after a look at whether its machine reaches all of it."""
+    beyond = stopped(job.feasibility, path, job.groups)
+    if beyond:
+        return Proof(beyond)
+    return prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
 
 
 def _other(job: Task, one: Candidate) -> Orientation:
@@ -453,10 +525,10 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
         witness = job.feasibility.witness(t)
         if witness is None:
             best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
-            result, proof, _ = finished(job, best)
-            if proof.witness is None:
-                return replace(result, evaluations=1 + len(feeds))
-            witness = proof.witness
+            done = finished(job, best)
+            if done.proof.witness is None:
+                return replace(done.orientation, evaluations=1 + len(feeds))
+            witness = done.proof.witness
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",))
     return Orientation(None, FEEDS[feeds[0]], outcome="infeasible", evaluations=ledger.evaluations + 1,

@@ -175,20 +175,22 @@ def make_room(ledger: Ledger, axis: Array, found: Witness) -> None:
         ledger.tighten(narrower)
 
 
-def better_of(result: Orientation, again: Orientation) -> Orientation:
+def better_of(one: tuple[Orientation, ToolPath | None],
+              other: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
     """The better one of a result and of another search that left the machine the room that passes turned out to need.
 
     Parameters
     ----------
-    result, again : Orientation
+    one, other : Orientation, and the passes of its axis
         In this order; why axes were refused in the first one is told with both.
     """
+    (result, path), (again, other_path) = one, other
     count = result.evaluations + again.evaluations
     if again.axis is None or (result.axis is not None and again.length * (1 + again.unreached)
                               >= result.length * (1 + result.unreached)):
-        return replace(result, evaluations=count)
+        return replace(result, evaluations=count), path
     refused = tuple(why for why in result.reasons if why.startswith(REFUSED))
-    return replace(again, reasons=(*again.reasons, *refused), evaluations=count)
+    return replace(again, reasons=(*again.reasons, *refused), evaluations=count), other_path
 
 
 def with_room(limits: AxisLimits | None, axis: Array, found: Witness, required: float) -> AxisLimits | None:

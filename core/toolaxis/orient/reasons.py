@@ -17,6 +17,7 @@ from toolaxis.orient.ledger import Ledger
 from toolaxis.orient.setting import MARGIN, TOUCHING
 from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.plan.orientation import REASONS
+from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.seams import GREATEST
@@ -37,6 +38,9 @@ COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a
            "with a gouge", "with a collision of the cutter", "with a collision of the shank",
            "with a collision of the holder")
 
+#: How sentences end, or begin, that tell what an operation leaves.
+LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
+
 #: Points of a border, and how many of them next to a place are looked at for a step at an edge.
 _BORDER, _NEAREST = 400, 20
 
@@ -44,6 +48,46 @@ _BORDER, _NEAREST = 400, 20
 def place(point: Array) -> str:
     """A point as messages write it, mm."""
     return "(" + ", ".join(f"{round(float(x), 2) + 0.0:g}" for x in point) + ")"
+
+
+def left_reasons(zones: Sequence[Zone], face: Face) -> tuple[str, ...]:
+    """What is to be said of the zones that an operation leaves: how much lies at walls, and what else stays where.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        The largest first.
+    face : Face
+        The sub-surface.
+    """
+    at_walls = sum(zone.area for zone in zones if zone.at_wall)
+    words = []
+    if at_walls > 0:
+        words.append(f"{100 * min(at_walls / face.area, 1.0):.1f} % of the area lies at walls and {LEFT_OVER}")
+    if any(not zone.at_wall for zone in zones):
+        words.append(f"{UNDERCUT}: {stays_high(zones, face)}")
+    return tuple(words)
+
+
+def stays_high(zones: Sequence[Zone], face: Face) -> str:
+    """What to say of zones that passes leave though the cutter may stand on them.
+
+    Parameters
+    ----------
+    zones, face
+        As for `left_reasons`; one of the zones at least does not lie at a wall.
+    """
+    under = [zone for zone in zones if not zone.at_wall]
+    area = sum(zone.area for zone in under)
+    at = face.evaluate(under[0].loops[0].mean(axis=0)).point[0]
+    return (f"{area:.2f} mm2, {100 * area / face.area:.2f} % of the area, stay higher than the scallop limit, the "
+            f"largest zone, {under[0].area:.2f} mm2, around {place(at)}: machine that place again with a neighbour's "
+            "axis, or give the sub-surface a smoother border")
+
+
+def tells_of_left(why: str) -> bool:
+    """Whether a sentence is one of `left_reasons`."""
+    return why.endswith(LEFT_OVER) or why.startswith(UNDERCUT)
 
 
 def direction(axis: Array) -> str:

@@ -23,8 +23,6 @@ _RUN_OUT = 1.05
 #: where that makes fewer; how exactly the ends are found, in radii of the cutter, and as a share of the range.
 _REACH_SAMPLES = 192
 _ENDS, _LEAST_ENDS = 2e-4, 2e-7
-#: Places along and across at which it is looked whether strips cover the face.
-_GRID = 240
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,28 +50,6 @@ class Layout:
     def steps(self) -> Array:
         """Step parameter of each pass, (k,)."""
         return self.spacing.steps
-
-    @property
-    def uncut(self) -> float:
-        """Share of the face's area that lies in no pass's strip, from places on a fine grid, 0 to 1."""
-        chart, spacing = self.chart, self.spacing
-        a0, a1, s0, s1 = chart.bounds
-        across = spacing.lines.along
-        along = a0 + (a1 - a0) * (np.arange(_GRID) + 0.5) / _GRID
-        step = s0 + (s1 - s0) * (np.arange(_GRID) + 0.5) / _GRID
-        covered = np.zeros((_GRID, _GRID), dtype=bool)
-        for number, (place, halves) in enumerate(zip(spacing.steps, spacing.halves, strict=True)):
-            low, high = (np.interp(along, across, side) for side in spacing.lines.spread(halves).T)
-            cut = np.zeros(_GRID, dtype=bool)
-            for first, last, _ in self.pieces[self.owner == number]:
-                cut |= (along >= first) & (along <= last)
-            band = (step[None] >= (place - low)[:, None]) & (step[None] <= (place + high)[:, None])
-            covered |= cut[:, None] & band
-        uv = chart.uv(*(part.ravel() for part in np.meshgrid(along, step, indexing="ij")))
-        own = chart.face.contains(uv)
-        d = chart.face.evaluate(uv[own])
-        share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-        return float(share[~covered.ravel()[own]].sum() / max(float(share.sum()), np.finfo(float).tiny))
 
     @property
     def used(self) -> float:
@@ -160,20 +136,20 @@ def _run_out(chart: Chart, cut: Cut, place: tuple[Array, Array], side: int) -> A
 def _reachable(chart: Chart, cut: Cut, along: Array, column: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the lines across the passes."""
     _, _, s0, s1 = chart.bounds
-    how = _sampling(extents(chart)[1], s1 - s0, cut)
+    how = sampling(extents(chart)[1], s1 - s0, cut)
     return filtered(column, lambda line, place: reach(chart.uv(along[line], place)), *how)
 
 
 def _cut_out(chart: Chart, cut: Cut, steps: Array, found: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the passes."""
     a0, a1, _, _ = chart.bounds
-    how = _sampling(extents(chart)[0], a1 - a0, cut)
+    how = sampling(extents(chart)[0], a1 - a0, cut)
     kept = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])), *how)
     long_ = kept.high - kept.low > 1e-9 * (a1 - a0)
     return Intervals(kept.line[long_], kept.low[long_], kept.high[long_])
 
 
-def _sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
+def sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
     """How far apart it is asked what can be reached, and how exactly its ends are found, in the parameter.
 
     Parameters

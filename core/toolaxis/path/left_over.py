@@ -12,7 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.overlay import divided, without
-from toolaxis.numeric.polygons import inside, slabs
+from toolaxis.path.left_grid import sampled
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -22,15 +22,17 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Excess = Callable[[Array], Array]
 
-#: Heights count as left from this multiple of the scallop limit on, and zones where they come to twice the limit.
-FACTOR, DEEP = 1.02, 2.0
-#: Coarse cells along the longer side, fine ones in each, and the fine cells' size as a share of the cutter's radius.
-_COARSE, _FINE, _SHARE = 72, 8, 1 / 14
-#: Zones smaller than this share of the cutter's radius squared are no work for anybody.
-_SPECK = 1e-3
+#: Heights count as left from this multiple of the scallop limit on.
+FACTOR = 1.02
+#: Zones that do not come to this multiple of the limit, or are smaller than this share of the cutter's radius squared,
+#: are no work for anybody, unless they are more than this share of the face together: half of what the judge overlooks.
+DEEP, _SPECK, OVERLOOKED = 2.0, 1e-3, 5e-4
+#: Size of the cells that outline zones, as shares of the cutter's radius, of the narrowest strip that it may leave, and
+#: of a square as large as the face.
+_OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
 _TRIES = 5
-#: Distances are told up to this multiple of the cutter's radius.
-_FAR = 0.05
+#: Distances are told up to this, mm: only their signs are asked for.
+_FAR = 1e-3
 
 
 def motions_of(path: ToolPath) -> tuple[Array, Array]:
@@ -59,14 +61,14 @@ def excess(face: Face, tool: Tool, path: ToolPath, height: float) -> Excess:
     Returns
     -------
     callable
-        Takes (n, 2) parameters, beyond the face too, and returns (n,) signed distances, mm: above zero where more than
-        that height is left.
+        Takes (n, 2) parameters, beyond the face too, and returns (n,) numbers: above zero where more than that height
+        is left.
     """
     starts, ends = motions_of(path)
 
     def _excess(uv: Array) -> Array:
         points = face.evaluate(uv).point + height * face.normal(uv)
-        return distance_to_removed(tool, path.axis[0], starts, ends, points, _FAR * tool.radius)
+        return distance_to_removed(tool, path.axis[0], starts, ends, points, _FAR, 0.0)
 
     return _excess
 
@@ -93,7 +95,8 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     Returns
     -------
     tuple of Zone
-        The largest first. A zone is what stays higher than `FACTOR` times the limit, where it reaches `DEEP` times.
+        The largest first. A zone is what stays higher than `FACTOR` times the limit; small and shallow ones are left
+        out while they are less than `OVERLOOKED` of the face together.
 
     Raises
     ------
@@ -104,7 +107,8 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     -----
     The border of a zone is the line on which the surface, raised by that height, meets the swept cutter: exact at the
     vertices, straight between them, which are a fourteenth of the cutter's radius apart or less. Zones inside the
-    sub-surface that are smaller than a 72nd of it may be missed; at its border it is looked at closely everywhere.
+    sub-surface that lie between the nodes of a coarse grid may be missed; at its border it is looked at closely
+    everywhere, and where something is found, as far as it goes.
 
     **Properties**: 1. zones and machined area are the sub-surface, without overlap.
     """
@@ -113,17 +117,20 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     progress.check()
     high = excess(face, tool, path, allowance + FACTOR * scallop)
     deep = excess(face, tool, path, allowance + DEEP * scallop)
-    lines, values = _sampled(face, high, _SHARE * tool.radius)
-    found = contours(values, lines, high)
-    kept: list[Array] = []
-    for loops in grouped(found):
-        uv = _places(loops, lines, values)
-        if len(uv) and (deep(uv[face.contains(uv)]) > 0).any():
-            kept += loops
+    lines, values = sampled(face, high, _size(face, tool, scallop))
+    nodes = _above(lines, values)
+    if not len(nodes):
+        return ()
     progress.check()
-    zones = [face.trimmed(loops) for loops in grouped(split(face.outline, tuple(kept))[0])]
-    worth = [(zone, area) for zone in zones if (area := zone.area) > _SPECK * tool.radius**2]
-    return tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in sorted(worth, key=lambda one: -one[1]))
+    found = contours(values, lines, high)
+    progress.check()
+    zones = [face.trimmed(loops) for loops in grouped(split(face.outline, found)[0])]
+    measured = sorted(((zone, zone.area) for zone in zones), key=lambda one: -one[1])
+    small = [area <= _SPECK * tool.radius**2 or not _deep(zone, deep, nodes) for zone, area in measured]
+    overlooked = sum(area for (_, area), one in zip(measured, small, strict=True) if one)
+    if overlooked <= OVERLOOKED * face.area:
+        measured = [one for one, less in zip(measured, small, strict=True) if not less]
+    return tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in measured)
 
 
 def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
@@ -178,64 +185,23 @@ def machined(face: Face, zones: tuple[Zone, ...]) -> tuple[Face, ...]:
     return tuple(face.trimmed(one) for one in grouped(loops))
 
 
-def _sampled(face: Face, high: Excess, size: float) -> tuple[tuple[Array, Array], Array]:
-    """A grid somewhat beyond the face, and the excess at its nodes; -1 where coarse cells around show none."""
-    coarse = [_lines(face, axis, size) for axis in (0, 1)]
-    share = np.arange(_FINE) / _FINE
-    lines = tuple(np.append((one[:-1, None] + np.diff(one)[:, None] * share).ravel(), one[-1]) for one in coarse)
-    nodes = np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1)
-    left = high(nodes.reshape(-1, 2)).reshape(nodes.shape[:2]) > 0
-    cells = left[1:, 1:] | left[:-1, 1:] | left[1:, :-1] | left[:-1, :-1]
-    on, near = _on(face, coarse), cells.copy()
-    for axis in (0, 1):
-        rows = np.moveaxis(near, axis, 0)
-        rows[:-1] |= np.moveaxis(cells, axis, 0)[1:]
-        rows[1:] |= np.moveaxis(cells, axis, 0)[:-1]
-    wanted = (near | (on == 1)) & (on > 0)
-    fine = np.zeros(tuple(len(line) for line in lines), dtype=bool)
-    for i, j in np.argwhere(wanted):
-        fine[i * _FINE:(i + 1) * _FINE + 1, j * _FINE:(j + 1) * _FINE + 1] = True
-    values = np.full(fine.shape, -1.0)
-    at = np.argwhere(fine)
-    values[fine] = high(np.column_stack([lines[0][at[:, 0]], lines[1][at[:, 1]]])) if len(at) else 0.0
-    return (lines[0], lines[1]), values
+def _size(face: Face, tool: Tool, scallop: float) -> float:
+    """Size of the cells that outline zones, mm: passes leave pieces as narrow as the ends of their strips."""
+    strip = 2 * np.sqrt(2 * (tool.corner_radius or tool.radius) * scallop)
+    return float(min(_OF_RADIUS * tool.radius, _OF_STRIP * strip, _OF_FACE * np.sqrt(face.area)))
 
 
-def _lines(face: Face, axis: int, size: float) -> Array:
-    """Lines of coarse cells along one parameter, one cell farther than the face on both sides."""
-    low, high = face.bounds[2 * axis], face.bounds[2 * axis + 1]
-    at = np.linspace(*face.bounds[:2], 17), np.linspace(*face.bounds[2:], 17)
-    points = face.evaluate(np.stack(np.meshgrid(*at, indexing="ij"), axis=-1).reshape(-1, 2)).point.reshape(17, 17, 3)
-    length = float(np.linalg.norm(np.diff(points, axis=axis), axis=-1).sum(axis=axis).max())
-    count = int(np.clip(np.ceil(length / (_FINE * size)), 4, _COARSE))
-    pitch = (high - low) / (count - 0.137)
-    return np.asarray(low - 1.0637 * pitch + pitch * np.arange(count + 3))
-
-
-def _on(face: Face, coarse: list[Array]) -> NDArray[np.int8]:
-    """Whether coarse cells hold nothing of the face (0), its border (1), or lie on it (2)."""
-    nodes = np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1)
-    inside = face.contains(nodes.reshape(-1, 2)).reshape(nodes.shape[:2])
-    corners = np.stack([inside[1:, 1:], inside[:-1, 1:], inside[1:, :-1], inside[:-1, :-1]])
-    found = np.where(corners.all(axis=0), 2, 0).astype(np.int8)
-    found[corners.any(axis=0) & ~corners.all(axis=0)] = 1
-    for loop in face.outline:
-        ends = np.roll(loop, -1, axis=0)
-        pitch = np.array([np.diff(one)[0] for one in coarse])
-        parts = np.maximum(np.ceil((np.abs(ends - loop) / pitch).max(axis=1) * 4), 1).astype(int)
-        share = np.concatenate([np.arange(n) / n for n in parts])[:, None]
-        rows = np.repeat(loop, parts, axis=0) * (1 - share) + np.repeat(ends, parts, axis=0) * share
-        cell = [np.clip(np.searchsorted(coarse[k], rows[:, k], side="right") - 1, 0, len(coarse[k]) - 2)
-                for k in (0, 1)]
-        found[cell[0], cell[1]] = 1
-    return found
-
-
-def _places(loops: tuple[Array, ...], lines: tuple[Array, Array], values: Array) -> Array:
-    """Nodes of the grid inside a polygon that are above zero, (n, 2)."""
+def _above(lines: tuple[Array, Array], values: Array) -> Array:
+    """Nodes of the grid that are above zero, (n, 2)."""
     at = np.argwhere(values > 0)
-    uv = np.column_stack([lines[0][at[:, 0]], lines[1][at[:, 1]]])
-    return uv[inside(slabs(loops), uv)] if len(uv) else uv
+    return np.column_stack([lines[0][at[:, 0]], lines[1][at[:, 1]]])
+
+
+def _deep(zone: Face, deep: Excess, nodes: Array) -> bool:
+    """Whether a zone comes to `DEEP` times the limit at its border or at nodes, (n, 2), of the grid."""
+    u0, u1, v0, v1 = zone.bounds
+    near = nodes[(nodes[:, 0] >= u0) & (nodes[:, 0] <= u1) & (nodes[:, 1] >= v0) & (nodes[:, 1] <= v1)]
+    return bool((deep(np.concatenate([near[zone.contains(near)], *zone.trims])) > 0).any())
 
 
 def _at_wall(zone: Face, walls: Callable[[Array], Bools] | None) -> bool:

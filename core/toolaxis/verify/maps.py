@@ -11,11 +11,12 @@ from toolaxis.verify.rays import Rays, face_rays, patch_around
 from toolaxis.verify.removal import Remains
 
 Array = NDArray[np.float64]
+Declared = Callable[[Array, Array], NDArray[np.bool_]]
 
 #: Rays around which the worst is looked for more closely, rounds of that, and how much closer each looks.
 _STARTS, _ROUNDS, _SHRINK = 24, 5, 0.4
 #: What a map has for every ray.
-_PER_RAY = ("uv", "point", "weight", "border", "remaining", "gouge", "cut_by", "gouged_by")
+_PER_RAY = ("uv", "point", "weight", "border", "remaining", "gouge", "cut_by", "gouged_by", "declared")
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,8 @@ class SurfaceMap:
         Distance of neighbouring rays, mm.
     worst_scallop, worst_gouge : Place or None
         The worst found by looking more closely around the worst rays; None without a finite height or without a gouge.
+    declared : (m,) array of bool
+        Whether the ray stands in a zone that is declared as left to a clean-up tool: no height is asked for there.
     """
 
     face: Face
@@ -101,11 +104,17 @@ class SurfaceMap:
     spacing: float
     worst_scallop: Place | None
     worst_gouge: Place | None
+    declared: NDArray[np.bool_]
 
     @property
     def area(self) -> float:
         """Area that the rays stand for, mm^2."""
         return float(self.weight.sum())
+
+    @property
+    def left(self) -> float:
+        """Area of the declared zones and the strip around them, mm^2."""
+        return float(self.weight[self.declared].sum())
 
     def touched(self) -> "SurfaceMap":
         """The map with only those rays that something cut or gouged."""
@@ -113,16 +122,26 @@ class SurfaceMap:
         kept = {name: getattr(self, name)[rows] for name in _PER_RAY}
         return replace(self, **kept)
 
-    def share_within(self, limit: float) -> float:
-        """Share of the area left no higher than a limit, 0 to 1.
+    def area_within(self, limit: float) -> float:
+        """Area left no higher than a limit, declared zones aside, mm^2.
 
         Parameters
         ----------
         limit : float
             mm
         """
-        total = self.weight.sum()
-        return float(self.weight[self.remaining <= limit].sum() / total) if total > 0 else 0.0
+        return float(self.weight[~self.declared & (self.remaining <= limit)].sum())
+
+    def share_within(self, limit: float) -> float:
+        """Share of the area, declared zones aside, that is left no higher than a limit, 0 to 1; 1 of no area.
+
+        Parameters
+        ----------
+        limit : float
+            mm
+        """
+        asked = self.area - self.left
+        return self.area_within(limit) / asked if asked > 0 else 1.0
 
     def histogram(self, edges: Array) -> Array:
         """Area left between consecutive heights, mm^2; the last entry is the area above the last of them.
@@ -148,7 +167,7 @@ class SurfaceMap:
             "remaining" or "gouge".
         count : int
         """
-        value = getattr(self, what)
+        value = np.where(self.declared, 0.0, self.remaining) if what == "remaining" else self.gouge
         by = self.cut_by if what == "remaining" else self.gouged_by
         refined = self.worst_scallop if what == "remaining" else self.worst_gouge
         found: list[Place] = []
@@ -163,7 +182,7 @@ class SurfaceMap:
         return tuple(found)
 
     def zones(self, limit: float) -> tuple[Zone, ...]:
-        """Connected zones left above a limit, the largest first.
+        """Connected zones left above a limit, declared ones aside, the largest first.
 
         Parameters
         ----------
@@ -174,7 +193,7 @@ class SurfaceMap:
         from scipy.sparse.csgraph import connected_components
         from scipy.spatial import cKDTree
 
-        above = np.flatnonzero(self.remaining > limit)
+        above = np.flatnonzero(~self.declared & (self.remaining > limit))
         if not len(above):
             return ()
         pairs = cKDTree(self.point[above]).query_pairs(2.0 * self.spacing, output_type="ndarray")
@@ -211,7 +230,7 @@ def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> P
 
 
 def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: float | None = None, *,
-                heights: bool = True) -> SurfaceMap:
+                declared: Declared | None = None, heights: bool = True) -> SurfaceMap:
     """Maps of one face.
 
     Parameters
@@ -221,21 +240,25 @@ def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: f
         `removal` with everything but points and normals given.
     spacing : float, optional
         Distance of neighbouring rays, mm.
+    declared : callable, optional
+        Takes parameters (m, 2) and points (m, 3) and tells which of them lie in declared zones.
     heights : bool
         Whether the greatest height is looked for more closely, as on what is machined.
     """
     rays = face_rays(face, spacing)
     left = judge(rays.point, rays.normal)
-    finite = np.where(np.isfinite(left.remaining), left.remaining, -1.0)
-    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by)) if heights else None
+    aside = np.zeros(len(rays.uv), dtype=bool) if declared is None else declared(rays.uv, rays.point)
+    finite = np.where(np.isfinite(left.remaining) & ~aside, left.remaining, -1.0)
+    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by), declared) if heights else None
     worst_gouge = _sharpened(face, rays, judge, ("gouge", left.gouge, left.gouged_by))
     return SurfaceMap(face, rays.uv, rays.point, rays.weight, rays.border, left.remaining, left.gouge, left.cut_by,
-                      left.gouged_by, rays.spacing, worst_scallop, worst_gouge)
+                      left.gouged_by, rays.spacing, worst_scallop, worst_gouge, aside)
 
 
 def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
-               coarse: tuple[str, Array, NDArray[np.int64]]) -> Place | None:
-    """The worst place, looked for in ever smaller patches around the worst rays."""
+               coarse: tuple[str, Array, NDArray[np.int64]],
+               aside: Declared | None = None) -> Place | None:
+    """The worst place, looked for in ever smaller patches around the worst rays, and not where it is aside."""
     what, value, by = coarse
     if value.max() <= 0:
         return None
@@ -249,6 +272,8 @@ def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
         point = face.evaluate(uv).point
         left = judge(point, face.normal(uv))
         height = np.where(np.isfinite(getattr(left, what)), getattr(left, what), -1.0)
+        if aside is not None:
+            height[aside(uv, point)] = -1.0
         index = left.cut_by if what == "remaining" else left.gouged_by
         order = np.argsort(-height, kind="stable")
         if height[order[0]] > best.value:

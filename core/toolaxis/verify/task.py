@@ -46,8 +46,10 @@ class Task:
     outlines : dict of str to (k, 2) array
         Shank and holder as polylines (radius, z from the tip); one that is absent is reported as not checked.
     tolerance : Tolerance
-    clean_up : float
-        Share of the targets' area that the plan leaves to a clean-up tool, 0 to 1.
+    left : tuple of Face
+        Zones that the plan leaves to a clean-up tool, as pieces of the targets: what stays there is not asked for.
+    named : (3,) array, optional
+        The fixed axis that the plan names for the operation: cutter locations must stand at it.
     depth : float
         How far below a face a gouge is followed, mm; less where a wall of targets and skin is thinner.
     machine : Machine, optional
@@ -77,7 +79,8 @@ class Task:
     surroundings: tuple[Face, ...] = ()
     outlines: dict[str, Array] = field(default_factory=dict)
     tolerance: Tolerance = field(default_factory=Tolerance)
-    clean_up: float = 0.0
+    left: tuple[Face, ...] = ()
+    named: Array | None = None
     depth: float = 1.0
     machine: Machine | None = None
     place: Array | None = None
@@ -90,8 +93,10 @@ class Task:
             raise InvalidInput(f"scallop limit of operation {self.name} is {self.scallop} mm: it must be above zero")
         if not isfinite(self.allowance):
             raise InvalidInput(f"allowance of operation {self.name} is {self.allowance} mm: it must be finite")
-        if not 0 <= self.clean_up <= 1:
-            raise InvalidInput(f"clean-up share of operation {self.name} is {self.clean_up}: it must be 0 to 1")
+        strange = [zone for zone in self.left if all(zone.surface is not face.surface for face in self.targets)]
+        if strange:
+            raise InvalidInput(f"operation {self.name} leaves a zone of face {strange[0].label} to clean-up, which it "
+                               "does not machine: give pieces of its targets")
         if not self.targets:
             raise InvalidInput(f"operation {self.name} machines no face: give at least one target")
 

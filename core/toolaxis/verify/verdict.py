@@ -11,6 +11,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.declared import STRIP, declared
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
@@ -21,8 +22,12 @@ from toolaxis.verify.task import Task, motion_of, spot
 
 Array = NDArray[np.float64]
 
-#: An operation passes when this share of the area is left no higher than this multiple of the scallop limit.
+#: An operation passes when this share of the area, declared zones aside, is left no higher than this multiple of the
+#: scallop limit.
 SHARE, FACTOR = 0.999, 1.02
+
+#: Axes are the same up to this, rad: CL files have nine digits.
+SAME_AXIS = 1e-6
 
 NOT_CHECKED = "not checked"
 
@@ -39,9 +44,12 @@ class OperationVerdict:
     scallop_limit, allowance : float
         mm
     scallop_max : float
-        Greatest height left where the cutter came, mm; inf where it came nowhere.
+        Greatest height left where the cutter came, declared zones aside, mm; inf where it came nowhere.
     share_within : float
-        Share of the area left no higher than `FACTOR` times the limit, 0 to 1.
+        Share of the area, declared zones aside, left no higher than `FACTOR` times the limit, 0 to 1.
+    declared : float
+        Area of the zones that the plan declares as left to a clean-up tool, with the strip around them, mm^2: no height
+        is asked for there.
     gouge_max, gouge_allowed : float
         mm; the greatest is no more than the depth to which gouges are followed.
     clearance : dict of str to Clearance or "not checked"
@@ -51,7 +59,7 @@ class OperationVerdict:
     link_cut : Place or None
         Where a link goes deepest into what the cutting motions leave; None where none does.
     zones : tuple of Zone
-        Connected zones left above the limit, the largest first.
+        Connected zones left above the limit, declared ones aside, the largest first.
     area : float
         mm^2
     rays : int
@@ -72,6 +80,7 @@ class OperationVerdict:
     allowance: float
     scallop_max: float
     share_within: float
+    declared: float
     gouge_max: float
     gouge_allowed: float
     clearance: dict[str, Clearance | str]
@@ -106,8 +115,8 @@ def not_measured(name: str, limits: tuple[float, float, float], why: str) -> Ope
     """
     scallop, allowance, gouge = limits
     unknown: dict[str, Clearance | str] = dict.fromkeys(("cutter", "shank", "holder"), NOT_CHECKED)
-    return OperationVerdict(name, (), scallop, allowance, float("inf"), 0.0, 0.0, gouge, unknown, (), (), None, (), 0.0,
-                            0, 0.0, 0.0, False, (why,), ())
+    return OperationVerdict(name, (), scallop, allowance, float("inf"), 0.0, 0.0, 0.0, gouge, unknown, (), (), None,
+                            (), 0.0, 0, 0.0, 0.0, False, (why,), ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +193,13 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
         depths.correct(face, (point, normal), left)
         return left
 
-    targets = tuple(surface_map(face, partial(measure, face), spacing) for face in task.targets)
+    strip = STRIP * (task.profile.flat_radius + task.profile.corner_radius)
+
+    def aside(face: Face, uv: Array, point: Array) -> NDArray[np.bool_]:
+        return declared(task.left, face, (uv, point), strip)
+
+    targets = tuple(surface_map(face, partial(measure, face), spacing, declared=partial(aside, face))
+                    for face in task.targets)
     skin = [_kept_of(surface_map(face, partial(measure, face), spacing, heights=False)) for face in task.skin]
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
@@ -256,14 +271,15 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[Surf
     rooms, edge, link_cut = room
     limit, maps = FACTOR * task.scallop, (*targets, *skin)
     area = sum(one.area for one in targets)
-    share = sum(one.share_within(limit) * one.area for one in targets) / area if area > 0 else 0.0
+    left = sum(one.left for one in targets)
+    share = sum(one.area_within(limit) for one in targets) / (area - left) if area > left else 1.0
     reached = [one.worst_scallop.value for one in targets if one.worst_scallop is not None]
     touched = any((one.remaining == 0).any() for one in targets)
     gouges = _worst(maps, "gouge", uncertainty)
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
-    failures = [*_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
+    failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
                 *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
@@ -271,17 +287,33 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[Surf
              for name, room in rooms.items() if room == NOT_CHECKED]
     return OperationVerdict(
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
-        reached_max, share, gouge_max, task.tolerance.gouge, rooms,
+        reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
         maps)
 
 
-def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
-    if share >= SHARE - task.clean_up:
+def _axis_reasons(task: Task) -> list[str]:
+    if task.named is None:
         return []
-    text = (f"{100 * share:.2f} % of the area is within {FACTOR} times the scallop limit {task.scallop} mm, "
-            f"{100 * (SHARE - task.clean_up):.2f} % must be")
+    apart = np.linalg.norm(task.axes - task.named, axis=1)
+    i = int(np.argmax(apart))
+    if apart[i] <= SAME_AXIS:
+        return []
+    return [f"the plan names the axis {_written(task.named)}, and the tool stands at {_written(task.axes[i])} at point "
+            f"{i + 1}: plan the operation again"]
+
+
+def _written(axis: Array) -> str:
+    return "(" + ", ".join(f"{float(x) + 0.0:.6f}" for x in axis) + ")"
+
+
+def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
+    if share >= SHARE:
+        return []
+    aside = " that is not left to clean-up" if task.left else ""
+    text = (f"{100 * share:.2f} % of the area{aside} is within {FACTOR} times the scallop limit {task.scallop} mm, "
+            f"{100 * SHARE:.2f} % must be")
     if zones:
         zone = zones[0]
         left = "never reached" if zone.reason == "not reached" else f"up to {zone.largest:.4f} mm high"

@@ -1,0 +1,125 @@
+"""A grid over a face on which it is looked where a function is above zero: closely where it is, and along the border.
+
+What passes leave lies at the border nearly always, in pieces much smaller than the face: the function is asked along
+all of the border and at the nodes of coarse cells, and at all fine nodes of the cells in which that finds something and
+of those beside them, as far as it goes on.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Lines = tuple[Array, Array]
+
+#: Coarse cells along a side, fewest and most; the greatest number of fine ones along a side.
+_FEWEST, _COARSE, _FINE = 24, 72, 1500
+#: Pieces into which a loop is divided at least to measure it, and the most places along it.
+_PIECES, _PLACES = 64, 20_000
+#: Cells along a side whose lengths tell how long it is.
+_MEASURED = 16
+
+
+def sampled(face: Face, function: Callable[[Array], Array], size: float) -> tuple[Lines, Array]:
+    """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
+
+    Parameters
+    ----------
+    face : Face
+    function : callable
+        Takes (n, 2) parameters, beyond the face too, and returns (n,) numbers.
+    size : float
+        Size of the fine cells, mm.
+
+    Returns
+    -------
+    lines : pair of (m,) and (n,) arrays
+        Parameters u and v of the nodes.
+    values : (m, n) array
+        -1 where it was not asked.
+    """
+    coarse, parts = zip(*(_lines(face, axis, size) for axis in (0, 1)), strict=True)
+    nodes = np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1)
+    inside = face.contains(nodes.reshape(-1, 2)).reshape(nodes.shape[:2])
+    above = np.zeros_like(inside)
+    above[inside] = function(nodes[inside]) > 0
+    wanted = above[1:, 1:] | above[:-1, 1:] | above[1:, :-1] | above[:-1, :-1]
+    border = np.concatenate([_places(face, loop, size) for loop in face.outline])
+    wanted[_cells_of(coarse, border[function(border) > 0])] = True
+    lines = (_divided(coarse[0], parts[0]), _divided(coarse[1], parts[1]))
+    values = np.full((len(lines[0]), len(lines[1])), -1.0)
+    own = _own(face, coarse, inside)
+    done = np.zeros_like(wanted)
+    while wanted.any():
+        further = np.zeros_like(wanted)
+        for i, j in np.argwhere(wanted):
+            block = np.s_[i * parts[0]:(i + 1) * parts[0] + 1, j * parts[1]:(j + 1) * parts[1] + 1]
+            uv = np.stack(np.meshgrid(lines[0][block[0]], lines[1][block[1]], indexing="ij"), axis=-1)
+            values[block] = function(uv.reshape(-1, 2)).reshape(uv.shape[:2])
+            _go_on(values[block] > 0, (int(i), int(j)), further)
+        done |= wanted
+        wanted = further & own & ~done
+    return lines, values
+
+
+def _go_on(above: Bools, cell: tuple[int, int], further: Bools) -> None:
+    """Mark the cells beside one into which what is above zero in it goes on."""
+    i, j = cell
+    sides = ((i - 1, j, above[0]), (i + 1, j, above[-1]), (i, j - 1, above[:, 0]), (i, j + 1, above[:, -1]))
+    for a, b, side in sides:
+        if side.any() and 0 <= a < further.shape[0] and 0 <= b < further.shape[1]:
+            further[a, b] = True
+
+
+def _lines(face: Face, axis: int, size: float) -> tuple[Array, int]:
+    """Lines of coarse cells along one parameter, one cell farther than the face on both sides; fine cells in each."""
+    low, high = face.bounds[2 * axis], face.bounds[2 * axis + 1]
+    at = (np.linspace(*face.bounds[:2], _MEASURED + 1), np.linspace(*face.bounds[2:], _MEASURED + 1))
+    nodes = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1)
+    points = face.evaluate(nodes.reshape(-1, 2)).point.reshape(*nodes.shape[:2], 3)
+    length = float(np.linalg.norm(np.diff(points, axis=axis), axis=-1).sum(axis=axis).max())
+    fine = float(np.clip(np.ceil(length / size), _FEWEST, _FINE))
+    count = int(np.clip(np.ceil(fine / 8), _FEWEST, _COARSE))
+    pitch = (high - low) / (count - 0.137)  # no line lies on an end of the range
+    return np.asarray(low - 1.0637 * pitch + pitch * np.arange(count + 3)), int(np.ceil(fine / count))
+
+
+def _divided(line: Array, parts: int) -> Array:
+    share = np.arange(parts) / parts
+    return np.append((line[:-1, None] + np.diff(line)[:, None] * share).ravel(), line[-1])
+
+
+def _cells_of(coarse: tuple[Array, ...], places: Array) -> tuple[NDArray[np.intp], ...]:
+    """Coarse cells in which places lie."""
+    return tuple(np.clip(np.searchsorted(line, places[:, k], side="right") - 1, 0, len(line) - 2)
+                 for k, line in enumerate(coarse))
+
+
+def _own(face: Face, coarse: tuple[Array, ...], inside: Bools) -> Bools:
+    """Which coarse cells hold some of the face; with the nodes that are inside of it."""
+    found = inside[1:, 1:] | inside[:-1, 1:] | inside[1:, :-1] | inside[:-1, :-1]
+    pitch = np.array([line[1] - line[0] for line in coarse])
+    for loop in face.outline:
+        ends = np.roll(loop, -1, axis=0)
+        parts = np.maximum(np.ceil((np.abs(ends - loop) / pitch).max(axis=1) * 4), 1).astype(int)
+        found[_cells_of(coarse, _between(loop, parts))] = True
+    return np.asarray(found)
+
+
+def _places(face: Face, loop: Array, size: float) -> Array:
+    """Places along a loop, no farther apart than a size, mm, (n, 2)."""
+    pieces = _between(loop, np.full(len(loop), max(1, -(-_PIECES // len(loop)))))
+    point = face.evaluate(pieces).point
+    length = np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)
+    return _between(pieces, np.ceil(length / max(size, float(length.sum()) / _PLACES)).astype(int) + 1)
+
+
+def _between(loop: Array, parts: NDArray[np.int64]) -> Array:
+    """Vertices of a loop and places between them, that divide each edge into parts."""
+    share = np.concatenate([np.arange(count) / count for count in parts])[:, None]
+    start, end = np.repeat(loop, parts, axis=0), np.repeat(np.roll(loop, -1, axis=0), parts, axis=0)
+    return np.asarray(start * (1 - share) + end * share)

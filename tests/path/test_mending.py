@@ -1,0 +1,89 @@
+"""Further short passes over what is left where none may run out beyond the border of a face."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.path.isoparametric import layout
+from toolaxis.path.left_over import FACTOR, OVERLOOKED, excess, left_over
+from toolaxis.path.mending import Made, completed, mended
+from toolaxis.path.tracing import trace
+
+SCALLOP, CHORD = 0.02, 0.002
+CUTTERS = [ta.Tool.ball(diameter=12), ta.Tool.torus(diameter=10, corner_radius=2)]
+AXES = [np.array([0.1, -0.2, 0.97]), np.array([0.25, 0.15, 0.95])]
+T = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+ROUND = np.column_stack([np.cos(T), np.sin(T)])
+OUTLINES = {
+    "acute": np.array([[0.05, 0.05], [0.95, 0.3], [0.3, 0.95]]),
+    "sliver": np.array([[0.05, 0.2], [0.95, 0.55], [0.9, 0.62], [0.1, 0.35]]),
+    "round": 0.5 + 0.42 * ROUND,
+    "uneven": 0.5 + (0.3 + 0.14 * np.cos(5 * T))[:, None] * ROUND,
+}
+
+
+def sheet(outline: str) -> ta.Face:
+    x, y = np.meshgrid(np.linspace(0, 16, 5), np.linspace(0, 14, 5), indexing="ij")
+    height = 0.4 * np.sin(x / 6) * np.cos(y / 7)
+    return ta.Face.from_bspline(np.stack([x, y, height], axis=-1), trims=(OUTLINES[outline],))
+
+
+def laid(face: ta.Face, number: int, feed: str) -> Made:
+    """Passes that stay on the face, and what they leave."""
+    tool, axis = CUTTERS[number], AXES[number]
+    placed = layout(face, tool, axis, SCALLOP, feed, reach=face.contains)
+    path = trace(placed, CHORD)
+    return Made(placed, path, left_over(face, tool, path, SCALLOP, walls=lambda uv: ~face.contains(uv)))
+
+
+def share_above(face: ta.Face, tool: ta.Tool, made: Made, factor: float) -> float:
+    """Share of the area above a multiple of the limit, from about 300,000 points on the face."""
+    count = int(np.ceil(np.sqrt(300_000 / (len(face.grid(100, 100)) / 100**2))))
+    uv = face.grid(count, count)
+    d = face.evaluate(uv)
+    weight = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    high = excess(face, tool, made.path, factor * SCALLOP)(uv) > 0
+    return float(weight[high].sum() / weight.sum())
+
+
+@pytest.mark.parametrize("feed", ["u", "v"])
+@pytest.mark.parametrize("number", [0, 1], ids=["ball", "torus"])
+@pytest.mark.parametrize("outline", OUTLINES)
+def test_nothing_is_left_on_which_the_cutter_may_stand(outline: str, number: int, feed: str) -> None:
+    face, tool = sheet(outline), CUTTERS[number]
+    made = laid(face, number, feed)
+    before = share_above(face, tool, made, FACTOR)
+    assert made.left / face.area == pytest.approx(before, abs=OVERLOOKED + 2e-4)
+    left = partial(left_over, face, tool, scallop=SCALLOP, walls=lambda uv: ~face.contains(uv))
+    done = completed(made.placed, partial(trace, chord=CHORD), left, face.contains)
+    assert share_above(face, tool, done, FACTOR) <= min(before, OVERLOOKED + 3e-4)
+    assert face.contains(np.column_stack([done.placed.pieces[:, k] for k in ((0, 2) if feed == "u" else (2, 0))])).all()
+    assert (before <= OVERLOOKED) == (done.placed is made.placed)
+
+
+def test_there_is_something_to_be_mended() -> None:
+    """Else the test above would show nothing."""
+    shares = [laid(sheet(outline), number, feed).left / sheet(outline).area
+              for outline in OUTLINES for number in (0, 1) for feed in "uv"]
+    assert sum(share > 2 * OVERLOOKED for share in shares) >= 10
+
+
+def test_no_more_passes_than_it_takes() -> None:
+    """The largest zones come first; the others stay where they are less than may be overlooked."""
+    made = laid(sheet("round"), 0, "u")
+    assert len(made.zones) > 2
+    few = mended(made.placed, made.zones, None)
+    assert 0 < len(few.steps) - len(made.placed.steps) < 2 * len(made.zones)
+    assert mended(made.placed, ()) is made.placed
+    assert np.all(np.diff(few.steps) >= 0)
+    assert set(made.placed.steps) <= set(few.steps)
+    for step in made.placed.steps:  # the passes that were there are the same
+        old, new = (one.pieces[one.pieces[:, 2] == step] for one in (made.placed, few))
+        np.testing.assert_array_equal(old, new)
+
+
+def test_a_zone_on_which_the_cutter_may_not_stand_is_left_alone() -> None:
+    made = laid(sheet("acute"), 0, "u")
+    assert mended(made.placed, made.zones, lambda uv: np.zeros(len(uv), dtype=bool)) is made.placed
