@@ -35,10 +35,6 @@
    <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
   </message>
   <message>
-   <source>Area within it</source>
-   <translation>Fläche innerhalb</translation>
-  </message>
-  <message>
    <source>Axis that turns</source>
    <translation>Achse, die dreht</translation>
   </message>
@@ -273,6 +269,10 @@
   <message>
    <source>Nothing meets along the passes; looked at: {}</source>
    <translation>Entlang der Bahnen stößt nichts zusammen; betrachtet: {}</translation>
+  </message>
+  <message>
+   <source>Of the rest within it</source>
+   <translation>Vom Rest innerhalb</translation>
   </message>
   <message>
    <source>On the machine</source>
@@ -621,6 +621,10 @@
   <message>
    <source>infeasible (proven)</source>
    <translation>unmöglich (bewiesen)</translation>
+  </message>
+  <message>
+   <source>left to clean-up</source>
+   <translation>für die Nacharbeit</translation>
   </message>
   <message>
    <source>machine {}</source>

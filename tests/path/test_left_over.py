@@ -8,13 +8,15 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.removed import distance_to_removed, distance_to_removed_numpy
 from toolaxis.numeric.polygons import inside, slabs
 from toolaxis.orient.indexed import Task, task
-from toolaxis.path.left_over import FACTOR, left_over, machined
+from toolaxis.path.left_grid import sampled
+from toolaxis.path.left_over import FACTOR, Excess, left_over, machined, may_stay, undercut
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.task import Task as Judged
-from toolaxis.verify.verdict import judge
+from toolaxis.verify.verdict import SHARE, judge
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30)
 SCALLOP = 0.05
+SPECK, DEEP_ONE = 0.9, 1.2
 
 
 def waved(trims: tuple = ()) -> ta.Face:
@@ -124,3 +126,36 @@ def test_allowance_raises_what_is_asked_for() -> None:
     assert left_over(face, TOOL, path, SCALLOP, 0.3) == ()
     (zone, *_) = left_over(face, TOOL, path, SCALLOP, 0.0)
     assert zone.area > 0.9 * face.area
+
+
+
+def shortened(*starts: float) -> ToolPath:
+    """Passes of a ball along y over the half x < 20 of a plane of 40 by 40, every third one begun late."""
+    x = np.arange(0.4, 19.6, 1.3)
+    tips = np.repeat(np.stack([x, np.full_like(x, -8.0), np.zeros_like(x)], axis=1), 2, axis=0)
+    tips[1::2, 1] = 48.0
+    tips[:6 * len(starts):6, 1] = starts
+    up, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.tile([Motion.LINK, Motion.CUT], len(x)).astype(np.int8)
+    return ToolPath(tips, tips, up, up, kind, np.arange(0, len(tips) + 1, 2))
+
+
+@pytest.mark.parametrize(("starts", "good"), [
+    ((SPECK,), True), ((SPECK, SPECK), False), ((DEEP_ONE,), False), ((SPECK, SPECK, DEEP_ONE), False)])
+def test_what_may_stay_is_little_enough_for_the_judge(starts: tuple[float, ...], good: bool) -> None:
+    """Specks, which no zone tells of, beside undercut ones and half of a face declared: the rest alone is asked for."""
+    plane = ta.Face.from_bspline([[[0, 0, 0], [0, 40, 0]], [[40, 0, 0], [40, 40, 0]]], degree=(1, 1))
+    ball, path = ta.Tool.ball(diameter=10, stickout=40), shortened(*starts)
+    zones = left_over(plane, ball, path, SCALLOP, walls=lambda uv: uv[:, 0] > 0.5)
+    declared = tuple(plane.trimmed(zone.loops) for zone in zones if zone.at_wall)
+    seen = judge(Judged("op", path.cl, path.axis, path.kind, ball.profile, (plane,), SCALLOP, left=declared))
+    assert (undercut(zones) <= may_stay(zones, plane.area)) == good
+    assert seen.share_within >= SHARE or not good, seen.zones
+
+
+def test_what_is_known_of_whole_cells_is_what_their_nodes_say(made: tuple[Task, ToolPath]) -> None:
+    job, path = made
+    high = Excess(job.worth.face, TOOL, path, FACTOR * SCALLOP)
+    _, values = sampled(job.worth.face, high, 0.06, high.whole)
+    _, plain = sampled(job.worth.face, high, 0.06, lambda middle, around: np.zeros(len(middle), dtype=bool))
+    assert ((values > 0) == (plain > 0)).all()
+    assert (values == 1).sum() > 0.5 * (plain > 0).sum() > 5000

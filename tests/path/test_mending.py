@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.path.isoparametric import layout
-from toolaxis.path.left_over import FACTOR, OVERLOOKED, excess, left_over
+from toolaxis.path.left_over import FACTOR, OVERLOOKED, Excess, left_over
 from toolaxis.path.mending import Made, completed, mended
 from toolaxis.path.tracing import trace
 
@@ -44,7 +44,7 @@ def share_above(face: ta.Face, tool: ta.Tool, made: Made, factor: float) -> floa
     uv = face.grid(count, count)
     d = face.evaluate(uv)
     weight = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-    high = excess(face, tool, made.path, factor * SCALLOP)(uv) > 0
+    high = Excess(face, tool, made.path, factor * SCALLOP)(uv) > 0
     return float(weight[high].sum() / weight.sum())
 
 

@@ -11,7 +11,7 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.path import count as counting
 from toolaxis.path.chart import Cut, IsoChart
 from toolaxis.path.layout import Layout, lay_out
-from toolaxis.path.left_over import OVERLOOKED, excess
+from toolaxis.path.left_over import OVERLOOKED, Excess
 from toolaxis.path.tracing import trace
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
@@ -103,7 +103,7 @@ def test_no_pass_is_laid_twice_and_none_is_missed(cap: Face, axis: np.ndarray) -
     laid = lay_out(chart, cut)
     assert missed(laid) < 5e-5  # as lines between the measured ones are interpolated
     uv = cap.grid(240, 240)
-    higher = excess(cap, TOOL, trace(laid, H / 10), 1.02 * H)(uv) > 0
+    higher = Excess(cap, TOOL, trace(laid, H / 10), 1.02 * H)(uv) > 0
     assert area(cap, uv)[higher].sum() < OVERLOOKED * area(cap, uv).sum()
     number = counting.measure(chart, cut).passes
     assert number - 0.02 <= len(laid.steps) <= number + 1.1

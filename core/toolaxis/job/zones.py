@@ -9,7 +9,7 @@ from toolaxis.job.failures import failed_after
 from toolaxis.orient.impossible import corner_too_large, tight_fillet
 from toolaxis.orient.reasons import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.path.beyond_layers import beyond_layers
-from toolaxis.path.left_over import FACTOR, also_machined, excess
+from toolaxis.path.left_over import FACTOR, Excess, also_machined
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -111,7 +111,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     if not zones:
         return ()
     height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
-    others = [excess(op.face, plan.tool, other.path, height) for other in plan.operations
+    others = [Excess(op.face, plan.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
     return tuple(also_machined(op.face, zone, others) for zone in zones)
 

@@ -42,7 +42,7 @@ from toolaxis.orient.verdicts import BACK, CUTTER, Witness
 from toolaxis.orient.worth import FEEDS, Worth
 from toolaxis.path.isoparametric import layout
 from toolaxis.path.layout import Layout
-from toolaxis.path.left_over import OVERLOOKED, left_over
+from toolaxis.path.left_over import left_over, may_stay
 from toolaxis.path.linking import Linking
 from toolaxis.path.mending import Made, completed
 from toolaxis.path.tracing import trace
@@ -391,7 +391,7 @@ class Finished(NamedTuple):
 
     one : Candidate
     orientation : Orientation
-    proof : Proof, refused too where passes leave more than `OVERLOOKED` of the face on which the cutter may stand
+    proof : Proof, refused too where passes leave more on which the cutter may stand than may stay
     path : ToolPath or None, the very passes that were proven; None where none can be laid
     longer : float, cutting length over that without further passes
     """
@@ -463,7 +463,7 @@ def finished(job: Task, one: Candidate) -> Finished:
         made = Made(placed, path, job.left_by(path))
         proof = _proven(job, path)
     path, area = made.path, job.worth.face.area
-    if proof.witness is None and made.undercut > OVERLOOKED * area:
+    if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = Proof(Witness(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
     unreached = min((made.left - made.undercut) / area, 1.0)
     length = path.length(Motion.CUT)

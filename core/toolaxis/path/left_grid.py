@@ -2,7 +2,8 @@
 
 What passes leave lies at the border nearly always, in pieces much smaller than the face: the function is asked along
 all of the border and at the nodes of coarse cells, and at all fine nodes of the cells in which that finds something and
-of those beside them, as far as it goes on.
+of those beside them, as far as it goes on. Inside of large pieces it is not asked at each node: cells of which all is
+far above zero are known from their middle.
 """
 
 from collections.abc import Callable
@@ -14,6 +15,7 @@ from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 Lines = tuple[Array, Array]
 
 #: Coarse cells along a side, fewest and most; the greatest number of fine ones along a side.
@@ -22,9 +24,14 @@ _FEWEST, _COARSE, _FINE = 24, 72, 1500
 _PIECES, _PLACES = 64, 20_000
 #: Cells along a side whose lengths tell how long it is.
 _MEASURED = 16
+#: Cells with no more fine ones along a side are looked at node by node.
+_SMALL = 2
+#: Corners and middles of the sides of a cell, as shares of it.
+_AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1], [0, 0.5]])
 
 
-def sampled(face: Face, function: Callable[[Array], Array], size: float) -> tuple[Lines, Array]:
+def sampled(face: Face, function: Callable[[Array], Array], size: float,
+            whole: Callable[[Array, Array], Bools]) -> tuple[Lines, Array]:
     """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
 
     Parameters
@@ -34,6 +41,9 @@ def sampled(face: Face, function: Callable[[Array], Array], size: float) -> tupl
         Takes (n, 2) parameters, beyond the face too, and returns (n,) numbers.
     size : float
         Size of the fine cells, mm.
+    whole : callable
+        Takes the middles of cells, (k, 2), with corners and middles of the sides of each, (k, 8, 2), and tells which
+        cells are above zero everywhere, (k,) bool; False where that is not known.
 
     Returns
     -------
@@ -56,14 +66,44 @@ def sampled(face: Face, function: Callable[[Array], Array], size: float) -> tupl
     done = np.zeros_like(wanted)
     while wanted.any():
         further = np.zeros_like(wanted)
-        for i, j in np.argwhere(wanted):
+        cells = np.argwhere(wanted)
+        _ask(function, whole, lines, values, np.hstack([cells * parts, (cells + 1) * parts]))
+        for i, j in cells:
             block = np.s_[i * parts[0]:(i + 1) * parts[0] + 1, j * parts[1]:(j + 1) * parts[1] + 1]
-            uv = np.stack(np.meshgrid(lines[0][block[0]], lines[1][block[1]], indexing="ij"), axis=-1)
-            values[block] = function(uv.reshape(-1, 2)).reshape(uv.shape[:2])
             _go_on(values[block] > 0, (int(i), int(j)), further)
         done |= wanted
         wanted = further & own & ~done
     return lines, values
+
+
+def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Bools], lines: Lines, values: Array,
+         blocks: Ints) -> None:
+    """Put the function at all nodes of blocks, (k, 4) first and last lines of each, into values; 1 where it is sure."""
+    wanted = np.zeros(values.shape, dtype=bool)
+    while len(blocks):
+        low = np.column_stack([line[blocks[:, k]] for k, line in enumerate(lines)])
+        high = np.column_stack([line[blocks[:, k + 2]] for k, line in enumerate(lines)])
+        around = low[:, None] + _AROUND * (high - low)[:, None]
+        sure = whole((low + high) / 2, around)
+        for i0, j0, i1, j1 in blocks[sure]:
+            values[i0:i1 + 1, j0:j1 + 1] = 1.0
+        small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
+        for i0, j0, i1, j1 in blocks[~sure & small]:
+            wanted[i0:i1 + 1, j0:j1 + 1] = True
+        blocks = _quarters(blocks[~sure & ~small])
+    i, j = np.nonzero(wanted)
+    values[i, j] = function(np.column_stack([lines[0][i], lines[1][j]]))
+
+
+def _quarters(blocks: Ints) -> Ints:
+    """Blocks divided along both sides, those of one cell along that side across it alone."""
+    first, last = blocks[:, :2], blocks[:, 2:]
+    middle = (first + last + 1) // 2
+    halves = [[(first, middle), (middle, last)][k] for k in (0, 1)]
+    made = [np.column_stack([halves[a][0][:, 0], halves[b][0][:, 1], halves[a][1][:, 0], halves[b][1][:, 1]])
+            for a in (0, 1) for b in (0, 1)]
+    found = np.concatenate(made)
+    return np.asarray(found[(found[:, 0] < found[:, 2]) & (found[:, 1] < found[:, 3])])
 
 
 def _go_on(above: Bools, cell: tuple[int, int], further: Bools) -> None:

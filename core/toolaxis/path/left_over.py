@@ -1,7 +1,8 @@
 """Zones of a sub-surface that its passes leave higher than the scallop limit, as closed loops with their area."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,19 +21,27 @@ from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-Excess = Callable[[Array], Array]
+T = TypeVar("T")
 
 #: Heights count as left from this multiple of the scallop limit on.
 FACTOR = 1.02
 #: Zones that do not come to this multiple of the limit, or are smaller than this share of the cutter's radius squared,
-#: are no work for anybody, unless they are more than this share of the face together: half of what the judge overlooks.
-DEEP, _SPECK, OVERLOOKED = 2.0, 1e-3, 5e-4
+#: are specks: no work for anybody.
+DEEP, _SPECK = 2.0, 1e-3
+#: Share of a face, clean-up zones aside, that may stay high: specks and undercut zones together. The judge overlooks
+#: twice as much of the same area: the other half is for what lies between the nodes of the grid here, and between the
+#: rays there.
+OVERLOOKED = 5e-4
 #: Size of the cells that outline zones, as shares of the cutter's radius, of the narrowest strip that it may leave, and
 #: of a square as large as the face.
 _OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
 _TRIES = 5
 #: Distances are told up to this, mm: only their signs are asked for.
 _FAR = 1e-3
+#: How much farther than its corners and the middles of its sides a cell may reach from its middle.
+_BULGE = 1.2
+#: Nodes at which it is looked first whether a zone is deep.
+_FIRST = 500
 
 
 def motions_of(path: ToolPath) -> tuple[Array, Array]:
@@ -46,7 +55,7 @@ def motions_of(path: ToolPath) -> tuple[Array, Array]:
     return path.cl[at], path.cl[at + 1]
 
 
-def excess(face: Face, tool: Tool, path: ToolPath, height: float) -> Excess:
+class Excess:
     """By how much points at a height above a face stay outside of what the passes remove.
 
     Parameters
@@ -57,20 +66,39 @@ def excess(face: Face, tool: Tool, path: ToolPath, height: float) -> Excess:
         With one fixed axis.
     height : float
         Above the face, allowance included, mm.
-
-    Returns
-    -------
-    callable
-        Takes (n, 2) parameters, beyond the face too, and returns (n,) numbers: above zero where more than that height
-        is left.
     """
-    starts, ends = motions_of(path)
 
-    def _excess(uv: Array) -> Array:
-        points = face.evaluate(uv).point + height * face.normal(uv)
-        return distance_to_removed(tool, path.axis[0], starts, ends, points, _FAR, 0.0)
+    def __init__(self, face: Face, tool: Tool, path: ToolPath, height: float) -> None:
+        self._face, self._tool, self._axis, self._height = face, tool, path.axis[0], height
+        self._motions = motions_of(path)
 
-    return _excess
+    def __call__(self, uv: Array) -> Array:
+        """Numbers (n,) at parameters (n, 2), beyond the face too: above zero where more than that height is left.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        """
+        return self._distance(self._raised(uv), _FAR)
+
+    def whole(self, middle: Array, around: Array) -> Bools:
+        """Which cells of the face are left all over: their middles are farther from what is removed than they reach.
+
+        Parameters
+        ----------
+        middle : (k, 2) array
+        around : (k, 8, 2) array
+            Corners and middles of the sides of each.
+        """
+        at, ends = self._raised(middle), self._raised(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
+        reach = _BULGE * np.linalg.norm(ends - at[:, None], axis=2).max(axis=1)
+        return np.asarray(self._distance(at, float(reach.max(initial=0.0))) >= reach)
+
+    def _raised(self, uv: Array) -> Array:
+        return np.asarray(self._face.evaluate(uv).point + self._height * self._face.normal(uv))
+
+    def _distance(self, points: Array, most: float) -> Array:
+        return distance_to_removed(self._tool, self._axis, *self._motions, points, most, 0.0)
 
 
 def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
@@ -96,7 +124,7 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     -------
     tuple of Zone
         The largest first. A zone is what stays higher than `FACTOR` times the limit; small and shallow ones are left
-        out while they are less than `OVERLOOKED` of the face together.
+        out where they are less than `may_stay` together with those that do not lie at walls.
 
     Raises
     ------
@@ -115,9 +143,9 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     if not len(motions_of(path)[0]):
         return (Zone(face.outline, face.area),)
     progress.check()
-    high = excess(face, tool, path, allowance + FACTOR * scallop)
-    deep = excess(face, tool, path, allowance + DEEP * scallop)
-    lines, values = sampled(face, high, _size(face, tool, scallop))
+    high = Excess(face, tool, path, allowance + FACTOR * scallop)
+    deep = Excess(face, tool, path, allowance + DEEP * scallop)
+    lines, values = sampled(face, high, _size(face, tool, scallop), high.whole)
     nodes = _above(lines, values)
     if not len(nodes):
         return ()
@@ -125,12 +153,41 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     found = contours(values, lines, high)
     progress.check()
     zones = [face.trimmed(loops) for loops in grouped(split(face.outline, found)[0])]
-    measured = sorted(((zone, zone.area) for zone in zones), key=lambda one: -one[1])
-    small = [area <= _SPECK * tool.radius**2 or not _deep(zone, deep, nodes) for zone, area in measured]
-    overlooked = sum(area for (_, area), one in zip(measured, small, strict=True) if one)
-    if overlooked <= OVERLOOKED * face.area:
-        measured = [one for one, less in zip(measured, small, strict=True) if not less]
-    return tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in measured)
+    small, large = _parted([(zone, zone.area) for zone in zones],
+                           lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
+    told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
+    if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
+        told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
+    return tuple(sorted(told, key=lambda zone: -zone.area))
+
+
+def undercut(zones: Sequence[Zone]) -> float:
+    """Area of the zones that do not lie at walls, mm^2.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+    """
+    return sum(zone.area for zone in zones if not zone.at_wall)
+
+
+def may_stay(zones: Sequence[Zone], area: float) -> float:
+    """How much of a face may stay high outside of the zones at walls, mm^2.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+    area : float
+        Of the face, mm^2.
+    """
+    return OVERLOOKED * max(0.0, area - sum(zone.area for zone in zones if zone.at_wall))
+
+
+def _parted(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T], list[T]]:
+    """Those that pass a test, and the others."""
+    passed = [test(one) for one in some]
+    return ([one for one, good in zip(some, passed, strict=True) if good],
+            [one for one, good in zip(some, passed, strict=True) if not good])
 
 
 def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
@@ -150,15 +207,15 @@ def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[A
     raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own")
 
 
-def also_machined(face: Face, zone: Zone, others: list[Excess]) -> Zone:
+def also_machined(face: Face, zone: Zone, others: Sequence[Excess]) -> Zone:
     """A zone with the area of it that other operations machine.
 
     Parameters
     ----------
     face : Face
     zone : Zone
-    others : list of callable
-        From `excess`, one an operation.
+    others : sequence of Excess
+        One an operation.
     """
     piece = face.trimmed(zone.loops)
     uv = piece.grid(48, 48)
@@ -201,6 +258,9 @@ def _deep(zone: Face, deep: Excess, nodes: Array) -> bool:
     """Whether a zone comes to `DEEP` times the limit at its border or at nodes, (n, 2), of the grid."""
     u0, u1, v0, v1 = zone.bounds
     near = nodes[(nodes[:, 0] >= u0) & (nodes[:, 0] <= u1) & (nodes[:, 1] >= v0) & (nodes[:, 1] <= v1)]
+    first = np.concatenate([near[::max(1, len(near) // _FIRST)], *zone.trims])
+    if (deep(first[zone.contains(first)]) > 0).any():
+        return True
     return bool((deep(np.concatenate([near[zone.contains(near)], *zone.trims])) > 0).any())
 
 

@@ -16,7 +16,7 @@ from toolaxis.contact.removed import distance_to_removed
 from toolaxis.path.chart import Chart, Cut, IsoChart, extents, tip_points
 from toolaxis.path.following import follow
 from toolaxis.path.layout import Layout, Reach, sampling
-from toolaxis.path.left_over import FACTOR, OVERLOOKED
+from toolaxis.path.left_over import FACTOR, may_stay, undercut
 from toolaxis.path.material import Intervals, filtered
 from toolaxis.path.spacing import Spacing
 from toolaxis.plan.zone import Zone
@@ -87,7 +87,7 @@ class Made(NamedTuple):
     @property
     def undercut(self) -> float:
         """Area of the zones that do not lie at walls, mm^2."""
-        return sum(zone.area for zone in self.zones if not zone.at_wall)
+        return undercut(self.zones)
 
 
 def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callable[[ToolPath], tuple[Zone, ...]],
@@ -132,7 +132,7 @@ def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callab
 
 
 def mended(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) -> Layout:
-    """A layout with further passes over the largest zones, until what the others leave may be overlooked.
+    """A layout with further passes over the largest zones, until what the others leave may stay.
 
     Parameters
     ----------
@@ -148,9 +148,10 @@ def mended(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) ->
     """
     aims = [(zone.area, _aimed(placed, zone, reach)) for zone in zones[:_ZONES]]
     rest = sum(area for area, aim in aims if aim is not None)
+    enough = may_stay(zones, placed.chart.face.area)
     found: list[Array] = []
     for area, aim in aims:
-        if rest <= OVERLOOKED * placed.chart.face.area:
+        if rest <= enough:
             break
         if aim is not None:
             found += _over(placed, aim, reach)

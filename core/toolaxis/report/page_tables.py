@@ -119,11 +119,13 @@ def verdict_rows(plan: Plan, verdict: Mapping[str, Any]) -> Rows:
     for op in verdict["operations"]:
         room = [number(value, 2) if not isinstance(value := op["clearance"].get(name), str) else "-"
                 for name in ("cutter", "shank", "holder")]
-        rows.append([op["name"], number(op["scallop_max"], 4), f"{100 * op['share_within']:.2f}",
+        rows.append([op["name"], number(op["declared"], 2), number(op["scallop_max"], 4),
+                     f"{100 * op['share_within']:.2f}",
                      number(op["gouge_max"], 4), " / ".join(room), str(len(op["zones"])), str(op["rays"]),
                      "pass" if op["passed"] else "FAIL"])
     allowed = plan.inputs.tolerance
-    headings = [("operation", False), ("scallop left mm", True), ("% within 1.02 limit", True), ("gouge mm", True),
+    headings = [("operation", False), ("left to clean-up mm²", True), ("scallop left mm", True),
+                ("% of the rest within 1.02 limit", True), ("gouge mm", True),
                 ("clearance mm cutter/shank/holder", True), ("zones above", True), ("rays", True), ("verdict", False)]
     return _numbers("verdict, measured by material removal", headings, rows, [
         f"Allowed: scallop {plan.inputs.scallop:g} mm, gouge {allowed.gouge:g} mm, clearances "

@@ -35,12 +35,15 @@ from toolaxis.tools.assembly import Tool
 from toolaxis.verify.maps import SurfaceMap
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: Colours that stay apart for colour-blind eyes (Okabe and Ito).
 BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE, GREY = (
     "#0072B2", "#56B4E9", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#8C8C8C")
 _FACE, _PART, _CUTTER, _SHANK, _HOLDER = (
     (0.80, 0.89, 0.96), (0.84, 0.84, 0.84), (0.96, 0.80, 0.35), (0.75, 0.75, 0.78), (0.55, 0.58, 0.64))
+#: What lies in clean-up zones on maps of the judge.
+_ASIDE = "#e8e8e8"
 
 
 def figure(width: float, height: float) -> Figure:
@@ -254,7 +257,8 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
     depth = np.concatenate([one.gouge for one in maps])
     seen = camera(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [0.0, 1.0, 0.0],
                   np.concatenate([one.point for one in maps]), pixels=700)
-    _map_panel(made, left, (maps, 1000 * scallop, seen), ("scallop left, µm", 1000 * limit, "viridis"))
+    aside = np.concatenate([one.declared for one in maps])
+    _map_panel(made, left, (maps, 1000 * scallop, seen), ("scallop left, µm", 1000 * limit, "viridis"), aside)
     _map_panel(made, right, (maps, 1000 * depth, seen), ("gouge, µm", 1000 * gouge, "Blues"))
     left.set_title(f"{name}: scallop left, limit {1000 * limit:g} µm", fontsize=10)
     right.set_title(f"{name}: gouge, greatest {1000 * float(depth.max()):.2f} µm, allowed {1000 * gouge:g} µm",
@@ -263,7 +267,8 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
 
 
 def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, Camera],
-               scale: tuple[str, float, str]) -> None:
+               scale: tuple[str, float, str], aside: Bools | None = None) -> None:
+    """One map; what lies aside is hatched, whatever is left there."""
     from scipy.spatial import cKDTree
 
     maps, value, seen = data
@@ -278,7 +283,12 @@ def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, 
     reach = 1.5 * max(one.spacing for one in maps) + seen.pixel
     distance, nearest = tree.query(grid, distance_upper_bound=reach)
     picture = np.full(len(grid), np.nan)
-    picture[np.isfinite(distance)] = value[facing][nearest[np.isfinite(distance)]]
+    shown = np.flatnonzero(facing)[nearest[np.isfinite(distance)]]
+    picture[np.isfinite(distance)] = value[shown]
+    hatched = np.zeros(len(grid), dtype=bool)
+    if aside is not None:
+        hatched[np.isfinite(distance)] = aside[shown]
+        picture[hatched] = np.nan
     finite = np.where(np.isfinite(picture), picture, np.nan)
     image = ax.imshow(finite.reshape(rows, columns), origin="lower", extent=seen.extent, interpolation="nearest",
                       cmap=colormaps[colours].with_extremes(over=VERMILION), norm=Normalize(0.0, 1.1 * limit))
@@ -290,7 +300,14 @@ def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, 
     bar.ax.axhline(limit, color="black", linewidth=1)
     handles = [Patch(facecolor=VERMILION, label="above 1.1 times the limit")]
     handles += [Patch(facecolor=GREY, label="not reached")] if lost.any() else []
-    ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, fontsize=8, frameon=False)
+    if hatched.any():
+        over = hatched.reshape(rows, columns).astype(float)
+        drawn = ax.contourf(x, y, over, levels=[0.5, 1.5], colors=[_ASIDE], hatches=["////"])
+        drawn.set_edgecolor("#777777")
+        drawn.set_linewidth(0.0)
+        handles.append(Patch(facecolor=_ASIDE, edgecolor="#777777", linewidth=0.0, hatch="////",
+                             label="left to clean-up: not asked for"))
+    ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
     scale_bar(ax, seen)
     bare(ax)
 

@@ -236,11 +236,12 @@ def _measured(found: Mapping[str, Clearance | str]) -> str:
 def _verdict_row(op: Operation, found: OperationVerdict | None) -> list[str]:
     row = _operation_row(op)
     if found is None:
-        return [*row, "-", "-", "NOT JUDGED" if op.done else "NO AXIS"]
+        return [*row, "-", "-", "-", "NOT JUDGED" if op.done else "NO AXIS"]
     if not found.measured:
-        return [*row, "-", "-", "FAIL"]
+        return [*row, "-", "-", "-", "FAIL"]
     row[6:8] = [number(found.gouge_max, 4), _measured(found.clearance)]
-    return [*row, number(found.scallop_max, 4), f"{100 * found.share_within:.2f}", "pass" if found.passed else "FAIL"]
+    return [*row, f"{100 * found.declared / found.area:.1f}", number(found.scallop_max, 4),
+            f"{100 * found.share_within:.2f}", "pass" if found.passed else "FAIL"]
 
 
 def verdict_table(plan: Plan, verdict: Verdict) -> Table:
@@ -256,6 +257,9 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     for row, op in zip(rows, plan.operations, strict=True):
         if not op.done and outcome_of([op], plan.blades) == "complete":
             row[-1] = "clean-up"
-    columns = [*_COLUMNS, ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"), ("verdict", "left")]
+    columns = [*_COLUMNS, ("clean-\nup %", "right"), ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"),
+               ("verdict", "left")]
+    aside = any(op.declared > 0 for op in verdict.operations)
     return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
-                 f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows)
+                 f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows,
+                 "scallop left and % within: of the area that is not left to clean-up" if aside else "")

@@ -16,34 +16,43 @@ Bools = NDArray[np.bool_]
 STRIP = 0.01
 
 
-def declared(zones: Sequence[Face], face: Face, places: tuple[Array, Array], strip: float) -> Bools:
-    """Which places of a face lie in declared zones, or in the strip around them, (m,) bool.
+class Declared:
+    """Declared zones, and the strip around them.
 
     Parameters
     ----------
     zones : sequence of Face
-        Pieces of this face and of others that are machined with it.
-    face : Face
-    places : uv (m, 2), points (m, 3)
-        Parameters, and the places themselves, mm.
+        Pieces of the faces that are machined.
     strip : float
         Width of the strip, mm.
 
-    Properties
-    ----------
-    1. A zone that is the whole face holds all of its places.
+    Notes
+    -----
+    **Properties**: 1. a zone that is the whole face holds all of its places.
     """
-    from scipy.spatial import cKDTree
 
-    uv, point = places
-    found = np.zeros(len(uv), dtype=bool)
-    for zone in zones:
-        if zone.surface is face.surface:
-            found |= zone.contains(uv)
-        edge = zone.evaluate(border_points(zone, strip)).point
-        low, high = edge.min(axis=0) - strip, edge.max(axis=0) + strip
-        near = np.flatnonzero(~found & ((point >= low) & (point <= high)).all(axis=1))
-        if len(near):
-            # Points of the border are no farther apart than the strip is wide: what lies within it is nearer than this.
-            found[near] = cKDTree(edge).query(point[near])[0] <= strip
-    return found
+    def __init__(self, zones: Sequence[Face], strip: float) -> None:
+        from scipy.spatial import cKDTree
+
+        self.zones, self.strip = tuple(zones), strip
+        # Points of a border are no farther apart than the strip is wide.
+        self._borders = [cKDTree(zone.evaluate(border_points(zone, strip)).point) for zone in self.zones]
+
+    def holds(self, face: Face, uv: Array, point: Array) -> Bools:
+        """Which places of a face lie in declared zones, or in the strip around them, (m,) bool.
+
+        Parameters
+        ----------
+        face : Face
+        uv : (m, 2) array
+        point : (m, 3) array
+            mm
+        """
+        found = np.zeros(len(uv), dtype=bool)
+        for zone, border in zip(self.zones, self._borders, strict=True):
+            if zone.surface is face.surface:
+                found |= zone.contains(uv)
+            low, high = border.mins - self.strip, border.maxes + self.strip
+            near = np.flatnonzero(~found & ((point >= low) & (point <= high)).all(axis=1))
+            found[near] = border.query(point[near], distance_upper_bound=self.strip)[0] <= self.strip
+        return found

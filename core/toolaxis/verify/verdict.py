@@ -11,7 +11,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.axes import FAR, Clearance, clearance
-from toolaxis.verify.declared import STRIP, declared
+from toolaxis.verify.declared import STRIP, Declared
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
@@ -193,12 +193,8 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
         depths.correct(face, (point, normal), left)
         return left
 
-    strip = STRIP * (task.profile.flat_radius + task.profile.corner_radius)
-
-    def aside(face: Face, uv: Array, point: Array) -> NDArray[np.bool_]:
-        return declared(task.left, face, (uv, point), strip)
-
-    targets = tuple(surface_map(face, partial(measure, face), spacing, declared=partial(aside, face))
+    left = Declared(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
+    targets = tuple(surface_map(face, partial(measure, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
     skin = [_kept_of(surface_map(face, partial(measure, face), spacing, heights=False)) for face in task.skin]
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)

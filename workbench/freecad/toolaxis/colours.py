@@ -4,8 +4,8 @@ import numpy as np
 
 #: Anchors of a scale that rises in lightness from violet to yellow (viridis), 0 to 1.
 _SCALE = ("#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725")
-#: Colours of what is above the limit, and of what the cutter never reached.
-ABOVE, MISSED = (213, 94, 0), (204, 121, 167)
+#: Colours of what is above the limit, of what the cutter never reached, and of what is left to clean-up.
+ABOVE, MISSED, ASIDE = (213, 94, 0), (204, 121, 167), (200, 200, 200)
 
 
 def _rgb(text):
@@ -38,7 +38,7 @@ def coloured(values, low, high):
     return scale_colours()[np.clip(share * 255, 0, 255).astype(np.intp)]
 
 
-def judged(values, limit):
+def judged(values, limit, aside=None):
     """Colours of heights or depths, (n, 3) bytes.
 
     Parameters
@@ -46,8 +46,12 @@ def judged(values, limit):
     values : (n,) array
     limit : float
         End of the scale, mm; what is above it is one colour, what is infinite another.
+    aside : (n,) array of bool, optional
+        What has a colour of its own, whatever its value.
     """
     rgb = coloured(np.where(np.isfinite(values), values, 0.0), 0.0, limit)
     rgb[values > limit * 1.02] = ABOVE
     rgb[~np.isfinite(values)] = MISSED
+    if aside is not None:
+        rgb[aside] = ASIDE
     return rgb

@@ -54,8 +54,11 @@ def drawn(verdict, frame):
         points, triangles = _joined(some)
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
         mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
-        values = _values(some, name)[_rows_of(mesh, points)]
-        colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in judged(values, _limit(verdict, name)).tolist()]
+        rows = _rows_of(mesh, points)
+        values = _values(some, name)[rows]
+        aside = _values(some, "declared")[rows].astype(bool) if name == "remaining" else None
+        rgb = judged(values, _limit(verdict, name), aside)
+        colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in rgb.tolist()]
         made.append(Drawn(mesh, values.tolist(), colours))
     return made
 
@@ -159,7 +162,8 @@ def _paint(thing, one, limit):
     thing.Mesh = one.mesh
     thing.Deviation, thing.VertexColors = one.values, one.colours
     assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
-        "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached"])
+        "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached",
+        "grey: left to clean-up"])
 
 
 def _rows_of(mesh, points):

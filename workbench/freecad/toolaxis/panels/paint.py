@@ -25,12 +25,15 @@ class Skin:
     triangle : (m, 3) array of int
     remaining, gouge : (n,) array
         mm; inf where the cutter never came.
+    declared : (n,) array of bool
+        Whether it lies in a clean-up zone.
     """
 
     point: np.ndarray
     triangle: np.ndarray
     remaining: np.ndarray
     gouge: np.ndarray
+    declared: np.ndarray
 
 
 #: Triangles in one node: the scene grows node by node, so that the event loop is never held up.
@@ -50,7 +53,8 @@ def skins_of(found):
 
 def _piece(found, triangle):
     rows, inverse = np.unique(triangle, return_inverse=True)
-    return Skin(found.point[rows], inverse.reshape(triangle.shape), found.remaining[rows], found.gouge[rows])
+    return Skin(found.point[rows], inverse.reshape(triangle.shape), found.remaining[rows], found.gouge[rows],
+                found.declared[rows])
 
 
 class Paint:
@@ -103,7 +107,8 @@ class Paint:
             self._timer.stop()
             return
         skin, what, limit = self._left.pop()
-        self.root.addChild(_painted(skin, judged(getattr(skin, what), limit)))
+        aside = skin.declared if what == "remaining" else None
+        self.root.addChild(_painted(skin, judged(getattr(skin, what), limit, aside)))
 
     def point_at(self, point, size):
         """Zoom to a point and mark it.

@@ -3,7 +3,7 @@
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
-from ..colours import ABOVE, MISSED, scale_colours
+from ..colours import ABOVE, ASIDE, MISSED, scale_colours
 from . import palette
 from .quantity import fine_text
 
@@ -14,14 +14,14 @@ _ROW, _SWATCH = 19, 28
 
 
 class Scale(QtWidgets.QWidget):
-    """A bar of colours with its ends, and swatches for above the limit and not reached."""
+    """A bar of colours with its ends, and swatches for above the limit, not reached, and left to clean-up."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.limit, self.name, self.missed = 1.0, "", True
+        self.limit, self.name, self.heights = 1.0, "", True
         self._fit()
 
-    def show_scale(self, name, limit, missed):
+    def show_scale(self, name, limit, heights):
         """Explain another map.
 
         Parameters
@@ -29,10 +29,10 @@ class Scale(QtWidgets.QWidget):
         name : str
         limit : float
             mm
-        missed : bool
-            Whether places that were not reached have a colour of their own.
+        heights : bool
+            Whether heights are shown: places not reached and clean-up zones have colours of their own.
         """
-        self.limit, self.name, self.missed = limit, name, missed
+        self.limit, self.name, self.heights = limit, name, heights
         self._fit()
         self.update()
 
@@ -46,13 +46,17 @@ class Scale(QtWidgets.QWidget):
     def _entries(self):
         """Colours beyond the scale, with what they mean."""
         entries = [(ABOVE, translate("ToolAxis", "above the limit"))]
-        return entries + ([(MISSED, translate("ToolAxis", "not reached"))] if self.missed else [])
+        if self.heights:
+            entries += [(MISSED, translate("ToolAxis", "not reached")),
+                        (ASIDE, translate("ToolAxis", "left to clean-up"))]
+        return entries
 
     def _rows(self):
-        """The same in rows: in one where each fits into its half."""
+        """The same in rows: two in one where each fits into its half."""
         entries, metrics = self._entries(), self.fontMetrics()
         fits = all(metrics.horizontalAdvance(name) + _SWATCH < self.width() / 2 for _, name in entries)
-        return [entries] if fits else [[entry] for entry in entries]
+        beside = 2 if fits else 1
+        return [entries[k:k + beside] for k in range(0, len(entries), beside)]
 
     def _caption(self):
         """The name of the scale between its ends, or less of it where they need the room."""

@@ -210,7 +210,8 @@ def _measures(verdict):
     height = verdict.scallop_max
     return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
-            (translate("ToolAxis", "Area within it"), f"{100 * verdict.share_within:.2f} %"),
+            (translate("ToolAxis", "Left to clean-up"), f"{100 * verdict.declared / verdict.area:.1f} %"),
+            (translate("ToolAxis", "Of the rest within it"), f"{100 * verdict.share_within:.2f} %"),
             (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
             (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),
             (translate("ToolAxis", "Cutter clearance"), _room("cutter")),
