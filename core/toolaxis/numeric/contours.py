@@ -13,7 +13,7 @@ _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def contours(values: Array, lines: tuple[Array, Array],
-             function: Callable[[Array], Array] | None = None) -> tuple[Array, ...]:
+             function: Callable[[Array], Array] | None = None, halvings: int = _STEPS) -> tuple[Array, ...]:
     """Closed polygons around the places where a function is above zero.
 
     Parameters
@@ -25,6 +25,8 @@ def contours(values: Array, lines: tuple[Array, Array],
     function : callable, optional
         Takes (k, 2) points and returns (k,) values: vertices are put where it vanishes, by bisection, instead of where
         a straight line between the nodes does.
+    halvings : int
+        Of the edge of a cell, to find where it vanishes.
 
     Returns
     -------
@@ -39,7 +41,7 @@ def contours(values: Array, lines: tuple[Array, Array],
     above = f > 0
     cells = np.argwhere((above[:-1, :-1] != above[1:, :-1]) | (above[1:, :-1] != above[1:, 1:])
                         | (above[1:, 1:] != above[:-1, 1:]))
-    at = _vertices(f, (x, y), function)
+    at = _vertices(f, (x, y), function, halvings)
     joined: dict[tuple[int, int, int], list[tuple[int, int, int]]] = {}
     for i, j in cells.tolist():
         for one, other in _segments(f, above, i, j):
@@ -48,8 +50,8 @@ def contours(values: Array, lines: tuple[Array, Array],
     return _traced(joined, at)
 
 
-def _vertices(f: Array, lines: tuple[Array, Array],
-              function: Callable[[Array], Array] | None) -> dict[tuple[int, int, int], Array]:
+def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
+              halvings: int) -> dict[tuple[int, int, int], Array]:
     """Where edges of the grid cross zero, by axis along which the edge runs and its lower node."""
     keys, ends = [], []
     for axis in (0, 1):
@@ -68,12 +70,12 @@ def _vertices(f: Array, lines: tuple[Array, Array],
     outer = ((node[:, 1] == 0) | (node[:, 1] == np.array(f.shape) - 1)).any(axis=1)
     points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
     if function is not None and not outer.all():
-        points[~outer] = _bisected(function, good[~outer], bad[~outer])
+        points[~outer] = _bisected(function, good[~outer], bad[~outer], halvings)
     return dict(zip(keys, points, strict=True))
 
 
-def _bisected(function: Callable[[Array], Array], good: Array, bad: Array) -> Array:
-    for _ in range(_STEPS):
+def _bisected(function: Callable[[Array], Array], good: Array, bad: Array, halvings: int) -> Array:
+    for _ in range(halvings):
         middle = (good + bad) / 2
         holds = (function(middle) > 0)[:, None]
         good, bad = np.where(holds, middle, good), np.where(holds, bad, middle)

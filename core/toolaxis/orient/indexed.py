@@ -173,9 +173,9 @@ class Task:
         path : ToolPath
             With one fixed axis.
         """
-        worth, axis = self.worth, path.axis[0]
+        worth = self.worth
         return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.feasibility.reach(uv, axis), self.progress)
+                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,

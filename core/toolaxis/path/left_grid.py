@@ -81,16 +81,17 @@ def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Boo
     """Put the function at all nodes of blocks, (k, 4) first and last lines of each, into values; 1 where it is sure."""
     wanted = np.zeros(values.shape, dtype=bool)
     while len(blocks):
+        small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
+        for i0, j0, i1, j1 in blocks[small]:
+            wanted[i0:i1 + 1, j0:j1 + 1] = True
+        blocks = blocks[~small]
         low = np.column_stack([line[blocks[:, k]] for k, line in enumerate(lines)])
         high = np.column_stack([line[blocks[:, k + 2]] for k, line in enumerate(lines)])
         around = low[:, None] + _AROUND * (high - low)[:, None]
         sure = whole((low + high) / 2, around)
         for i0, j0, i1, j1 in blocks[sure]:
             values[i0:i1 + 1, j0:j1 + 1] = 1.0
-        small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
-        for i0, j0, i1, j1 in blocks[~sure & small]:
-            wanted[i0:i1 + 1, j0:j1 + 1] = True
-        blocks = _quarters(blocks[~sure & ~small])
+        blocks = _quarters(blocks[~sure])
     i, j = np.nonzero(wanted)
     values[i, j] = function(np.column_stack([lines[0][i], lines[1][j]]))
 

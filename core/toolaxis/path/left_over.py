@@ -40,6 +40,8 @@ _TRIES = 5
 _FAR = 1e-3
 #: How much farther than its corners and the middles of its sides a cell may reach from its middle.
 _BULGE = 1.2
+#: Halvings of the edges of fine cells that find the border of a zone: to some nanometres.
+_HALVINGS = 14
 #: Nodes at which it is looked first whether a zone is deep.
 _FIRST = 500
 
@@ -150,7 +152,7 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     if not len(nodes):
         return ()
     progress.check()
-    found = contours(values, lines, high)
+    found = contours(values, lines, high, _HALVINGS)
     progress.check()
     zones = [face.trimmed(loops) for loops in grouped(split(face.outline, found)[0])]
     small, large = _parted([(zone, zone.area) for zone in zones],

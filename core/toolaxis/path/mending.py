@@ -119,7 +119,7 @@ def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callab
     """
     path = traced(placed)
     made, plain = Made(placed, path, left(path)), path.length(Motion.CUT)
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if len(placed.pieces) else 0):
         further = mended(made.placed, made.zones, reach)
         if further is made.placed:
             break
