@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 RESOLUTION = 1e-6
 _HALVINGS = 60
 _ROWS = 64
-#: Motions that follow each other are looked at together.
-_GROUP = 16
+#: Motions, and points, that follow each other are looked at together.
+_GROUP, _TOGETHER = 16, 24
 
 
 @compiled
@@ -55,33 +55,74 @@ def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
 
 
 @compiled
-def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
-    """Points and moves (middle, half way, half length) in the frame whose z is the axis; the nearest group first.
+def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
+          groups: NDArray[np.int64], near: NDArray[np.int64]) -> int:
+    """Motions that may come nearer than a distance to a point of a ball, by group; the number of groups with any.
 
+    Row k of `groups` is a group, and where its motions end in `near`.
+    """
+    up, some, count = (0.0, 0.0, 1.0), 0, 0
+    for g in range(balls.shape[0]):
+        x, y, z = ball[0] - balls[g, 0], ball[1] - balls[g, 1], ball[2] - balls[g, 2]
+        if signed_distance(cutter, up, x, y, z) - balls[g, 3] - ball[3] >= most:
+            continue
+        before = count
+        for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
+            x, y, z = ball[0] - moves[k, 0], ball[1] - moves[k, 1], ball[2] - moves[k, 2]
+            if signed_distance(cutter, up, x, y, z) - moves[k, 6] - ball[3] < most:
+                near[count] = k
+                count += 1
+        if count > before:
+            groups[some, 0], groups[some, 1] = g, count
+            some += 1
+    return some
+
+
+@compiled
+def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
+    """Points and moves (middle, half way, half length) in the frame whose z is the axis.
+
+    Points that follow each other are looked at together, and first at the motion that was the nearest for the last one.
     Distances are told between told[0], from which on nothing less is looked for, and told[1].
     """
     up = (0.0, 0.0, 1.0)
-    groups = balls.shape[0]
-    bound = np.empty(groups)
-    for i in range(points.shape[0]):
-        nearest = 0
-        for g in range(groups):
-            x, y, z = points[i, 0] - balls[g, 0], points[i, 1] - balls[g, 1], points[i, 2] - balls[g, 2]
-            bound[g] = signed_distance(cutter, up, x, y, z) - balls[g, 3]
-            if bound[g] < bound[nearest]:
-                nearest = g
-        best = told[1]
-        for turn in range(-1, groups):
-            if best <= told[0]:
-                break
-            g = nearest if turn < 0 else turn
-            if bound[g] >= best or turn == nearest:
-                continue
-            for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
-                best = _least_of(cutter, moves[k], points[i], best)
+    groups, near = np.empty((balls.shape[0], 2), dtype=np.int64), np.empty(moves.shape[0], dtype=np.int64)
+    ball, last = np.empty(4), 0
+    for start in range(0, points.shape[0], _TOGETHER):
+        end = min(start + _TOGETHER, points.shape[0])
+        _around(points, start, end, ball)
+        some = _near(cutter, balls, moves, ball, told[1], groups, near)
+        for i in range(start, end):
+            best = told[1]
+            if some > 0:
+                best = _least_of(cutter, moves[last], points[i], best)
+            for n in range(some):
                 if best <= told[0]:
                     break
-        out[i] = best
+                g = groups[n, 0]
+                x, y, z = points[i, 0] - balls[g, 0], points[i, 1] - balls[g, 1], points[i, 2] - balls[g, 2]
+                if signed_distance(cutter, up, x, y, z) - balls[g, 3] >= best:
+                    continue
+                for m in range(groups[n - 1, 1] if n > 0 else 0, groups[n, 1]):
+                    value = _least_of(cutter, moves[near[m]], points[i], best)
+                    if value < best:
+                        best, last = value, near[m]
+                        if best <= told[0]:
+                            break
+            out[i] = best
+
+
+@compiled
+def _around(points: Array, start: int, end: int, ball: Array) -> None:
+    """A ball around points of some rows: its middle and radius."""
+    for c in range(3):
+        ball[c] = 0.0
+        for i in range(start, end):
+            ball[c] += points[i, c] / (end - start)
+    ball[3] = 0.0
+    for i in range(start, end):
+        x, y, z = points[i, 0] - ball[0], points[i, 1] - ball[1], points[i, 2] - ball[2]
+        ball[3] = max(ball[3], np.sqrt(x * x + y * y + z * z))
 
 
 def distance_to_removed_numpy(tool: Tool, axis: Array, starts: Array, ends: Array, points: Array,
