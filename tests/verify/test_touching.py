@@ -2,10 +2,15 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import Motion
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.gouge import RESOLUTION
+from toolaxis.orient.proof import prove
+from toolaxis.orient.setting import SKIN, TOUCHING, Group
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
+from toolaxis.tools.assembly import Tool
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import OperationVerdict, verify
@@ -24,12 +29,17 @@ TOP = plane([0, 0, 0], [20, 0, 0], [0, 10, 0], "top")
 SIDE = plane([20, 0, -60], [0, 10, 0], [0, 0, 60], "side")
 
 
-def judged(extra: list[list[float]], touching: tuple[Face, ...] = (SIDE,)) -> OperationVerdict:
+def locations(extra: list[list[float]]) -> NDArray[np.float64]:
+    """Tips of passes over the top that run out over the edge, and more."""
     rows = [[x, y, 0.0] for k, y in enumerate(np.arange(-0.5, 10.6, 0.8)) for x in ((-6, 26) if k % 2 else (26, -6))]
-    tips = np.array([*rows, *extra])
+    return np.array([*rows, *extra])
+
+
+def judged(extra: list[list[float]], touching: tuple[Face, ...] = (SIDE,), allowed: float = 0.002) -> OperationVerdict:
+    tips = locations(extra)
     axes, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.full(len(tips), Motion.CUT)
     return verify([Task("top", tips, axes, kind, BALL, (TOP,), 0.02, touching=touching,
-                        tolerance=Tolerance(gouge=0.002))], spacing=0.5).operations[0]
+                        tolerance=Tolerance(gouge=allowed))], spacing=0.5).operations[0]
 
 
 def test_running_out_over_the_edge_is_no_gouge() -> None:
@@ -52,3 +62,24 @@ def test_a_gouge_within_the_tolerance_passes() -> None:
     found = judged([[26.0, 5.0, 5.0], [26.0, 5.0, -45.0], [25.0 - 0.001, 5.0, -45.0], [26.0, 5.0, -45.0]])
     assert found.passed, found.reasons
     assert found.gouge_max == pytest.approx(0.001, abs=6e-4)
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.003, 0.008])
+def test_planner_and_judge_tell_the_same_depth_behind_an_edge(depth: float) -> None:
+    extra = [[26.0, 5.0, 5.0], [26.0, 5.0, -45.0], [25.0 - depth, 5.0, -45.0], [26.0, 5.0, -45.0]]
+    found = judged(extra, allowed=0.01)
+    assert found.passed, found.reasons
+    tips, tolerance = locations(extra), Tolerance(gouge=0.01)
+    axis, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.full(len(tips), Motion.CUT)
+    path = ToolPath(tips, tips, axis, axis, kind, np.array([0, len(tips)]))
+    groups = [Group(role, (face,), np.array([-tolerance.gouge, -np.inf, -np.inf]), None)
+              for role, face in ((SKIN, TOP), (TOUCHING, SIDE))]
+    proof = prove(path, Tool.ball(10), tuple(groups))
+    assert proof.witness is None
+    assert proof.gouge == pytest.approx(depth, abs=RESOLUTION)
+    assert proof.gouge >= found.gouge_max - RESOLUTION
+    places = [place for place in found.worst_gouge if place.face == "side"]
+    assert len(places) == (depth > 0.0)
+    for place in places:
+        assert place.value == pytest.approx(depth, abs=1e-4)
+        assert SIDE.evaluate(np.array([place.uv])).point[0] == pytest.approx(place.point, abs=1e-6)

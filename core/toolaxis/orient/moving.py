@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.distances import bounded, judged, motions
-from toolaxis.contact.gouge import depth_from_distance
+from toolaxis.contact.distances import judged, motions
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.orient.crossing import OVER
-from toolaxis.orient.proof import COMPONENTS, Proof, worst_motion
+from toolaxis.orient.proof import COMPONENTS, Proof, greatest_depth, worst_motion
 from toolaxis.orient.setting import OTHER, SKIN, Group
-from toolaxis.orient.standing import FINE
 from toolaxis.orient.verdicts import Witness
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.assembly import Tool
@@ -232,11 +230,7 @@ def _touching(tool: Tool, group: Group, spans: Spans, allowance: float) -> Proof
     bad = np.flatnonzero(judged(group.cells, tool, moves, table).blocked >= 0)
     if len(bad):
         return Proof(_worst(tool, group, moves[bad], required))
-    if group.role != SKIN:
-        return Proof(None)
-    low = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, np.where(np.isneginf(table), -inf, 0.0))
-    depth = max(float(low.lower[:, 0].min()), float(group.required[0]))
-    return Proof(None, float(depth_from_distance(tool, np.array([depth]), allowance)[0]))
+    return Proof(None, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
 
 
 def _witness(tool: Tool, group: Group, spans: Spans, required: Array) -> Witness:

@@ -34,7 +34,7 @@ class Proof:
     witness : Witness or None
         The first motion that breaks a limit; None when every motion keeps them all.
     gouge : float
-        Upper bound of the depth below the skin, mm.
+        Upper bound of the depth below the skin and below the faces behind its convex edges, mm.
     clearance : dict of str to float
         Lower bound per component that is known, mm; the cutter's is to what it does not machine or touch harmlessly.
     """
@@ -83,14 +83,29 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
     known = {"cutter", *tool.outlines}
     for number, group in enumerate(groups):
         progress.report("proof", len(groups) + number, 2 * len(groups))
-        if group.role == SKIN:
-            depth = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
-            gouge = float(depth_from_distance(tool, np.maximum(depth, group.required[0]), allowance))
+        if group.role != OTHER:
+            gouge = max(gouge, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
         asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
             clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
     return Proof(None, gouge, clearance)
+
+
+def greatest_depth(tool: Tool, group: Group, moves: Array, allowance: float) -> float:
+    """Upper bound of the depth below a group of which motions are proven to keep their distance, mm.
+
+    Parameters
+    ----------
+    tool : Tool
+    group : Group
+    moves : (n, 3, 3) array
+        Motions, as `segment_motions` gives them.
+    allowance : float
+        Stock left on the group, mm.
+    """
+    nearest = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
+    return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
 
 
 def _only(group: Group, components: tuple[int, ...]) -> Array:

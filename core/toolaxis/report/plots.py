@@ -261,8 +261,8 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
     _map_panel(made, left, (maps, 1000 * scallop, seen), ("scallop left, µm", 1000 * limit, "viridis"), aside)
     _map_panel(made, right, (maps, 1000 * depth, seen), ("gouge, µm", 1000 * gouge, "Blues"))
     left.set_title(f"{name}: scallop left, limit {1000 * limit:g} µm", fontsize=10)
-    right.set_title(f"{name}: gouge, greatest {1000 * float(depth.max()):.2f} µm, allowed {1000 * gouge:g} µm",
-                    fontsize=10)
+    deepest = 1000 * float(depth.max())
+    right.set_title(f"{name}: gouge in the face, greatest {deepest:.2f} µm, allowed {1000 * gouge:g} µm", fontsize=10)
     return made
 
 

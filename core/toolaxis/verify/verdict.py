@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.verify.axes import FAR, Clearance, clearance
 from toolaxis.verify.declared import STRIP, Declared
 from toolaxis.verify.depths import Depths
@@ -17,6 +18,7 @@ from toolaxis.verify.machine import machine_faults
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
 from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.removal import Remains, Removal
+from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.solids import cutter_solid, frustum_solids
 from toolaxis.verify.task import Task, motion_of, spot
 
@@ -55,7 +57,8 @@ class OperationVerdict:
     clearance : dict of str to Clearance or "not checked"
         For "cutter", "shank" and "holder"; for "machine", where its bodies were judged, between table and spindle.
     worst_scallop, worst_gouge : tuple of Place
-        The worst first; the gouge's only where it exceeds the judge's uncertainty.
+        The worst first; the gouge's only where it exceeds the judge's uncertainty, and with the deepest place in a
+        face behind a convex edge.
     link_cut : Place or None
         Where a link goes deepest into what the cutting motions leave; None where none does.
     zones : tuple of Zone
@@ -216,7 +219,7 @@ def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) 
     find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
                    task.touching, enough=task.tolerance.gouge, threads=threads, progress=progress)
     found = find()
-    return find(taken_off=depths.missed_behind_edges) if -found.distance > task.tolerance.gouge else found
+    return find(taken_off=depths.missed_behind_edges) if -found.distance > SMALLEST else found
 
 
 def _needed(task: Task, name: str) -> float:
@@ -260,6 +263,16 @@ def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[Place
     return tuple(sorted(places, key=lambda place: -place.value)[:10])
 
 
+def _with_edge(task: Task, places: tuple[Place, ...], edge: Clearance, least: float) -> tuple[Place, ...]:
+    """The deepest places of the maps and the one behind a convex edge, the worst first."""
+    if -edge.distance <= least:
+        return places
+    face = next(face for face in task.touching if face.label == edge.face)
+    point = np.array(edge.point)
+    behind = place_at(face, nearest(face, point[None]).uv[0], point, (-edge.distance, edge.motion))
+    return tuple(sorted((behind, *places), key=lambda place: -place.value)[:10])
+
+
 def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[SurfaceMap, int]]],
             room: tuple[dict[str, Clearance | str], Clearance, Place | None], uncertainty: float) -> OperationVerdict:
     targets, skin = found[0], tuple(one for one, _ in found[1])
@@ -284,7 +297,7 @@ def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[Surf
     return OperationVerdict(
         task.name, tuple(face.label for face in task.targets), task.scallop, task.allowance,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
-        _worst(targets, "remaining", 0.0), gouges, link_cut, zones, area, count,
+        _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
         maps)
 
