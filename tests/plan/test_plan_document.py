@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from toolaxis.cad.records import left_out
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.setup import work_coordinates
@@ -107,6 +108,15 @@ def test_what_was_not_given_is_named() -> None:
     assert example().not_checked == ("obstacles other than the part", "machine")
     bare = Plan(example().part, Tool.ball(8), Inputs(0.02), (), (), np.zeros(3), "complete")
     assert bare.not_checked == ("shank", "holder", "obstacles other than the part", "machine")
+
+
+def test_faces_that_could_not_be_read_were_not_checked() -> None:
+    """Nothing is kept clear of a face that was left out of the part, or of an obstacle."""
+    plan = example()
+    broken = plan.part.with_warnings(left_out("face 5", "its geometry is not finite"), "face 7: a small thing")
+    one = replace(plan, part=broken)
+    assert "1 face that could not be read" in one.not_checked
+    assert "2 faces that could not be read" in replace(one, obstacles=(broken,)).not_checked
 
 
 def _set(*place: Any, value: Any) -> Callable[[dict[str, Any]], None]:

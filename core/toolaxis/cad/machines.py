@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from toolaxis.cad.loading import load
-from toolaxis.cad.records import LEFT_OUT
 from toolaxis.contact.indexing import hull_of
 from toolaxis.errors import InvalidInput
 from toolaxis.machine import catalogue
@@ -57,9 +56,8 @@ def _hulls(body: Body) -> tuple[Body, ...]:
         raise InvalidInput(f"body {body.name}: {reason}") from reason
     if not part.faces:
         raise InvalidInput(f"body {body.name}: {body.file} has no faces: give a file with solids")
-    lacking = [warning for warning in part.warnings if LEFT_OUT in warning]
-    if lacking:  # The hull of the rest does not hold the body.
-        raise InvalidInput(f"body {body.name}: {body.file}: {lacking[0]}")
+    if part.left_out:  # The hull of the rest does not hold the body.
+        raise InvalidInput(f"body {body.name}: {body.file}: {part.left_out[0]}")
     found = []
     for solid in part.bodies:
         shape = hull_of(forest([part.face(number) for number in solid.faces]))

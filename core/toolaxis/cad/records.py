@@ -10,12 +10,9 @@ from toolaxis.cad.arcs import ParameterMap
 from toolaxis.shape.adjacency import Border
 from toolaxis.shape.matching import Side
 from toolaxis.shape.nurbs import NurbsSurface
-from toolaxis.shape.part import Body
+from toolaxis.shape.part import LEFT_OUT, Body
 
 Array = NDArray[np.float64]
-
-#: How the warning about a face that cannot be used goes on after its name.
-LEFT_OUT = "was left out"
 
 
 @dataclass(frozen=True, eq=False)

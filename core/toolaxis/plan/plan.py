@@ -231,9 +231,12 @@ class Plan:
 
     @property
     def not_checked(self) -> tuple[str, ...]:
-        """What the collision check left out because it was not given."""
+        """What the collision check left out because it was not given, or could not be read."""
         known = self.tool.outlines
         missing = [name for name in ("shank", "holder") if name not in known]
+        unread = sum(len(one.left_out) for one in (self.part, *self.obstacles))
+        if unread:
+            missing.append("1 face that could not be read" if unread == 1 else f"{unread} faces that could not be read")
         if not self.obstacles:
             missing.append("obstacles other than the part")
         if self.machine is None:

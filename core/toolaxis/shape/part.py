@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 
 PLAIN_KINDS = ("plane", "cylinder", "cone")
 
+#: How the warning about a face that cannot be used goes on after its name.
+LEFT_OUT = "was left out"
+
 
 @dataclass(frozen=True)
 class Body:
@@ -206,6 +209,11 @@ class Part:
     def diagonal(self) -> float:
         """Length of the diagonal of `box`, mm."""
         return float(np.linalg.norm(self.box[1] - self.box[0]))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Warnings about faces of the file that could not be used: nothing is kept clear of them."""
+        return tuple(warning for warning in self.warnings if LEFT_OUT in warning)
 
     def with_warnings(self, *warnings: str) -> "Part":
         """The part with further warnings."""
