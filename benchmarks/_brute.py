@@ -12,13 +12,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.strip import step_widths_many_axes
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.verdicts import FREE
-from toolaxis.orient.worth import FEEDS, Worth
-from toolaxis.path.chart import IsoChart, rows
-from toolaxis.path.count import panels
-from toolaxis.path.material import RowPoints, row_points
+from toolaxis.contact.strip.width import step_widths_many_axes
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.violations import FREE
+from toolaxis.path.parametrization import IsoChart, rows
+from toolaxis.path.pass_count import panels
+from toolaxis.path.trim_intervals import RowPoints, row_points
+from toolaxis.search.cost import FEEDS, Worth
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from toolaxis.orient.kinematic import Stretch
+from toolaxis.search.kinematic_setup import Stretch
 from toolaxis.shape.face import Face
 
 _POINTS = Path(__file__).parents[1] / "examples" / "manta.json"

@@ -15,13 +15,13 @@ import toolaxis as ta
 from toolaxis.job.pattern import Pattern, recognised
 from toolaxis.job.toolfile import load_tool
 from toolaxis.job.turned import spread_out
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.proof import prove
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.blades import blades_lines
+from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 

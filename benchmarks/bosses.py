@@ -8,12 +8,12 @@ import numpy as np
 from benchmarks._papers import GOUGE
 
 import toolaxis as ta
-from toolaxis.orient.indexed import task
 from toolaxis.partition.around import Around, candidates
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import trade
 from toolaxis.partition.divider import Divider
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import task
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"
 BODY = {"stickout": 70, "holder": [(16, 0), (16, 40), (25, 40), (25, 80)]}

@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from toolaxis.contact import distances
-from toolaxis.contact.clearance import clearances, clears, segment_clears
-from toolaxis.contact.distances import bounded, motions
-from toolaxis.contact.gouge import RESOLUTION, gouges, penetration, segment_gouges
-from toolaxis.contact.placing import place
-from toolaxis.contact.surroundings import IGNORED, Surroundings
+from toolaxis.contact.clearance import queries as distances
+from toolaxis.contact.clearance.clearance import clearances, clears, segment_clears
+from toolaxis.contact.clearance.gouge import RESOLUTION, gouges, penetration, segment_gouges
+from toolaxis.contact.clearance.queries import bounded, motions
+from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
+from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face

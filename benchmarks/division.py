@@ -17,11 +17,11 @@ from benchmarks.examples import BODY, FOLDER
 import toolaxis as ta
 from toolaxis.job.axes import frame_of
 from toolaxis.job.baselines import baseline
-from toolaxis.orient.indexed import task
 from toolaxis.partition.cover import cover
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.search.fixed_axis import task
 
 TOOL = ta.Tool.torus(12, 1, stickout=60, holder=[(16, 0), (16, 40), (25, 40), (25, 80)])
 H, FEED = 0.02, 3000.0

@@ -5,10 +5,10 @@ import time
 import numpy as np
 from benchmarks.bounds_rates import patch, seconds
 
-from toolaxis.contact.drop import cutter_of, drop_cutter, drop_many, tree_of
-from toolaxis.contact.drop_numpy import drop_numpy
-from toolaxis.contact.gouge import gouges
-from toolaxis.contact.placing import place
+from toolaxis.contact.clearance.gouge import gouges
+from toolaxis.contact.drop_cutter.drop_cutter import cutter_of, drop_cutter, drop_many, tree_of
+from toolaxis.contact.drop_cutter.drop_cutter_numpy import drop_numpy
+from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face

@@ -13,11 +13,11 @@ import numpy as np
 from benchmarks._papers import GOUGE
 
 import toolaxis as ta
-from toolaxis.orient.planes import axis_at, initial_plane
-from toolaxis.path.chart import Cut, IsoChart
-from toolaxis.path.count import measure
 from toolaxis.path.estimate import Estimator
-from toolaxis.path.isoparametric import layout
+from toolaxis.path.iso_parametric import layout
+from toolaxis.path.parametrization import Cut, IsoChart
+from toolaxis.path.pass_count import measure
+from toolaxis.search.projection_planes import axis_at, initial_plane
 
 ROOT = Path(__file__).resolve().parent.parent
 AXES, NEAR_AXES, LEAST_DEG, SCALLOP = 39, 8, 3.0, 0.02

@@ -20,11 +20,11 @@ from toolaxis.feed.five_axes import FiveAxisSchedule
 from toolaxis.feed.schedule import Feeds
 from toolaxis.job.timing import feeds_of
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.clamping import Clamping
-from toolaxis.orient.four_plus_one import Finder, clamped_range
-from toolaxis.orient.indexed import task
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import task
+from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
+from toolaxis.strategies.four_plus_one.search import Finder, clamped_range
 from toolaxis.tools.assembly import Tool
 
 FACES = ("freeform", "saddle", "hyperbolic_paraboloid")

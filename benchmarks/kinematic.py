@@ -18,9 +18,9 @@ from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
 from toolaxis.machine.polytopes import Level, alignments, best_along, box, pole_zone, preferred
-from toolaxis.orient.fastest import cutting_seconds, fastest
-from toolaxis.orient.kinematic import Setup, Stretch, setup, setups_by_pass
 from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
+from toolaxis.search.fastest_setup import cutting_seconds, fastest
+from toolaxis.search.kinematic_setup import Setup, Stretch, setup, setups_by_pass
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 FEEDS = Feeds(500.0, tolerance=0.01)

@@ -12,12 +12,12 @@ from toolaxis.job.axes import try_axis
 from toolaxis.job.run import plan
 from toolaxis.job.timing import feeds_of, timed
 from toolaxis.machine.polytopes import Level
-from toolaxis.orient.kinematic import Stretch, common_feed, reached
-from toolaxis.orient.mounted import mounting_of
-from toolaxis.orient.pace import Pace, known_machine
-from toolaxis.orient.worth import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
+from toolaxis.search.cost import FEEDS
+from toolaxis.search.kinematic_setup import Stretch, common_feed, reached
+from toolaxis.search.machine_limits import mounting_of
+from toolaxis.search.time_estimate import Pace, known_machine
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FACES = ("freeform", "saddle", "waves", "biquintic", "hyperbolic_paraboloid")

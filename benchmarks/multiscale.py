@@ -16,23 +16,23 @@ from benchmarks._papers import GOUGE
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.feasible_area import critical_curvature, least_lean
-from toolaxis.contact.placing import place
-from toolaxis.contact.roughness import arithmetic_roughness, step_of_roughness
-from toolaxis.contact.section_width import expected_widths, section_parameters, section_points
+from toolaxis.contact.placement import place
 from toolaxis.errors import ToolAxisError
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import task
-from toolaxis.orient.lane import Lane, Wish, followed
-from toolaxis.orient.multiscale import smoothed
-from toolaxis.orient.multiscale_path import spots
-from toolaxis.orient.multiscale_pins import pinned
-from toolaxis.orient.multiscale_plan import constant_lead
-from toolaxis.orient.multiscale_search import NOMINAL, Multiscale
-from toolaxis.orient.rotary_spline import even_knots, smoothest
-from toolaxis.path.layout import Layout, lay_out
-from toolaxis.path.leading import LeadChart, LeadCut
-from toolaxis.report.roughness import front_picture
+from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.pass_layout import Layout, lay_out
+from toolaxis.search.fixed_axis import task
+from toolaxis.strategies.roughness.feasible_area import critical_curvature, least_lean
+from toolaxis.strategies.roughness.paper_iteration import pinned
+from toolaxis.strategies.roughness.pass_constraints import Lane, Wish, followed
+from toolaxis.strategies.roughness.passes import spots
+from toolaxis.strategies.roughness.pictures import front_picture
+from toolaxis.strategies.roughness.plan import constant_lead
+from toolaxis.strategies.roughness.rotary_spline import even_knots, smoothest
+from toolaxis.strategies.roughness.roughness import arithmetic_roughness, step_of_roughness
+from toolaxis.strategies.roughness.search import NOMINAL, Multiscale
+from toolaxis.strategies.roughness.section_width import expected_widths, section_parameters, section_points
+from toolaxis.strategies.roughness.smoothing import smoothed
 from toolaxis.verify.removal import removal
 
 EXAMPLES, OUT = (Path(__file__).parents[1] / name for name in ("examples", "out"))

@@ -17,13 +17,13 @@ from benchmarks._brute import audit, least_length
 from benchmarks._papers import GOUGE
 
 import toolaxis as ta
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.polish import Candidate
-from toolaxis.orient.sector import mean_normal, roman_axis, sectors
-from toolaxis.orient.sphere import frame_of, search
-from toolaxis.orient.spiral import spiral
 from toolaxis.plan.orientation import REASONS
+from toolaxis.search.direction_grid import spiral
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.hemisphere import frame_of, search
+from toolaxis.search.local_search import Candidate
+from toolaxis.search.sectors import mean_normal, roman_axis, sectors
 
 ROOT = Path(__file__).resolve().parent.parent
 SCALLOP = 0.02

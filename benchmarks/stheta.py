@@ -22,14 +22,14 @@ from toolaxis.feed.five_axes import five_axis_time
 from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.numeric.corners import corner
-from toolaxis.orient.blade import Layer, Scheduled, Swing, reschedule
-from toolaxis.orient.blade_baselines import SmoothSection, by_quaternions, unscheduled
-from toolaxis.orient.blade_layers import along_blade
-from toolaxis.orient.blade_path import swing_of_path
-from toolaxis.orient.blade_plan import blade
-from toolaxis.orient.blade_section import base_of, section
-from toolaxis.orient.indexed import task
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.skins import join
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.strategies.blade.layers import along_blade
+from toolaxis.strategies.blade.plan import blade
+from toolaxis.strategies.blade.reschedule import swing_of_path
+from toolaxis.strategies.blade.schedule import Layer, Scheduled, Swing, reschedule
+from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.tools.assembly import Tool
 
 Array = NDArray[np.float64]

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from benchmarks.bounds_rates import BODY, box, patch, seconds
 
-from toolaxis.contact.clearance import clears
-from toolaxis.contact.gouge import gouges
-from toolaxis.contact.placing import place
-from toolaxis.contact.second_order import second_order_many_axes
-from toolaxis.contact.strip import step_widths_many_axes
+from toolaxis.contact.clearance.clearance import clears
+from toolaxis.contact.clearance.gouge import gouges
+from toolaxis.contact.placement import place
+from toolaxis.contact.strip.second_order import second_order_many_axes
+from toolaxis.contact.strip.width import step_widths_many_axes
 from toolaxis.shape.cells import cells
 from toolaxis.tools.assembly import Tool
 

@@ -28,24 +28,24 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.two_point import (
+from toolaxis.errors import ToolAxisError
+from toolaxis.feed.five_axes import five_axis_motion
+from toolaxis.feed.schedule import Feeds
+from toolaxis.machine.catalogue import load_machine
+from toolaxis.report.plots import GREY, VERMILION, bare, cutting_lines, figure
+from toolaxis.search.cost import FEEDS
+from toolaxis.search.fixed_axis import Task, task
+from toolaxis.shape.face import Face
+from toolaxis.strategies.two_point.contact import (
     STEEPEST,
     circle_strip_width,
     matched_lead,
     settle,
     two_point_lead,
 )
-from toolaxis.errors import ToolAxisError
-from toolaxis.feed.five_axes import five_axis_motion
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.orient.flat_plan import PROBES, TRIED, gouging, linked, told
-from toolaxis.orient.flat_strips import lay_strips, nodes, strip
-from toolaxis.orient.flat_work import Work
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.worth import FEEDS
-from toolaxis.report.plots import GREY, VERMILION, bare, cutting_lines, figure
-from toolaxis.shape.face import Face
+from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.search import PROBES, TRIED, gouging, linked, told
+from toolaxis.strategies.two_point.strips import lay_strips, nodes, strip
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.task import Task as Judged

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from toolaxis.batch.run import batch as batch
     from toolaxis.cad.loading import load as load
     from toolaxis.cad.machines import load_machine as load_machine
-    from toolaxis.contact.clearance import clearance as clearance
-    from toolaxis.contact.drop import drop_cutter as drop_cutter
-    from toolaxis.contact.gouge import gouge as gouge
-    from toolaxis.contact.placing import place as place
-    from toolaxis.contact.strip import strip_width as strip_width
+    from toolaxis.contact.clearance.clearance import clearance as clearance
+    from toolaxis.contact.clearance.gouge import gouge as gouge
+    from toolaxis.contact.drop_cutter.drop_cutter import drop_cutter as drop_cutter
+    from toolaxis.contact.placement import place as place
+    from toolaxis.contact.strip.width import strip_width as strip_width
     from toolaxis.errors import Cancelled as Cancelled
     from toolaxis.errors import InvalidInput as InvalidInput
     from toolaxis.errors import JobError as JobError
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from toolaxis.job.reading import read_cl as read_cl
     from toolaxis.job.run import plan as plan
     from toolaxis.machine.mounting import Mounting as Mounting
-    from toolaxis.orient.indexed import best_axis as best_axis
     from toolaxis.partition.regions import partition as partition
-    from toolaxis.path.count import count as count
     from toolaxis.path.estimate import estimate as estimate
-    from toolaxis.path.isoparametric import passes as passes
+    from toolaxis.path.iso_parametric import passes as passes
+    from toolaxis.path.pass_count import count as count
     from toolaxis.path.sampling import sample_points as sample_points
     from toolaxis.plan.sub_surface import SubSurface as SubSurface
+    from toolaxis.search.fixed_axis import best_axis as best_axis
     from toolaxis.shape.face import Face as Face
     from toolaxis.shape.part import Part as Part
     from toolaxis.shape.skins import join as join
@@ -46,9 +46,10 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
-    "load": "cad.loading", "place": "contact.placing", "strip_width": "contact.strip", "gouge": "contact.gouge",
-    "clearance": "contact.clearance", "drop_cutter": "contact.drop", "sample_points": "path.sampling",
-    "estimate": "path.estimate", "count": "path.count", "passes": "path.isoparametric", "best_axis": "orient.indexed",
+    "load": "cad.loading", "place": "contact.placement", "strip_width": "contact.strip.width",
+    "gouge": "contact.clearance.gouge", "clearance": "contact.clearance.clearance",
+    "drop_cutter": "contact.drop_cutter.drop_cutter", "sample_points": "path.sampling", "estimate": "path.estimate",
+    "count": "path.pass_count", "passes": "path.iso_parametric", "best_axis": "search.fixed_axis",
     "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
     "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
     "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",

@@ -9,8 +9,8 @@ import pytest
 import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
 from toolaxis.batch.labour import carried_out
+from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job import judge
-from toolaxis.orient.feasible import Feasibility
 from toolaxis.shape.part import Part
 
 

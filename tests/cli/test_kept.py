@@ -127,7 +127,7 @@ def test_a_verdict_survives_its_pictures(planned: Path, tmp_path: Path, monkeypa
 
 def test_a_face_that_fails_is_told_with_how_to_report_it(sheet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                                          capsys: pytest.CaptureFixture[str]) -> None:
-    from toolaxis.orient.feasible import Feasibility
+    from toolaxis.feasibility.feasibility import Feasibility
 
     witness = Feasibility.witness
     monkeypatch.setattr(Feasibility, "witness", lambda self, axis: witness(self, axis) if self.face.number != 2 else

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact import distances
-from toolaxis.contact.clearance import (
+from toolaxis.contact.clearance import queries as distances
+from toolaxis.contact.clearance.clearance import (
     CUTOFF,
     RESOLUTION,
     clearance,
@@ -13,7 +13,7 @@ from toolaxis.contact.clearance import (
     segment_clearances,
     segment_clears,
 )
-from toolaxis.contact.surroundings import IGNORED, Surroundings
+from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.adjacency import Edge

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact import drop
-from toolaxis.contact.drop_numpy import drop_numpy
+from toolaxis.contact.drop_cutter import drop_cutter as drop
+from toolaxis.contact.drop_cutter.drop_cutter_numpy import drop_numpy
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.tools.assembly import Tool

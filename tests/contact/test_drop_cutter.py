@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.gouge import gouge
-from toolaxis.contact.placing import place
+from toolaxis.contact.clearance.gouge import gouge
+from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

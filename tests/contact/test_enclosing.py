@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.distances import bounded, judged, motions, segment_motions
-from toolaxis.contact.enclosing import ball_around, enclosing_gap, least_form
-from toolaxis.contact.enclosing_numpy import Curved, enclosing_gap_numpy
-from toolaxis.contact.placing import place
+from toolaxis.contact.clearance.ball_bound import ball_around, enclosing_gap, least_form
+from toolaxis.contact.clearance.ball_bound_numpy import Curved, enclosing_gap_numpy
+from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.cells import forest
 from toolaxis.shape.face import Face

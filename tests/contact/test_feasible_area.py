@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.feasible_area import (
+from toolaxis.contact.clearance.gouge import gouge
+from toolaxis.errors import InvalidInput
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.strategies.roughness.feasible_area import (
     critical_curvature,
     evaluation_curvature,
     least_lean,
     nearest_feasible,
     torus_curvatures,
 )
-from toolaxis.contact.gouge import gouge
-from toolaxis.errors import InvalidInput
-from toolaxis.shape.analytic import Cylinder
-from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.torus(10, 3)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact import distances
-from toolaxis.contact.distances import bounded, judged, motions, segment_motions
-from toolaxis.contact.gouge import (
+from toolaxis.contact.clearance import queries as distances
+from toolaxis.contact.clearance.gouge import (
     RESOLUTION,
     depth_from_distance,
     gouge,
@@ -15,7 +14,8 @@ from toolaxis.contact.gouge import (
     segment_gouges,
     segment_penetration,
 )
-from toolaxis.contact.placing import place
+from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.analytic import Sphere

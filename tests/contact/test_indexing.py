@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.indexing import Stop, hull_of, trouble_between, turning
-from toolaxis.contact.machinery import Surroundings, nearest_meeting
+from toolaxis.collision.index_moves import Stop, hull_of, trouble_between, turning
+from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.configurations import Machine

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 import toolaxis as ta
-from toolaxis.contact.machinery import Surroundings, free_solutions, nearest_meeting, words
+from toolaxis.collision.machine_collision import Surroundings, free_solutions, nearest_meeting, words
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.configurations import Machine

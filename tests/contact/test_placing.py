@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.placing import place, tips
+from toolaxis.contact.placement import place, tips
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

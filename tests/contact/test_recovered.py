@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.placing import place
-from toolaxis.contact.recovered import contacts_of
+from toolaxis.contact.contact_from_cl import contacts_of
+from toolaxis.contact.placement import place
 
 TOOLS = [ta.Tool.ball(diameter=8), ta.Tool.torus(diameter=12, corner_radius=1), ta.Tool.flat(diameter=10),
          ta.Tool.tapered(diameter=6, corner_radius=2, half_angle_deg=4)]

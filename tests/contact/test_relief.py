@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.contact import distances
-from toolaxis.contact.distances import bounded, judged, motions, segment_motions
-from toolaxis.contact.relief import relief_over, relief_over_numpy
+from toolaxis.contact.clearance import queries as distances
+from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.relief import relief_over, relief_over_numpy
 from toolaxis.shape.cells import forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.seams import REACH, Mismatch

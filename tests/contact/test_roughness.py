@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.roughness import (
+from toolaxis.contact.strip.scallop import RA_SHARE
+from toolaxis.errors import InvalidInput
+from toolaxis.strategies.roughness.roughness import (
     arithmetic_roughness,
     profile_heights,
     roughness_of_step,
     scallop_of_roughness,
     step_of_roughness,
 )
-from toolaxis.contact.scallop import RA_SHARE
-from toolaxis.errors import InvalidInput
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.torus(10, 3)

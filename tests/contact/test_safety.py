@@ -19,9 +19,9 @@ from dense import (
     unit,
 )
 
-from toolaxis.contact.clearance import clearances, clears
-from toolaxis.contact.gouge import gouges, penetration
-from toolaxis.contact.surroundings import Surroundings
+from toolaxis.contact.clearance.clearance import clearances, clears
+from toolaxis.contact.clearance.gouge import gouges, penetration
+from toolaxis.contact.clearance.surroundings import Surroundings
 from toolaxis.shape.face import Face
 
 SOME = range(20)

@@ -21,10 +21,10 @@ from dense import (
     unit,
 )
 
-from toolaxis.contact import distances
-from toolaxis.contact.clearance import clearances, clears
-from toolaxis.contact.gouge import gouges, penetration
-from toolaxis.contact.surroundings import Surroundings
+from toolaxis.contact.clearance import queries as distances
+from toolaxis.contact.clearance.clearance import clearances, clears
+from toolaxis.contact.clearance.gouge import gouges, penetration
+from toolaxis.contact.clearance.surroundings import Surroundings
 from toolaxis.shape.face import Face
 
 GOUGES, COLLISIONS, TWINS = range(16), range(6), range(6)

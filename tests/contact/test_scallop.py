@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from toolaxis.contact.frame import axis_from_lean, contact_frame
-from toolaxis.contact.scallop import (
+from toolaxis.contact.strip.scallop import (
     effective_radius,
     roughness_from_scallop,
     scallop_from_step,
     scallop_height,
     step_from_scallop,
 )
-from toolaxis.contact.second_order import second_order_width
-from toolaxis.contact.strip import step_widths
+from toolaxis.contact.strip.second_order import second_order_width
+from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from toolaxis.contact.frame import axis_from_lean, contact_frame
-from toolaxis.contact.placing import place
-from toolaxis.contact.second_order import contact_forms, relative_forms
-from toolaxis.contact.section_width import expected_widths, section_width
-from toolaxis.contact.sizes import cutter_numbers
-from toolaxis.contact.strip import strip_width
+from toolaxis.contact.placement import place
+from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.second_order import contact_forms, relative_forms
+from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.analytic import Cylinder, Plane
 from toolaxis.shape.face import Face
+from toolaxis.strategies.roughness.section_width import expected_widths, section_width
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.torus(10, 3)

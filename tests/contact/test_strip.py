@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import brentq
 
 from toolaxis.contact.frame import axis_from_lean, contact_frame
-from toolaxis.contact.second_order import second_order_step_widths, second_order_width
-from toolaxis.contact.strip import step_widths, step_widths_many_axes, strip_width
+from toolaxis.contact.strip.second_order import second_order_step_widths, second_order_width
+from toolaxis.contact.strip.width import step_widths, step_widths_many_axes, strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from toolaxis.contact.strip import step_widths, strip_width
+from toolaxis.contact.strip.width import step_widths, strip_width
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact import halves, second_order, strip
 from toolaxis.contact.frame import axis_from_lean, contact_frame
-from toolaxis.contact.second_order import second_order_many_axes
-from toolaxis.contact.strip import step_widths, step_widths_many_axes, strip_width
-from toolaxis.contact.strip_numpy import half_widths_numpy
+from toolaxis.contact.strip import half_widths as halves
+from toolaxis.contact.strip import second_order
+from toolaxis.contact.strip import width as strip
+from toolaxis.contact.strip.second_order import second_order_many_axes
+from toolaxis.contact.strip.width import step_widths, step_widths_many_axes, strip_width
+from toolaxis.contact.strip.width_numpy import half_widths_numpy
 from toolaxis.numeric import compiled
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

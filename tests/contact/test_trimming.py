@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from toolaxis.contact.trimming import trim_cell
+from toolaxis.contact.clearance.trimmed_cells import trim_cell
 
 EDGES = [0.0, 0.25, 0.5, 0.75, 1.0]
 

@@ -7,14 +7,14 @@ import pytest
 from scipy.optimize import brentq
 
 import toolaxis as ta
-from toolaxis.contact.machinery import Surroundings, nearest_meeting
-from toolaxis.contact.turning_machinery import Motions, meeting_in_motion, motions
+from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward, linear_coordinates
 from toolaxis.machine.mounting import Mounting
 from toolaxis.shape.cells import forest
+from toolaxis.strategies.common.machine_collision import Motions, meeting_in_motion, motions
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40)])

@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from toolaxis.contact.gouge import penetration, segment_gouges
-from toolaxis.contact.rings import Setting, Stand, rings, stand_of
-from toolaxis.contact.turning import turning_gouges
-from toolaxis.contact.two_point import (
+from toolaxis.contact.clearance.gouge import penetration, segment_gouges
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import unit
+from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.two_point.contact import (
     TOUCH,
     balance,
     circle_strip_width,
@@ -19,11 +22,8 @@ from toolaxis.contact.two_point import (
     sunk,
     two_point_lead,
 )
-from toolaxis.errors import InvalidInput
-from toolaxis.numeric.vectors import unit
-from toolaxis.shape.analytic import Cylinder
-from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.two_point.gouge_check import turning_gouges
+from toolaxis.strategies.two_point.rings import Setting, Stand, rings, stand_of
 from toolaxis.tools.assembly import Tool
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "biquintic.json"

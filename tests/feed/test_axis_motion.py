@@ -7,8 +7,8 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.axis_motion import axis_motion
 from toolaxis.machine.catalogue import load_machine
-from toolaxis.orient.blade_baselines import SmoothSection, by_quaternions, unscheduled
-from toolaxis.orient.blade_section import section
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.strategies.blade.section import section
 
 MACHINE = load_machine("four-axis-a")
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.path.isoparametric import layout
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.path.iso_parametric import layout
 
 SCALLOP = 0.02
 TOOL = ta.Tool.ball(8)

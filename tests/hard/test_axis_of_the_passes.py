@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.orient.indexed import Task, searched, task
-from toolaxis.path.layout import Layout
 from toolaxis.path.mending import Made
+from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import Task, searched, task
 
 TOOL = ta.Tool.ball(diameter=8, stickout=40)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.orient.indexed import evaluate_axis, task
+from toolaxis.search.fixed_axis import evaluate_axis, task
 from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import judge
 

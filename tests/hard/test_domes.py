@@ -5,8 +5,8 @@ from math import pi
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.scallop import step_from_scallop
-from toolaxis.path.chart import IsoChart
+from toolaxis.contact.strip.scallop import step_from_scallop
+from toolaxis.path.parametrization import IsoChart
 from toolaxis.shape.analytic import Sphere
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 import toolaxis as ta
-from toolaxis.orient.indexed import evaluate_axis
+from toolaxis.search.fixed_axis import evaluate_axis
 
 
 def test_a_floor_with_a_quarter_round_that_continues_it_has_a_vertical_axis() -> None:

@@ -6,10 +6,10 @@ Steps up to 0.02 mm are no reason any more: they are taken off the depth.
 import numpy as np
 import pytest
 
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.reasons import sentence
-from toolaxis.orient.setting import SKIN, TOUCHING, Group
-from toolaxis.orient.verdicts import CUTTER, Witness
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, Group
+from toolaxis.feasibility.violations import CUTTER, Witness
+from toolaxis.search.messages import sentence
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool

@@ -12,9 +12,9 @@ import pytest
 
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.distances import judged, segment_motions
-from toolaxis.contact.placing import tips
-from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, Group, grouped
+from toolaxis.contact.clearance.queries import judged, segment_motions
+from toolaxis.contact.placement import tips
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, Group, grouped
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool

@@ -10,8 +10,8 @@ import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.pictures import draw_plan
 from toolaxis.job.spec import check_five_axes, with_rings
-from toolaxis.orient.blade_layers import closed_parameter
 from toolaxis.shape.rings import ring_around
+from toolaxis.strategies.blade.layers import closed_parameter
 
 TOOL = ta.Tool.ball(8, stickout=90, holder=[(12.5, 0), (12.5, 60)])
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.strip import strip_width
+from toolaxis.contact.strip.width import strip_width
 from toolaxis.job.contacts import widths_along, with_contacts
 from toolaxis.job.folder import read_plan
 from toolaxis.plan.plan import Plan

@@ -11,11 +11,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT
+from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job import judge, planning, timing, zones
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.folder import PLAN, read_plan, staged, write_plan
 from toolaxis.job.judge import verdict_document
-from toolaxis.orient.feasible import Feasibility
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
 

@@ -12,9 +12,9 @@ from toolaxis.job.posting import posted
 from toolaxis.job.timing import timed
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import task
-from toolaxis.orient.laying import beyond
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import task
+from toolaxis.strategies.common.passes import beyond
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.bodies import Rig
 

@@ -10,11 +10,11 @@ import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.job.folder import read_plan, staged, write_plan
 from toolaxis.job.zones import WHOLLY, told
-from toolaxis.orient.reasons import place
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.report.overview import overview_picture
+from toolaxis.search.messages import place
 from toolaxis.shape.measure import mean_width
 
 SLIM = ta.Tool.torus(diameter=8, corner_radius=1, stickout=30)

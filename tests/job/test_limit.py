@@ -10,7 +10,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
 from toolaxis.cli.main import parser
-from toolaxis.contact.distances import bounded, motions
+from toolaxis.contact.clearance.queries import bounded, motions
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.plan import Inputs, Plan

@@ -6,14 +6,19 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.cli.main import main
-from toolaxis.contact.roughness import arithmetic_roughness
-from toolaxis.contact.section_width import expected_widths, section_parameters, section_points, section_width
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.roughness_pictures import draw_roughness, study
-from toolaxis.report.roughness import front_picture
 from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.roughness.pictures import front_picture
+from toolaxis.strategies.roughness.roughness import arithmetic_roughness
+from toolaxis.strategies.roughness.section_width import (
+    expected_widths,
+    section_parameters,
+    section_points,
+    section_width,
+)
 from toolaxis.verify.removal import removal
 
 H, RA = 0.1, 1.6e-3

@@ -10,8 +10,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.indexing import Stop, trouble_between
-from toolaxis.contact.machinery import Surroundings
+from toolaxis.collision.index_moves import Stop, trouble_between
+from toolaxis.collision.machine_collision import Surroundings
 from toolaxis.feed.profile import travel_time
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.order import arranged

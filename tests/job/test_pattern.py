@@ -13,7 +13,6 @@ from toolaxis.job.axes import with_operations
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.pattern import recognised, shared_out, too_narrow
 from toolaxis.job.rooms import tightest
-from toolaxis.orient.indexed import evaluate_axis
 from toolaxis.plan.document import plan_document
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
@@ -22,6 +21,7 @@ from toolaxis.report.blades import blades_lines
 from toolaxis.report.hatching import COLOUR
 from toolaxis.report.overview import overview_picture
 from toolaxis.report.tables import baselines_table
+from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import with_kinks

@@ -12,9 +12,9 @@ from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.spec import chosen_faces, parse_faces
 from toolaxis.job.targets import Target, by_axis
 from toolaxis.machine.limits import parse_limits
-from toolaxis.orient.indexed import Task
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
+from toolaxis.search.fixed_axis import Task
 
 
 def net(height: float, nx: int = 6, ny: int = 6, size: tuple[float, float] = (24.0, 16.0)) -> np.ndarray:

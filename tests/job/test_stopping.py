@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact import distances
+from toolaxis.contact.clearance import queries as distances
 from toolaxis.errors import Cancelled
+from toolaxis.feasibility import normal_cells
+from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient import normal_cells
-from toolaxis.orient.normals import NormalField
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress, breathe, heard
 from toolaxis.shape import nurbs

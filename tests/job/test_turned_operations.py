@@ -15,10 +15,10 @@ from toolaxis.job.pattern import recognised
 from toolaxis.job.planning import went_on
 from toolaxis.job.turned import spread_out
 from toolaxis.machine.limits import parse_limits
-from toolaxis.orient.indexed import task
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest

@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.descent import BUDGET
-from toolaxis.contact.gouge import segment_penetration
+from toolaxis.contact.clearance.branch_and_bound import BUDGET
+from toolaxis.contact.clearance.gouge import segment_penetration
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.surroundings import OTHER
+from toolaxis.feasibility.violations import BACK, FREE, GOUGE, WANDERS, Witness
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, unit
-from toolaxis.orient import impossible
-from toolaxis.orient.indexed import best_axis, evaluate_axis, task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.proof import Proof, prove
-from toolaxis.orient.setting import OTHER
-from toolaxis.orient.sphere import Candidate, repaired, search
-from toolaxis.orient.verdicts import BACK, FREE, GOUGE, WANDERS, Witness
-from toolaxis.path.count import count
+from toolaxis.path.pass_count import count
 from toolaxis.plan.orientation import OUTCOMES, REASONS
 from toolaxis.progress import Progress
+from toolaxis.search import infeasibility as impossible
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
+from toolaxis.search.hemisphere import Candidate, repaired, search
+from toolaxis.search.path_check import Proof, prove
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 
@@ -200,7 +200,7 @@ def test_what_the_proof_refuses_is_not_given(make, monkeypatch):
         calls.append(path.axis[0])
         return Proof(Witness(GOUGE, 0.001, "1", distance=-0.003)) if len(calls) == 1 else prove(path, *rest, **more)
 
-    monkeypatch.setattr("toolaxis.orient.indexed.prove", strict)
+    monkeypatch.setattr("toolaxis.search.fixed_axis.prove", strict)
     found = best_axis(face, TOOL, H)
     assert found.outcome == "feasible" and len(calls) == 2
     np.testing.assert_allclose(found.axis, calls[1])

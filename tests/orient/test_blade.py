@@ -14,15 +14,15 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import rotation
-from toolaxis.orient.blade import Layer, Swing, plane_of, reschedule, swing_of
-from toolaxis.orient.blade_layers import Ring, along_blade, closed_parameter
-from toolaxis.orient.blade_plan import BladeSearch, blade
-from toolaxis.orient.blade_room import Room
-from toolaxis.orient.blade_section import base_of, section
-from toolaxis.orient.indexed import task
-from toolaxis.orient.moving import prove_moving
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.face import Face
 from toolaxis.shape.skins import join
+from toolaxis.strategies.blade.clearance_limits import Room
+from toolaxis.strategies.blade.layers import Ring, along_blade, closed_parameter
+from toolaxis.strategies.blade.plan import BladeSearch, blade
+from toolaxis.strategies.blade.schedule import Layer, Swing, plane_of, reschedule, swing_of
+from toolaxis.strategies.blade.section import base_of, section
+from toolaxis.strategies.common.path_check import prove_moving
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.verdict import Task as Judged
 from toolaxis.verify.verdict import judge

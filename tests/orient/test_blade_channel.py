@@ -5,10 +5,10 @@ import pytest
 from benchmarks._blades import FAMILIES, even, offset, profile, sections
 
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.blade_channel import Channel, channel
-from toolaxis.orient.blade_keys import best_rule, key_curve
-from toolaxis.orient.blade_least import least_curve, least_peak
-from toolaxis.orient.blade_section import base_of, section
+from toolaxis.strategies.blade.angle_channel import Channel, channel
+from toolaxis.strategies.blade.key_points import best_rule, key_curve
+from toolaxis.strategies.blade.minimum_acceleration import least_curve, least_peak
+from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.tools.assembly import Tool
 
 TURN = 2 * np.pi

@@ -7,9 +7,9 @@ import pytest
 from scipy.ndimage import label
 
 import toolaxis as ta
-from toolaxis.orient.blade_plan import BladeSearch, blade
-from toolaxis.orient.indexed import task
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.skins import join
+from toolaxis.strategies.blade.plan import BladeSearch, blade
 
 #: Half a step of angle, rad, and what points may lie inside the tool, mm.
 HALF, SPARE = np.radians(0.5), 0.05

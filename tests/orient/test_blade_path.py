@@ -6,11 +6,11 @@ from benchmarks._blades import sections
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.blade import Swing
-from toolaxis.orient.blade_path import reschedule_path, swing_of_path
-from toolaxis.orient.blade_section import section
 from toolaxis.post.apt import apt_text
 from toolaxis.post.apt_reading import read_apt
+from toolaxis.strategies.blade.reschedule import reschedule_path, swing_of_path
+from toolaxis.strategies.blade.schedule import Swing
+from toolaxis.strategies.blade.section import section
 from toolaxis.tools.assembly import Tool
 
 TOOL = Tool.ball(6, flute_length=20)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.machinery import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import Cone
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import best_axis, evaluate_axis
+from toolaxis.search.fixed_axis import best_axis, evaluate_axis
 from toolaxis.shape.cells import forest
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)

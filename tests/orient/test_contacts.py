@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from toolaxis.orient.contacts import contacts_at
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.setting import OTHER, SKIN, Group
+from toolaxis.feasibility.check_points import contacts_at
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool

@@ -5,11 +5,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.feasibility.surroundings import grouped
 from toolaxis.job.rooms import tightest
-from toolaxis.orient.crossing import OVER, Crossing, height_over
-from toolaxis.orient.indexed import task
-from toolaxis.orient.moving import MovingCrossing
-from toolaxis.orient.setting import grouped
+from toolaxis.search.fixed_axis import task
+from toolaxis.search.link_heights import OVER, Crossing, height_over
+from toolaxis.strategies.common.path_check import MovingCrossing
 from toolaxis.tolerances import Tolerance
 
 TOOL = ta.Tool.torus(diameter=8, corner_radius=1, stickout=40, holder=[(10, 0), (10, 30)])
@@ -138,7 +138,7 @@ def test_links_at_a_large_scallop_height_pass_the_judge_between_boxes(sheet: ta.
 
 def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,
                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    from toolaxis.orient.indexed import Task
+    from toolaxis.search.fixed_axis import Task
 
     laid, axes = Task.laid, []
 

@@ -12,8 +12,8 @@ from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.fastest import cutting_seconds, fastest
-from toolaxis.orient.kinematic import Domain, Stretch, allowed_angles, rotary_grid, setup
+from toolaxis.search.fastest_setup import cutting_seconds, fastest
+from toolaxis.search.kinematic_setup import Domain, Stretch, allowed_angles, rotary_grid, setup
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 MANTA = np.array([[0.0, 0, 100, 100], [0, 0, 100, 100], [100, 100, 0, 0], [100, 100, 0, 0]])

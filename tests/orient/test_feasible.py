@@ -5,15 +5,15 @@ from math import radians
 import numpy as np
 import pytest
 
-from toolaxis.contact.placing import place
+from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.point_check import deepest, deepest_numpy
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, grouped
+from toolaxis.feasibility.violations import BACK, CUTTER, FREE, GOUGE, HOLDER, LIMITS, WANDERS
 from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient.cloud import deepest, deepest_numpy
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, grouped
-from toolaxis.orient.spiral import spiral
-from toolaxis.orient.verdicts import BACK, CUTTER, FREE, GOUGE, HOLDER, LIMITS, WANDERS
+from toolaxis.search.direction_grid import spiral
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 

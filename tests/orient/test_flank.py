@@ -5,13 +5,13 @@ from math import radians
 import numpy as np
 import pytest
 
+from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient.flank import flank_axes
-from toolaxis.orient.indexed import task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.sphere import search
-from toolaxis.orient.spiral import own_frame, spiral
-from toolaxis.orient.verdicts import FREE
+from toolaxis.search.direction_grid import own_frame, spiral
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import task
+from toolaxis.search.flank_axes import flank_axes
+from toolaxis.search.hemisphere import search
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

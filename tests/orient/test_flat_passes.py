@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.two_point import BRIDGE, circle_strip_width, matched_lead, two_point_lead
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.flat_field import field_of
-from toolaxis.orient.flat_plan import gouging, told, two_point
-from toolaxis.orient.flat_strips import lane, lay_strips, next_strip, places, strip
-from toolaxis.orient.flat_tilt import BEHIND, CONVEX, REASONS, TWO, postures
-from toolaxis.orient.flat_work import Work
-from toolaxis.orient.indexed import task
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
+from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, matched_lead, two_point_lead
+from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.lean_field import field_of
+from toolaxis.strategies.two_point.postures import BEHIND, CONVEX, REASONS, TWO, postures
+from toolaxis.strategies.two_point.search import gouging, told, two_point
+from toolaxis.strategies.two_point.strips import lane, lay_strips, next_strip, places, strip
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge

@@ -8,11 +8,17 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.surroundings import SKIN, Group
+from toolaxis.feasibility.violations import GOUGE
 from toolaxis.feed.turning import following
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.clamping import Clamping
-from toolaxis.orient.four_plus_one import (
+from toolaxis.search.fixed_axis import task
+from toolaxis.strategies.common.path_check import prove_moving
+from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
+from toolaxis.strategies.four_plus_one.links import free_angles, on_the_circle
+from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedChart, ClampedCut
+from toolaxis.strategies.four_plus_one.search import (
     Finder,
     _ways,
     clamped_range,
@@ -20,12 +26,6 @@ from toolaxis.orient.four_plus_one import (
     machine_of,
     screened,
 )
-from toolaxis.orient.indexed import task
-from toolaxis.orient.moving import prove_moving
-from toolaxis.orient.setting import SKIN, Group
-from toolaxis.orient.verdicts import GOUGE
-from toolaxis.path.clamped import AngleField, Clamp, ClampedChart, ClampedCut
-from toolaxis.path.clamped_links import free_angles, on_the_circle
 from toolaxis.tools.assembly import Tool
 
 from .conftest import flat, floor_and_wall, seeded  # type: ignore[import-not-found]

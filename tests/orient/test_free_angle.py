@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from toolaxis.orient import free_angle
-from toolaxis.orient.free_angle import Gates, bands, narrowest, smoothest, widest
+from toolaxis.strategies.four_plus_one import free_angle
+from toolaxis.strategies.four_plus_one.free_angle import Gates, bands, narrowest, smoothest, widest
 
 ANGLES = np.radians(np.linspace(-10, 10, 5))
 

@@ -10,7 +10,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.machine.polytopes import Level, along
-from toolaxis.orient.kinematic import (
+from toolaxis.search.kinematic_setup import (
     Domain,
     Stretch,
     common_feed,

@@ -7,11 +7,11 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.indexed import Task, best_axis, task
-from toolaxis.orient.least_made import _left as least_made_left
-from toolaxis.orient.least_made import least_made
-from toolaxis.orient.polish import Candidate
-from toolaxis.orient.worth import FEEDS
+from toolaxis.search.cost import FEEDS
+from toolaxis.search.fixed_axis import Task, best_axis, task
+from toolaxis.search.local_search import Candidate
+from toolaxis.search.rank_by_passes import _left as least_made_left
+from toolaxis.search.rank_by_passes import least_made
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

@@ -11,7 +11,7 @@ from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import Cone
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.indexed import best_axis, evaluate_axis, task
+from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 HOLDER = [(10.0, 0.0), (10.0, 40.0)]

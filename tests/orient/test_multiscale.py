@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from toolaxis.contact.scallop import RA_SHARE
-from toolaxis.contact.second_order import second_order_width
-from toolaxis.contact.section_width import expected_widths, section_width
+from toolaxis.contact.strip.scallop import RA_SHARE
+from toolaxis.contact.strip.second_order import second_order_width
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.axes import RotaryAxis
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.kinematics import rotary_angles
-from toolaxis.orient.lane import (
+from toolaxis.shape.face import Face
+from toolaxis.strategies.roughness.paper_iteration import pinned
+from toolaxis.strategies.roughness.pass_constraints import (
     GOUGE,
     NARROW,
     ROUGH,
@@ -27,11 +28,10 @@ from toolaxis.orient.lane import (
     leaning,
     windows,
 )
-from toolaxis.orient.multiscale import smoothed
-from toolaxis.orient.multiscale_pace import left
-from toolaxis.orient.multiscale_pins import pinned
-from toolaxis.orient.multiscale_plan import racing
-from toolaxis.shape.face import Face
+from toolaxis.strategies.roughness.plan import racing
+from toolaxis.strategies.roughness.rotary_velocity import left
+from toolaxis.strategies.roughness.section_width import expected_widths, section_width
+from toolaxis.strategies.roughness.smoothing import smoothed
 from toolaxis.tools.assembly import Tool
 
 from .conftest import patch  # type: ignore[import-not-found]

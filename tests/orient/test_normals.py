@@ -5,10 +5,10 @@ from math import pi, radians
 import numpy as np
 import pytest
 
+from toolaxis.feasibility import normal_cells
+from toolaxis.feasibility.normal_cells import NormalCells
+from toolaxis.feasibility.normal_cone import NormalField, smallest_cap
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient import normal_cells
-from toolaxis.orient.normal_cells import NormalCells
-from toolaxis.orient.normals import NormalField, smallest_cap
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 

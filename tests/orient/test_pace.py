@@ -10,12 +10,12 @@ from toolaxis.feed.schedule import Feeds, machining_time
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.indexed import best_axis, task
-from toolaxis.orient.least_made import least_made
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.pace import Pace
-from toolaxis.orient.polish import Candidate
-from toolaxis.orient.worth import FEEDS, Worth
+from toolaxis.search.cost import FEEDS, Worth
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import best_axis, task
+from toolaxis.search.local_search import Candidate
+from toolaxis.search.rank_by_passes import least_made
+from toolaxis.search.time_estimate import Pace
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient.planes import axis_at, initial_plane, projected_angles, sector, turned
-from toolaxis.orient.sector import golden_section
+from toolaxis.search.projection_planes import axis_at, initial_plane, projected_angles, sector, turned
+from toolaxis.search.sectors import golden_section
 
 
 def arch(half_deg, count=11):

@@ -5,14 +5,14 @@ from math import radians
 import numpy as np
 import pytest
 
+from toolaxis.feasibility.refined_check import closer
+from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, WANDERS, Witness
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
-from toolaxis.orient.closer import closer
-from toolaxis.orient.indexed import task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.polish import _lowest, counted, polish, proven
-from toolaxis.orient.sphere import search
-from toolaxis.orient.spiral import ring, spiral
-from toolaxis.orient.verdicts import BACK, FREE, GOUGE, LIMITS, WANDERS, Witness
+from toolaxis.search.direction_grid import ring, spiral
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import task
+from toolaxis.search.hemisphere import search
+from toolaxis.search.local_search import _lowest, counted, polish, proven
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

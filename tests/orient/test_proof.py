@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from toolaxis import Tolerance, Tool
-from toolaxis.orient import indexed, proof
+from toolaxis.search import fixed_axis as indexed
+from toolaxis.search import path_check as proof
 
 
 @pytest.fixture

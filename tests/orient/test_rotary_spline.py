@@ -6,7 +6,7 @@ from scipy.interpolate import BSpline
 from scipy.optimize import LinearConstraint, minimize
 
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.rotary_spline import RotarySpline, basis, even_knots, rates, smoothest
+from toolaxis.strategies.roughness.rotary_spline import RotarySpline, basis, even_knots, rates, smoothest
 
 
 def _pass(seed: int, n: int = 60):

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.violations import FREE, GOUGE
 from toolaxis.machine.limits import Cone, parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient import sphere
-from toolaxis.orient.hunt import hunt
-from toolaxis.orient.indexed import task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.sector import mean_normal, roman_axis, sectors
-from toolaxis.orient.sphere import search
-from toolaxis.orient.spiral import spiral
-from toolaxis.orient.verdicts import FREE, GOUGE
-from toolaxis.orient.worth import Worth
-from toolaxis.path.count import count
+from toolaxis.path.pass_count import count
+from toolaxis.search import hemisphere as sphere
+from toolaxis.search.branch_and_bound import hunt
+from toolaxis.search.cost import Worth
+from toolaxis.search.direction_grid import spiral
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import task
+from toolaxis.search.hemisphere import search
+from toolaxis.search.sectors import mean_normal, roman_axis, sectors
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.tools.assembly import Tool

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.distances import segment_motions
+from toolaxis.contact.clearance.queries import segment_motions
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, Group
+from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, HOLDER, LIMITS, SHANK, WANDERS, Verdicts, Witness
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.indexed import evaluate_axis, task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.proof import worst_motion
-from toolaxis.orient.reasons import Refusal, main_first, sentence, told_apart, why_none
-from toolaxis.orient.setting import OTHER, SKIN, TOUCHING, Group
-from toolaxis.orient.verdicts import BACK, CUTTER, GOUGE, HOLDER, LIMITS, SHANK, WANDERS, Verdicts, Witness
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import evaluate_axis, task
+from toolaxis.search.messages import Refusal, main_first, sentence, told_apart, why_none
+from toolaxis.search.path_check import worst_motion
 from toolaxis.shape.face import Face
 
 HELD = {"stickout": 14, "flute_length": 6, "holder": [(9, 0), (9, 30)]}

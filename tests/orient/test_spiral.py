@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.orient.spiral import COVER, own_frame, ring, spiral
+from toolaxis.search.direction_grid import COVER, own_frame, ring, spiral
 
 
 @pytest.mark.parametrize("degrees", [15, 7.5, 4])

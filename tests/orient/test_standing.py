@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.distances import judged, motions
-from toolaxis.orient.setting import OTHER, SKIN, Group
-from toolaxis.orient.standing import Scene, stands_free
+from toolaxis.contact.clearance.queries import judged, motions
+from toolaxis.feasibility.interference import Scene, stands_free
+from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 
 REQUIRED = np.array([0.1, 0.5, 1.0])
 TOOL = ta.Tool.torus(10, 1, stickout=40, holder=[(10, 0), (10, 30)])
@@ -49,7 +49,7 @@ def test_close_positions_take_few_questions(scene, monkeypatch):
         asked.append(len(moves))
         return judged(cells, tool, moves, required)
 
-    monkeypatch.setattr("toolaxis.orient.standing.judged", counting)
+    monkeypatch.setattr("toolaxis.feasibility.interference.judged", counting)
     x, y = np.meshgrid(np.linspace(-25, -20, 60), np.linspace(-3, 3, 60), indexing="ij")
     places = np.stack([x, y, np.full_like(x, 30.0)], axis=-1).reshape(-1, 3)
     assert stands_free(scene, places, np.array([0.0, 0.0, 1.0]), (True, (SKIN, OTHER))).all()

@@ -5,13 +5,13 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
-from toolaxis.orient.indexed import task
-from toolaxis.orient.laying import made
-from toolaxis.orient.moving import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
-from toolaxis.orient.setting import SKIN, Group
-from toolaxis.orient.sturz import Sturz, sturz
-from toolaxis.path.leading import LeadChart
+from toolaxis.feasibility.surroundings import SKIN, Group
+from toolaxis.path.constant_lead import LeadChart
+from toolaxis.search.fixed_axis import task
 from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.common.passes import made
+from toolaxis.strategies.common.path_check import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
+from toolaxis.strategies.constant_lead.search import Sturz, sturz
 from toolaxis.tools.assembly import Tool
 
 from .conftest import bowl, flat, floor_and_wall, seeded  # type: ignore[import-not-found]

@@ -3,9 +3,9 @@
 import numpy as np
 
 import toolaxis as ta
-from toolaxis.orient.indexed import Task, best_axis, task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.together import Pool, together
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import Task, best_axis, task
+from toolaxis.search.shared_axis import Pool, together
 
 TOOL, H = ta.Tool.torus(12, 1), 0.1
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.worth import CLEAN_UP
 from toolaxis.partition.around import Around, candidates, parted
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.divider import Divider
 from toolaxis.partition.regions import regions
+from toolaxis.search.cost import CLEAN_UP
+from toolaxis.search.fixed_axis import Task, task
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40)
 

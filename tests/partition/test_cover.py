@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.orient.indexed import task
 from toolaxis.partition.cover import cover, knee, shared, trade
 from toolaxis.partition.divider import Divider
+from toolaxis.search.fixed_axis import task
 
 
 @pytest.mark.parametrize("seed", range(8))

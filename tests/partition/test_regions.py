@@ -6,9 +6,9 @@ import pytest
 import toolaxis as ta
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
-from toolaxis.orient.indexed import evaluate_axis, task
 from toolaxis.partition.divider import LINK, Divider
 from toolaxis.partition.regions import regions
+from toolaxis.search.fixed_axis import evaluate_axis, task
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1)
 

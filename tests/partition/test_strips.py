@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.orient.normals import smallest_cap
+from toolaxis.feasibility.normal_cone import smallest_cap
 from toolaxis.partition.strips import strips
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face

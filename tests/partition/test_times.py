@@ -10,12 +10,12 @@ from toolaxis.feed.schedule import Feeds
 from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.pace import Pace
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import Divider
 from toolaxis.partition.regions import regions
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.time_estimate import Pace
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

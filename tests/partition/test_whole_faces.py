@@ -9,12 +9,12 @@ from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
 import toolaxis as ta
-from toolaxis.orient.indexed import task
 from toolaxis.partition.around import parted
 from toolaxis.partition.bosses import bosses_of, distances
 from toolaxis.partition.lattice import Lattice
-from toolaxis.path.left_over import left_over, machined
+from toolaxis.path.rest_material import left_over, machined
 from toolaxis.plan.plan import Plan
+from toolaxis.search.fixed_axis import task
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"

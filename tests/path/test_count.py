@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.path.chart import Cut, IsoChart
-from toolaxis.path.count import count, measure, panels
 from toolaxis.path.estimate import Estimator, estimate, sum_rows_numpy
-from toolaxis.path.isoparametric import layout
-from toolaxis.path.lean import lean_ratio, lean_ratios, lean_table
+from toolaxis.path.iso_parametric import layout
+from toolaxis.path.parametrization import Cut, IsoChart
+from toolaxis.path.pass_count import count, measure, panels
 from toolaxis.path.sampling import sample_points
+from toolaxis.path.width_correction import lean_ratio, lean_ratios, lean_table
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

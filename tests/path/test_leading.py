@@ -5,15 +5,15 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
-from toolaxis.contact.moving import _least_numpy, least_distance_to_positions
-from toolaxis.contact.placing import place
-from toolaxis.contact.sizes import cutter_numbers
+from toolaxis.contact.placement import place
+from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.swept_volume_moving_axis import _least_numpy, least_distance_to_positions
 from toolaxis.numeric.vectors import unit
-from toolaxis.path.chart import Cut, IsoChart
-from toolaxis.path.following import follow
-from toolaxis.path.leading import LeadChart, LeadCut
-from toolaxis.path.linking import Linking
-from toolaxis.path.swivelling import MovingStroke, Swivelling, joined
+from toolaxis.path.chord_tolerance import follow
+from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.links import Linking
+from toolaxis.path.parametrization import Cut, IsoChart
+from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
 from toolaxis.tools.assembly import Tool
 
 from .conftest import flat, wavy  # type: ignore[import-not-found]

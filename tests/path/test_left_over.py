@@ -5,11 +5,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.removed import distance_to_removed, distance_to_removed_numpy
+from toolaxis.contact.strip.swept_volume import distance_to_removed, distance_to_removed_numpy
 from toolaxis.numeric.polygons import inside, slabs
-from toolaxis.orient.indexed import Task, task
-from toolaxis.path.left_grid import sampled
-from toolaxis.path.left_over import FACTOR, Excess, left_over, machined, may_stay, undercut
+from toolaxis.path.rest_grid import sampled
+from toolaxis.path.rest_material import FACTOR, Excess, left_over, machined, may_stay, undercut
+from toolaxis.search.fixed_axis import Task, task
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import SHARE, judge

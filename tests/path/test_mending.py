@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.path.isoparametric import layout
-from toolaxis.path.left_over import FACTOR, OVERLOOKED, Excess, left_over
+from toolaxis.path.cl_points import trace
+from toolaxis.path.iso_parametric import layout
 from toolaxis.path.mending import Made, completed, mended
-from toolaxis.path.tracing import trace
+from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, left_over
 
 SCALLOP, CHORD = 0.02, 0.002
 CUTTERS = [ta.Tool.ball(diameter=12), ta.Tool.torus(diameter=10, corner_radius=2)]

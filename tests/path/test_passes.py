@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.placing import place
-from toolaxis.contact.strip import step_widths
+from toolaxis.contact.placement import place
+from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path import planes
-from toolaxis.path.isoparametric import layout, passes
-from toolaxis.path.linking import Linking
+from toolaxis.path.iso_parametric import layout, passes
+from toolaxis.path.links import Linking
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.contact.strip import step_widths
+from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import unit
-from toolaxis.path import count as counting
-from toolaxis.path.chart import Cut, IsoChart
-from toolaxis.path.layout import Layout, lay_out
-from toolaxis.path.left_over import OVERLOOKED, Excess
-from toolaxis.path.tracing import trace
+from toolaxis.path import pass_count as counting
+from toolaxis.path.cl_points import trace
+from toolaxis.path.parametrization import Cut, IsoChart
+from toolaxis.path.pass_layout import Layout, lay_out
+from toolaxis.path.rest_material import OVERLOOKED, Excess
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool

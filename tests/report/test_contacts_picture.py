@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from toolaxis.contact.rings import Setting
-from toolaxis.contact.two_point import BRIDGE, circle_strip_width, settle, two_point_lead
-from toolaxis.report.contacts import contacts_picture
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
+from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, settle, two_point_lead
+from toolaxis.strategies.two_point.pictures import contacts_picture
+from toolaxis.strategies.two_point.rings import Setting
 from toolaxis.tools.assembly import Tool
 
 

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.placing import tips
+from toolaxis.contact.placement import tips
 from toolaxis.machine.setup import work_coordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.machinery import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
 from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.configurations import Machine

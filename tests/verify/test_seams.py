@@ -5,8 +5,8 @@ import pytest
 from third import depth_of_cut, stair, strip
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.gouge import segment_penetration
-from toolaxis.orient.setting import SKIN, TOUCHING, grouped
+from toolaxis.contact.clearance.gouge import segment_penetration
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, grouped
 from toolaxis.shape.adjacency import Border, edges_from_borders
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance

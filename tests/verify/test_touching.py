@@ -5,9 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.gouge import RESOLUTION
-from toolaxis.orient.proof import prove
-from toolaxis.orient.setting import SKIN, TOUCHING, Group
+from toolaxis.contact.clearance.gouge import RESOLUTION
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, Group
+from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool

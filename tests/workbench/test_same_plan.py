@@ -12,8 +12,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.folder import write_plan
-from toolaxis.orient.indexed import evaluate_axis
 from toolaxis.plan.document import tool_from
+from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.shape.kinks import split_at_kinks
 
 FOLDER = Path(__file__).resolve().parents[2] / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/same_plan")

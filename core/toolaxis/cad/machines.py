@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from toolaxis.cad.loading import load
-from toolaxis.contact.indexing import hull_of
+from toolaxis.collision.index_moves import hull_of
 from toolaxis.errors import InvalidInput
 from toolaxis.machine import catalogue
 from toolaxis.machine.bodies import Body

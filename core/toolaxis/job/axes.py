@@ -12,17 +12,17 @@ from toolaxis.job.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.orient.indexed import Task, finished, task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.mounted import combined, held_axis
-from toolaxis.orient.polish import counted
-from toolaxis.orient.reasons import sentence
-from toolaxis.orient.sector import roman_axis
-from toolaxis.orient.worth import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.search.cost import FEEDS
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import Task, finished, task
+from toolaxis.search.local_search import counted
+from toolaxis.search.machine_limits import combined, held_axis
+from toolaxis.search.messages import sentence
+from toolaxis.search.sectors import roman_axis
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]

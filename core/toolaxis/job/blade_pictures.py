@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.feed.axis_motion import AxisMotion, axis_motion
-from toolaxis.orient.blade import CLEARANCE, Scheduled, Swing, scheduled
-from toolaxis.orient.blade_baselines import SmoothSection, by_quaternions, unscheduled
-from toolaxis.orient.blade_plan import CLEARANCES, BladeSearch
-from toolaxis.orient.indexed import Task
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.report.blade_angles import angles_picture, axes_picture
+from toolaxis.search.fixed_axis import Task
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.strategies.blade.pictures import angles_picture, axes_picture
+from toolaxis.strategies.blade.plan import CLEARANCES, BladeSearch
+from toolaxis.strategies.blade.schedule import CLEARANCE, Scheduled, Swing, scheduled
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.recovered import contacts_of
-from toolaxis.contact.strip import strip_width
+from toolaxis.contact.contact_from_cl import contacts_of
+from toolaxis.contact.strip.width import strip_width
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from toolaxis.contact.indexing import Stop, trouble_at_the_ends, trouble_between
-from toolaxis.contact.machinery import Surroundings, words
+from toolaxis.collision.index_moves import Stop, trouble_at_the_ends, trouble_between
+from toolaxis.collision.machine_collision import Surroundings, words
 from toolaxis.errors import InvalidInput, about
 from toolaxis.feed.turning import following
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.laying import met
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.strategies.common.passes import met
 
 
 def refused(op: Operation, why: str) -> Operation:

@@ -8,8 +8,8 @@ from math import inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.indexing import RETRACT, Stop, trouble_at_the_ends, trouble_between
-from toolaxis.contact.machinery import FLAT, Surroundings, free_solutions
+from toolaxis.collision.index_moves import RETRACT, Stop, trouble_at_the_ends, trouble_between
+from toolaxis.collision.machine_collision import FLAT, Surroundings, free_solutions
 from toolaxis.errors import about
 from toolaxis.feed.profile import travel_time
 from toolaxis.job.in_motion import kept_clear, refused

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.job.targets import faceted
-from toolaxis.orient.impossible import tight_fillet
 from toolaxis.partition.blades import Bladed, NoPattern, blades_of
 from toolaxis.partition.buried import uncovered
 from toolaxis.partition.gaps import Nearness, ahead, nearness, reach_along_normal, widest
@@ -18,6 +17,7 @@ from toolaxis.partition.strips import strips
 from toolaxis.partition.turned import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.infeasibility import tight_fillet
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 from toolaxis.shape.part import PLAIN_KINDS, Body, Part

@@ -7,27 +7,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.rings import Setting, rings, stand_of
-from toolaxis.contact.strip import strip_width
+from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.normal_cone import smallest_cap
 from toolaxis.job.axes import search_task
 from toolaxis.job.blade_pictures import draw_blade
 from toolaxis.job.rooms import tightest
 from toolaxis.job.roughness_pictures import draw_roughness
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.indexed import Task
-from toolaxis.orient.ledger import Ledger
-from toolaxis.orient.normals import smallest_cap
-from toolaxis.orient.sector import roman_axis, sectors
-from toolaxis.path.count import count
 from toolaxis.path.estimate import estimate
-from toolaxis.path.isoparametric import layout
+from toolaxis.path.iso_parametric import layout
+from toolaxis.path.pass_count import count
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.bars import baselines_picture, options_picture
-from toolaxis.report.contacts import contacts_picture
-from toolaxis.report.free_angle import free_angle_picture, turning_of
 from toolaxis.report.hemisphere import hemisphere_picture
 from toolaxis.report.machine import has_machine_picture, machine_picture
 from toolaxis.report.overview import overview_picture
@@ -40,8 +34,14 @@ from toolaxis.report.plots import (
 )
 from toolaxis.report.raster import mean_direction
 from toolaxis.report.tightest import tightest_picture
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.fixed_axis import Task
+from toolaxis.search.sectors import roman_axis, sectors
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.four_plus_one.pictures import free_angle_picture, turning_of
+from toolaxis.strategies.two_point.pictures import contacts_picture
+from toolaxis.strategies.two_point.rings import Setting, rings, stand_of
 from toolaxis.tools.assembly import Tool
 from toolaxis.verify.verdict import Verdict
 

@@ -22,16 +22,6 @@ from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.blade_plan import blade
-from toolaxis.orient.flat_plan import two_point
-from toolaxis.orient.four_plus_one import four_plus_one
-from toolaxis.orient.indexed import Task, searched
-from toolaxis.orient.indexed import task as search_task
-from toolaxis.orient.mounted import combined
-from toolaxis.orient.multiscale_plan import multiscale
-from toolaxis.orient.sturz import sturz
-from toolaxis.orient.together import together
-from toolaxis.orient.worth import FEEDS
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider, Regions
@@ -42,9 +32,19 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
+from toolaxis.search.cost import FEEDS
+from toolaxis.search.fixed_axis import Task, searched
+from toolaxis.search.fixed_axis import task as search_task
+from toolaxis.search.machine_limits import combined
+from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
+from toolaxis.strategies.blade.plan import blade
+from toolaxis.strategies.constant_lead.search import sturz
+from toolaxis.strategies.four_plus_one.search import four_plus_one
+from toolaxis.strategies.roughness.plan import multiscale
+from toolaxis.strategies.two_point.search import two_point
 from toolaxis.tools.assembly import Tool
 from toolaxis.work import MOVING, Budget, OutOfWork, limited
 

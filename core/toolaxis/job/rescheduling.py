@@ -7,18 +7,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
+from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
 from toolaxis.feed.turning import following
 from toolaxis.machine.mounting import Mounting
-from toolaxis.orient.blade import CLEARANCE, Swing
-from toolaxis.orient.blade_path import Rescheduled, reschedule_path
-from toolaxis.orient.moving import kept, prove_moving, spans_of
-from toolaxis.orient.proof import COMPONENTS
-from toolaxis.orient.reasons import place
-from toolaxis.orient.setting import OTHER, SKIN, Group
-from toolaxis.orient.verdicts import CUTTER, GOUGE, Witness
 from toolaxis.post.locations import CutterLocations
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.messages import place
+from toolaxis.search.path_check import COMPONENTS
 from toolaxis.shape.face import Face
+from toolaxis.strategies.blade.reschedule import Rescheduled, reschedule_path
+from toolaxis.strategies.blade.schedule import CLEARANCE, Swing
+from toolaxis.strategies.common.path_check import kept, prove_moving, spans_of
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.assembly import Tool
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.distances import Found, bounded, motions, segment_motions
-from toolaxis.orient.proof import COMPONENTS
-from toolaxis.orient.setting import OTHER, Group, grouped
+from toolaxis.contact.clearance.queries import Found, bounded, motions, segment_motions
+from toolaxis.feasibility.surroundings import OTHER, Group, grouped
 from toolaxis.plan.blades import Blades, Room
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.path_check import COMPONENTS
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]

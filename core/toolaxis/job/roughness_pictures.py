@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
-from toolaxis.contact.placing import place
-from toolaxis.contact.section_width import expected_widths, section_width
+from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.turning import following
 from toolaxis.machine.mounting import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.orient.multiscale_path import evaluation_length, roughness_at, spots
-from toolaxis.orient.multiscale_search import NOMINAL
-from toolaxis.path.leading import LeadCut
+from toolaxis.path.constant_lead import LeadCut
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.report.roughness import RoughnessStudy, roughness_picture
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.roughness.passes import evaluation_length, roughness_at, spots
+from toolaxis.strategies.roughness.pictures import RoughnessStudy, roughness_picture
+from toolaxis.strategies.roughness.search import NOMINAL
+from toolaxis.strategies.roughness.section_width import expected_widths, section_width
 
 Array = NDArray[np.float64]
 

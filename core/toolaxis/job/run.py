@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike
 from toolaxis.cad.loading import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.units import tool_warnings
-from toolaxis.contact.feasible_area import check_bull_nose
-from toolaxis.contact.rings import check_bottom
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
@@ -27,16 +25,18 @@ from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.orient.indexed import METHODS
-from toolaxis.orient.mounted import combined
-from toolaxis.orient.pace import known_machine
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.plan import STRATEGIES, Inputs, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.search.fixed_axis import METHODS
+from toolaxis.search.machine_limits import combined
+from toolaxis.search.time_estimate import known_machine
 from toolaxis.shape.cells import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joined import GREATEST_CORNER
+from toolaxis.strategies.roughness.feasible_area import check_bull_nose
+from toolaxis.strategies.two_point.rings import check_bottom
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.assembly import Tool
 from toolaxis.work import LIMIT

@@ -14,11 +14,11 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
 from toolaxis.job.axes import judged
 from toolaxis.job.failures import failed
-from toolaxis.orient.indexed import Task
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
 from toolaxis.plan.zone import Zone
+from toolaxis.search.fixed_axis import Task
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part

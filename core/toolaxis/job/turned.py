@@ -8,19 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.contact.distances import judged as decided
-from toolaxis.contact.distances import segment_motions
-from toolaxis.contact.gouge import least_distance
+from toolaxis.contact.clearance.gouge import least_distance
+from toolaxis.contact.clearance.queries import judged as decided
+from toolaxis.contact.clearance.queries import segment_motions
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, fault
+from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.job.abreast import Outcome, abreast
 from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.failures import failed, failed_after
 from toolaxis.job.pattern import Pattern, Share
 from toolaxis.job.zones import with_zones
-from toolaxis.orient.indexed import Task
-from toolaxis.orient.proof import COMPONENTS, prove
-from toolaxis.orient.reasons import sentence
-from toolaxis.orient.setting import OTHER, SKIN, Group
 from toolaxis.partition.turned import moved, turned_piece
 from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
@@ -28,6 +25,9 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.search.fixed_axis import Task
+from toolaxis.search.messages import sentence
+from toolaxis.search.path_check import COMPONENTS, prove
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 

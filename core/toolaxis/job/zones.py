@@ -6,15 +6,15 @@ from toolaxis.errors import Cancelled, fault
 from toolaxis.job.abreast import abreast
 from toolaxis.job.axes import search_task
 from toolaxis.job.failures import failed_after
-from toolaxis.orient.impossible import corner_too_large, tight_fillet
-from toolaxis.orient.reasons import LEFT_OVER, left_reasons, tells_of_left
-from toolaxis.path.beyond_layers import beyond_layers
-from toolaxis.path.left_over import FACTOR, Excess, also_machined
+from toolaxis.path.rest_material import FACTOR, Excess, also_machined
+from toolaxis.path.unmachined_ends import beyond_layers
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.infeasibility import corner_too_large, tight_fillet
+from toolaxis.search.messages import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.shape.measure import mean_width
 from toolaxis.tools.assembly import Tool
 

@@ -11,11 +11,11 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.overlay import divided
-from toolaxis.orient.spiral import ring
 from toolaxis.partition.divider import Divider, Regions, Row, Solution, named_pieces
 from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.lattice import Lattice
 from toolaxis.partition.prices import Prices
+from toolaxis.search.direction_grid import ring
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.tools.assembly import Tool

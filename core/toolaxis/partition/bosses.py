@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.orient.setting import Obstacles, faces_of
+from toolaxis.feasibility.surroundings import Obstacles, faces_of
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tools.assembly import Tool

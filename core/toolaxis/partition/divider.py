@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, about
-from toolaxis.orient.indexed import Task
-from toolaxis.orient.spiral import own_frame, ring, spiral
 from toolaxis.partition.guillotine import Corners, Division, Offers, each_axis, offers, proper
 from toolaxis.partition.lattice import Lattice
 from toolaxis.partition.prices import Prices, priced
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.direction_grid import own_frame, ring, spiral
+from toolaxis.search.fixed_axis import Task
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.strip import step_widths
+from toolaxis.contact.strip.width import step_widths
+from toolaxis.feasibility.check_points import contacts_at
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.orient.contacts import contacts_at
-from toolaxis.orient.feasible import Feasibility
-from toolaxis.orient.pace import Pace
-from toolaxis.orient.verdicts import FREE
-from toolaxis.orient.worth import CLEAN_UP, FEEDS, Worth
 from toolaxis.partition.lattice import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.cost import CLEAN_UP, FEEDS, Worth
+from toolaxis.search.time_estimate import Pace
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.surroundings import Obstacles
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.orient.indexed import Task, task
-from toolaxis.orient.mounted import combined
-from toolaxis.orient.setting import Obstacles
 from toolaxis.partition.around import Distance, candidates, slivers
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.divider import INDEX_COST, MOST, Divider, Regions
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.machine_limits import combined
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import ToleranceLike
@@ -93,7 +93,7 @@ def regions(job: Task, count: int | str | None = None, index_cost: float | None 
     Parameters
     ----------
     job : Task
-        From `toolaxis.orient.indexed.task`; with the objective "time" the division goes by time, else by length.
+        From `toolaxis.search.fixed_axis.task`; with the objective "time" the division goes by time, else by length.
     count, progress
         As for `partition`.
     index_cost : float, optional

@@ -6,17 +6,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.second_order import compliance, contact_forms, screen_numpy
-from toolaxis.contact.strip import step_widths
+from toolaxis.contact.strip.second_order import compliance, contact_forms, screen_numpy
+from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import compiled as _compiled
 from toolaxis.numeric.compiled import compiled
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.path.chart import IsoChart, rows
-from toolaxis.path.count import panels
-from toolaxis.path.lean import lean_ratio, lean_ratios, lean_table, screening_cutter
-from toolaxis.path.material import row_points
+from toolaxis.path.parametrization import IsoChart, rows
+from toolaxis.path.pass_count import panels
 from toolaxis.path.sampling import Samples, sample_points
+from toolaxis.path.trim_intervals import row_points
+from toolaxis.path.width_correction import lean_ratio, lean_ratios, lean_table, screening_cutter
 from toolaxis.shape.face import Face
 from toolaxis.tools.assembly import Tool
 

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.removed import distance_to_removed
-from toolaxis.path.chart import Chart, Cut, IsoChart, extents, tip_points
-from toolaxis.path.following import follow
-from toolaxis.path.layout import Layout, Reach, sampling
-from toolaxis.path.left_over import FACTOR, may_stay, undercut
-from toolaxis.path.material import Intervals, filtered
-from toolaxis.path.spacing import Spacing
+from toolaxis.contact.strip.swept_volume import distance_to_removed
+from toolaxis.path.chord_tolerance import follow
+from toolaxis.path.parametrization import Chart, Cut, IsoChart, extents, tip_points
+from toolaxis.path.pass_layout import Layout, Reach, sampling
+from toolaxis.path.rest_material import FACTOR, may_stay, undercut
+from toolaxis.path.step_over import Spacing
+from toolaxis.path.trim_intervals import Intervals, filtered
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 

@@ -8,16 +8,16 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.contact.second_order import contact_forms, screen_numpy
-from toolaxis.contact.strip import strip_width
+from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
+from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.path.chart import Cut
-from toolaxis.path.count import Count, measure
-from toolaxis.path.layout import Layout, Reach, lay_out
-from toolaxis.path.lean import lean_ratios
-from toolaxis.path.linking import Linking
-from toolaxis.path.tracing import trace
+from toolaxis.path.cl_points import trace
+from toolaxis.path.links import Linking
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_count import Count, measure
+from toolaxis.path.pass_layout import Layout, Reach, lay_out
+from toolaxis.path.width_correction import lean_ratios
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance, ToleranceLike
@@ -220,7 +220,7 @@ def passes(face: Face, tool: Tool, axis: ArrayLike, scallop: float, direction: A
     sense : str
         "zigzag", "climb" or "conventional".
     allowance, reach, tolerance, box, linking, progress
-        As in `toolaxis.path.isoparametric.passes`.
+        As in `toolaxis.path.iso_parametric.passes`.
 
     Returns
     -------

@@ -59,11 +59,11 @@ class Around:
     ----------
     mounted : toolaxis.machine.mounting.Mounting
         Its tool's length does not count.
-    surroundings : tuple of toolaxis.contact.machinery.Surroundings
+    surroundings : tuple of toolaxis.collision.machine_collision.Surroundings
         One for each operation, with its tool.
     names : dict of str to str
         Names of objects by what their faces are called after their numbers.
-    near : toolaxis.contact.surroundings.Surroundings
+    near : toolaxis.contact.clearance.surroundings.Surroundings
         The same faces as exact as they are, for the tool, which goes along their borders.
     called : tuple of str
         What each of these faces is called, "3 of Block".
@@ -91,7 +91,7 @@ class Around:
         -------
         Met or None
         """
-        from toolaxis.contact.machinery import nearest_meeting
+        from toolaxis.collision.machine_collision import nearest_meeting
 
         found = self._of_tool(row, rotary, tips)
         found = found or nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row])
@@ -110,7 +110,7 @@ class Around:
         -------
         Met or None
         """
-        from toolaxis.contact.machinery import meeting_on
+        from toolaxis.collision.machine_collision import meeting_on
         from toolaxis.machine.kinematics import forward
         from toolaxis.numeric.convex import places
 
@@ -124,7 +124,7 @@ class Around:
         """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
         import numpy as np
 
-        from toolaxis.contact.machinery import Meeting
+        from toolaxis.collision.machine_collision import Meeting
 
         axes = np.tile(self.mounted.axis_at(rotary), (len(tips), 1))
         _, found = met_by_tool(self.surroundings[row].tool, (tips, axes), self.near, len(tips) == 1)
@@ -139,7 +139,7 @@ class Around:
         return replace(self.mounted, tool_length=self.surroundings[row].tool.gauge_length)
 
     def _told(self, found, rotary):
-        from toolaxis.contact.machinery import words
+        from toolaxis.collision.machine_collision import words
 
         if found is None:
             return None
@@ -160,7 +160,7 @@ def met_by_tool(tool, path, near, still):
     tool : toolaxis.tools.assembly.Tool
     path : (tips, axes), each (n, 3) array
         mm; the axes are all the same unless `still`.
-    near : toolaxis.contact.surroundings.Surroundings
+    near : toolaxis.contact.clearance.surroundings.Surroundings
     still : bool
         Whether it is looked for at the tips, else on the motions between them.
 
@@ -173,7 +173,7 @@ def met_by_tool(tool, path, near, still):
     """
     import numpy as np
 
-    from toolaxis.contact.clearance import clearances, clears, segment_clearances, segment_clears
+    from toolaxis.contact.clearance.clearance import clearances, clears, segment_clearances, segment_clears
     from toolaxis.tools.solid import COMPONENTS
 
     tips, axes = path
@@ -271,8 +271,8 @@ def around(mounted, tools, found, progress):
     """
     import numpy as np
 
-    from toolaxis.contact.machinery import Surroundings
-    from toolaxis.contact.surroundings import Surroundings as Near
+    from toolaxis.collision.machine_collision import Surroundings
+    from toolaxis.contact.clearance.surroundings import Surroundings as Near
     from toolaxis.progress import heard
     from toolaxis.shape.cells import forest
 

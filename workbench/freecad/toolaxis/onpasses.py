@@ -65,7 +65,7 @@ def bumps(tool, path, found, progress):
     """
     import numpy as np
 
-    from toolaxis.contact.surroundings import Surroundings
+    from toolaxis.contact.clearance.surroundings import Surroundings
     from toolaxis.progress import heard
 
     names, faces = [], []

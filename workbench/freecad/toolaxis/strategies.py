@@ -31,11 +31,11 @@ def check_strategy(inputs):
     InvalidInput
         In one sentence with the remedy.
     """
-    from toolaxis.contact.feasible_area import check_bull_nose
-    from toolaxis.contact.rings import check_bottom
     from toolaxis.errors import InvalidInput
     from toolaxis.job.spec import by_strategy, check_five_axes, roughness_for
-    from toolaxis.orient.blade_plan import check_ball
+    from toolaxis.strategies.blade.plan import check_ball
+    from toolaxis.strategies.roughness.feasible_area import check_bull_nose
+    from toolaxis.strategies.two_point.rings import check_bottom
 
     strategy = inputs.strategy
     by_strategy(strategy, inputs.method, inputs.objective)

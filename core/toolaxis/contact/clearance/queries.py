@@ -1,0 +1,170 @@
+"""Distances and verdicts for many tool positions or motions at once, by the kernel or by its plain twin."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.clearance.branch_and_bound import ToolData, descend_many, scratch
+from toolaxis.contact.clearance.branch_and_bound_numpy import descend_many_numpy
+from toolaxis.contact.clearance.relief import no_relief
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric.vectors import as_rows
+from toolaxis.progress import breathe
+from toolaxis.shape.cells import Cells
+from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_PIECES_AT_ONCE = 60
+#: Motions between two moments to stop.
+_MOTIONS_AT_ONCE = 256
+#: As many bounds as take as long as a question without any motion, and a motion without any bound.
+_QUESTION, _MOTION = 2000, 20
+
+
+class Found(NamedTuple):
+    """Answers for n positions or motions.
+
+    lower : (n, 3) lower bounds of the signed distance of cutter, shank and holder, mm;
+    face : (n, 3) index of the nearest face, -1 where nothing is nearer than the cutoff;
+    point : (n, 3, 3) a point of a cell near the nearest place, by component;
+    blocked : (n,) component that was not proven to keep its limits, -1 where all do (only when deciding);
+    looked : (n,) number of cells looked at.
+    """
+
+    lower: Array
+    face: Indices
+    point: Array
+    blocked: Indices
+    looked: Indices
+
+
+def motions(tips: ArrayLike, axis: ArrayLike) -> Array:
+    """Standing tools as motions of no length, (n, 3, 3): tip, zero, axis.
+
+    Parameters
+    ----------
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n, 3) array_like
+        Unit vectors, tip to spindle.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, numbers are not finite, or an axis is not a unit vector.
+    """
+    rows = as_rows(tips, 3, "tool tips")
+    return np.stack([rows, np.zeros_like(rows), _axes(axis, len(rows))], axis=1)
+
+
+def segment_motions(tips: ArrayLike, axis: ArrayLike) -> Array:
+    """Straight motions from each tip to the next, (n - 1, 3, 3): middle, half of the way, axis.
+
+    Parameters
+    ----------
+    tips : (n, 3) array_like
+        mm
+    axis : (3,) or (n - 1, 3) array_like
+        Unit vectors; the axis does not turn within a motion.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, numbers are not finite, or an axis is not a unit vector.
+    """
+    rows = as_rows(tips, 3, "tool tips")
+    return np.stack([(rows[1:] + rows[:-1]) / 2, (rows[1:] - rows[:-1]) / 2, _axes(axis, len(rows) - 1)], axis=1)
+
+
+def _axes(axis: ArrayLike, count: int) -> Array:
+    rows = as_rows(axis, 3, "axis")
+    if len(rows) not in (1, count):
+        raise InvalidInput(f"{len(rows)} axes are given for {count} positions: give one, or one for each")
+    off = np.abs(np.einsum("ij,ij->i", rows, rows) - 1)
+    if off.size and off.max() > 1e-9:
+        i = int(np.argmax(off))
+        raise InvalidInput(f"axis {i} is {rows[i].tolist()}: it must have length 1")
+    return np.broadcast_to(rows, (count, 3))
+
+
+def bounded(cells: Cells, tool: Tool, moves: Array, cutoff: ArrayLike, resolution: float,
+            required: Array | None = None) -> Found:
+    """Lower bounds of the distances, at most ``resolution`` (and the faces' tolerance) below the true ones.
+
+    Depths beyond 0.1 mm are only told to a twentieth.
+
+    Parameters
+    ----------
+    cells : Cells
+    tool : Tool
+    moves : (n, 3, 3) array
+        From `motions` or `segment_motions`.
+    cutoff : float or (3,) array_like
+        Greater distances are answered with this, mm.
+    resolution : float
+        mm
+    required : (faces, 3) array, optional
+        Only which pairs are left out (-inf) counts here.
+    """
+    limits = np.zeros((len(cells.faces), 3)) if required is None else np.where(np.isneginf(required), -np.inf, 0.0)
+    return _run(cells, tool, moves, (limits, np.broadcast_to(np.asarray(cutoff, dtype=float), 3), resolution))
+
+
+def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
+    """Whether every component is proven to keep its limits: ``blocked`` is -1 there.
+
+    Parameters
+    ----------
+    cells : Cells
+    tool : Tool
+    moves : (n, 3, 3) array
+        From `motions` or `segment_motions`.
+    required : (faces, 3) array
+        Least signed distances, mm; -inf leaves a pair out.
+    """
+    return _run(cells, tool, moves, (np.ascontiguousarray(required), np.full(3, np.inf), -1.0))
+
+
+def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> Found:
+    limits, cutoff, resolution = ask
+    pieces = tool.pieces
+    asked = np.asarray((limits > -np.inf).any(axis=0))
+    pieces = pieces[asked[pieces[:, 7].astype(int)]]
+    n = len(moves)
+    relief = no_relief(len(cells.faces)) if cells.mismatch is None else cells.mismatch.plain
+    total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))
+    for first in range(0, len(pieces), _PIECES_AT_ONCE):
+        some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
+        shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
+        asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
+        values, tags = _descended(cells, asked_of, moves, cutoff)
+        total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), *tags[:, 3:].T))
+    return total
+
+
+def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
+    moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
+    values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
+    room = scratch(cells.most_edges) if _compiled.available else None
+    spend(_QUESTION)
+    for first in range(0, len(moves), _MOTIONS_AT_ONCE):
+        breathe()
+        some = slice(first, first + _MOTIONS_AT_ONCE)
+        if room is None:
+            values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
+        else:
+            descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
+        spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
+    return values, tags
+
+
+def _merged(one: Found, other: Found) -> Found:
+    nearer = (other.lower < one.lower) | (one.face < 0)
+    return Found(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
+                 np.where(nearer[..., None], other.point, one.point),
+                 np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)

@@ -1,0 +1,1 @@
+"""How low a tool with an upright axis comes to rest on a surface."""

@@ -1,0 +1,1 @@
+"""How wide a pass cuts within the scallop height, and what the cutter leaves beside it."""

@@ -1,0 +1,329 @@
+"""Strip width to the second order: cutter and surface as quadratic forms at the contact."""
+
+from math import sqrt
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.frame import Feed, contact_frame
+from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.vectors import as_rows, dot, unit
+from toolaxis.shape.differential import curvature_form
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Numbers: TypeAlias = Array | tuple[float, float, float, float]
+Form: TypeAlias = tuple[float, float, float]
+"""Entries (ff, fk, kk) of a symmetric form in the frame of feed and left."""
+
+SHARPEST = 1e-9
+#: Contacts with an axis each that are screened at once, every axis at every one of them.
+_TOGETHER = 64
+"""Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
+
+
+@compiled
+def surface_form(d: Array, frame: Array) -> Form:
+    """Second fundamental form in an orthonormal tangent frame, 1/mm, positive where bending towards the normal.
+
+    Parameters
+    ----------
+    d : (6, 3) array
+        S, Su, Sv, Suu, Suv, Svv.
+    frame : (3, 3) array
+        Rows feed, left, normal.
+    """
+    a = b = p = q = l = m = n = 0.0
+    for c in range(3):
+        a += d[1, c] * frame[0, c]
+        b += d[2, c] * frame[0, c]
+        p += d[1, c] * frame[1, c]
+        q += d[2, c] * frame[1, c]
+        l += d[3, c] * frame[2, c]
+        m += d[4, c] * frame[2, c]
+        n += d[5, c] * frame[2, c]
+    det = a * q - b * p
+    if det == 0.0:
+        return 0.0, 0.0, 0.0
+    uf, vf, uk, vk = q / det, -p / det, -b / det, a / det
+    return (uf * uf * l + 2.0 * uf * vf * m + vf * vf * n, uf * uk * l + (uf * vk + vf * uk) * m + vf * vk * n,
+            uk * uk * l + 2.0 * uk * vk * m + vk * vk * n)
+
+
+@compiled
+def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
+    """Curvature of the cutter at a contact on its corner arc, 1/mm.
+
+    1/r along the projection of T and sin lambda / (a + r sin lambda) across it; upright on a flat bottom it is zero.
+
+    Parameters
+    ----------
+    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
+    axis_f, axis_k : float
+        Components of the unit axis along feed and left.
+    """
+    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
+    lean = sqrt(axis_f * axis_f + axis_k * axis_k)
+    if a <= 0.0:
+        return 1.0 / r, 0.0, 1.0 / r
+    if lean <= 1e-12:
+        return 0.0, 0.0, 0.0
+    x, y = axis_f / lean, axis_k / lean
+    across = lean / (a + r * lean)
+    along = 1.0 / r
+    return (along * x * x + across * y * y, (along - across) * x * y, along * y * y + across * x * x)
+
+
+@compiled
+def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tuple[float, float, bool]:
+    """(D^-1)_kk, mm, and the advance of the covering contact along the feed per unit to the left.
+
+    D = C_cutter - K_surface in the frame of feed and left: to the second order the lifted surface leaves the swept
+    cutter at y = sqrt(2 h (D^-1)_kk), and what covers that point is the contact D_fk / D_ff y ahead.
+
+    Parameters
+    ----------
+    surface : (ff, fk, kk)
+        Second fundamental form in the frame, 1/mm.
+    frame : (3, 3) array
+        Rows feed, left, normal.
+    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
+    axis : (3,) array
+
+    Returns
+    -------
+    compliance, advance : float
+    free : bool
+        False where D is not positive definite (the cutter gouges by curvature) or the contact lies on no arc of the
+        cutter; then both numbers are 0.
+    """
+    tf = frame[0, 0] * axis[0] + frame[0, 1] * axis[1] + frame[0, 2] * axis[2]
+    tk = frame[1, 0] * axis[0] + frame[1, 1] * axis[1] + frame[1, 2] * axis[2]
+    tn = frame[2, 0] * axis[0] + frame[2, 1] * axis[1] + frame[2, 2] * axis[2]
+    if tn < cutter[3] - 1e-9:
+        return 0.0, 0.0, False
+    c_ff, c_fk, c_kk = cutter_form(cutter, tf, tk)
+    ff, fk, kk = c_ff - surface[0], c_fk - surface[1], c_kk - surface[2]
+    if not ff > 0.0:
+        return 0.0, 0.0, False
+    rest = kk - fk * (fk / ff)
+    if not rest > 0.0:
+        return 0.0, 0.0, False
+    return 1.0 / rest, fk / ff, True
+
+
+@compiled
+def _screen(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
+    """Half widths of k axes at n contacts into out (k, n); forms as in `contact_forms`."""
+    cap = CAP * (cutter[0] + cutter[1])
+    for j in range(forms.shape[0]):
+        form = (forms[j, 9], forms[j, 10], forms[j, 11])
+        frame = forms[j, :9].reshape((3, 3))
+        for i in range(axes.shape[0]):
+            rest, _, free = compliance(form, frame, cutter, axes[i])
+            out[i, j] = min(sqrt(2.0 * scallop * rest), cap) / forms[j, 12] if free else 0.0
+
+
+def screen_numpy(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
+    """The plain twin of the screening kernel, written on whole arrays; parameters as there."""
+    tf, tk, tn = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
+    ff, fk, kk = relative_forms(forms, (tf, tk), cutter)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rest = kk - fk * (fk / ff)
+        free = (tn >= cutter[3] - 1e-9) & (ff > 0) & (rest > 0)
+        width = np.minimum(np.sqrt(2 * scallop / rest), CAP * (cutter[0] + cutter[1])) / forms[:, 12]
+    out[:] = np.where(free, width, 0.0)
+
+
+def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tuple[Array, Array, Array]:
+    """Curvature of the cutter less that of the surface, entries (ff, fk, kk) in the frame of feed and left, 1/mm.
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As `contact_forms` gives.
+    axis : two (..., n) arrays
+        Components of unit axes along feed and left.
+    cutter : array
+        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    """
+    tf, tk = axis
+    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
+    lean = np.hypot(tf, tk)
+    bottom = (lean <= 1e-12) & (a > 0)
+    size = np.where(lean > 0, lean, 1.0)
+    x, y = np.where(lean > 0, tf / size, 1.0), tk / size
+    along = np.where(bottom, 0.0, 1 / r)
+    across = np.where(bottom, 0.0, lean / (a + r * lean) if a > 0 else 1 / r)
+    return (np.asarray(along * x * x + across * y * y - forms[:, 9]),
+            np.asarray((along - across) * x * y - forms[:, 10]),
+            np.asarray(along * y * y + across * x * x - forms[:, 11]))
+
+
+def screen_many(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+    """Second-order half widths of many axes at many contacts, (k, n).
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As of `contact_forms`.
+    axes : (k, 3) array
+        Unit vectors.
+    cutter : (6,) array
+        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    scallop : float
+        mm
+    """
+    out = np.empty((len(axes), len(forms)))
+    (_screen if _compiled.available else screen_numpy)(forms, np.ascontiguousarray(axes), cutter, float(scallop), out)
+    return out
+
+
+def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+    """Second-order half widths of contacts with an axis each, (n,).
+
+    Parameters
+    ----------
+    forms : (n, 13) array
+        As of `contact_forms`.
+    axes : (n, 3) array
+        Unit vectors.
+    cutter : (6,) array
+        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    scallop : float
+        mm
+    """
+    parts = [slice(begin, begin + _TOGETHER) for begin in range(0, len(forms), _TOGETHER)]
+    return np.concatenate([np.diagonal(screen_many(forms[part], axes[part], cutter, scallop)) for part in parts]
+                          or [np.empty(0)])
+
+
+def contact_forms(face: Face, uv: ArrayLike, feed: Feed, steps: bool) -> Array:
+    """What the screen needs of a surface, once for all axes.
+
+    Parameters
+    ----------
+    face : Face
+    uv : (n, 2) array_like
+    feed : "u", "v" or (3,) or (n, 3) array_like
+    steps : bool
+        Whether widths are wanted in the step parameter instead of mm.
+
+    Returns
+    -------
+    (n, 13) array
+        Feed, left, normal, second fundamental form (ff, fk, kk) in 1/mm, and mm to the left per unit of the answer.
+    """
+    rows = as_rows(uv, 2, "uv")
+    if steps and not isinstance(feed, str):
+        raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
+    d, frame = face.evaluate(rows), contact_frame(face, rows, feed)
+    form = curvature_form(d, frame.normal, frame.feed)
+    pace = np.ones(len(rows))
+    if steps:
+        pace = np.abs(dot(d.sv if feed == "u" else d.su, frame.left))
+    return np.column_stack([*frame, form[:, 0, 0], form[:, 0, 1], form[:, 1, 1], pace])
+
+
+def second_order_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike, scallop: float, feed: Feed = "u",
+                           steps: bool = True) -> Array:
+    """Second-order half widths of many axes at many contacts.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    uv : (n, 2) array_like
+        Parameters of the contacts.
+    axes : (k, 3) array_like
+        Tool axes, tip to spindle.
+    scallop : float
+        Scallop height h, mm.
+    feed : "u", "v" or, where steps is False, (3,) or (n, 3) array_like
+    steps : bool
+        Answer in the step parameter instead of mm.
+
+    Returns
+    -------
+    (k, n) array
+        Half width, the same on both sides: sqrt(2 h (D^-1)_kk), for steps divided by |S_step . k|; at most 4 R; 0
+        where D is not positive definite (curvature gouge) or the contact is not on the cutter's bottom or arc.
+
+    Raises
+    ------
+    InvalidInput
+        When the scallop height is not above zero and below the tool's radius, or an array has a wrong shape.
+
+    Notes
+    -----
+    Upright on a flat bottom the cutter has no curvature: D = -K.
+
+    **Source**: [zhu2016] Sec. 2.2 uses the section's width; this is that of the swept cutter, the limit of
+    `strip_width` for small h.
+    """
+    cutter = cutter_numbers(tool, scallop, 0.0)
+    forms = contact_forms(face, uv, feed, steps)
+    return screen_many(forms, np.asarray(unit(as_rows(axes, 3, "axes"))), cutter, scallop)
+
+
+def second_order_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float,
+                       feed: Feed = "u") -> Array:
+    """Strip width to the second order, 2 sqrt(2 h (D^-1)_kk), mm.
+
+    Parameters
+    ----------
+    face, tool, uv, axis, scallop, feed
+        As in `strip_width`.
+
+    Returns
+    -------
+    (n,) array
+        Left and right half width together, mm; conventions as in `second_order_many_axes`.
+
+    Raises
+    ------
+    InvalidInput
+        As in `second_order_many_axes`.
+    """
+    return 2 * _one_axis_each(contact_forms(face, uv, feed, False), tool, axis, scallop)
+
+
+def second_order_step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float,
+                             feed: str = "u") -> Array:
+    """Half widths in the step parameter to the second order.
+
+    Parameters
+    ----------
+    face, tool, uv, axis, scallop, feed
+        As in `step_widths`.
+
+    Returns
+    -------
+    (n, 2) array
+        Towards lower and upper step parameter (equal), conventions as in `second_order_many_axes`.
+
+    Raises
+    ------
+    InvalidInput
+        As in `second_order_many_axes`.
+    """
+    half = _one_axis_each(contact_forms(face, uv, feed, True), tool, axis, scallop)
+    return np.column_stack([half, half])
+
+
+def _one_axis_each(forms: Array, tool: Tool, axis: ArrayLike, scallop: float) -> Array:
+    cutter = cutter_numbers(tool, scallop, 0.0)
+    rows = np.ascontiguousarray(unit(as_rows(axis, 3, "axis")))
+    screen = _screen if _compiled.available else screen_numpy
+    if len(rows) not in (1, len(forms)):
+        raise InvalidInput(f"{len(rows)} axes for {len(forms)} contacts: give one axis, or one for each contact")
+    out = np.empty(len(forms))
+    for k in range(len(rows)):
+        part = slice(None) if len(rows) == 1 else slice(k, k + 1)
+        screen(forms[part], rows[k:k + 1], cutter, float(scallop), out[None, part])
+    return out

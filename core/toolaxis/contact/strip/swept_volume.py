@@ -1,0 +1,212 @@
+"""What a cutter removes along a path: signed distance of points to everything that it sweeps."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.swept_cutter import signed_distance
+from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.tools.assembly import Tool
+from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
+
+Array = NDArray[np.float64]
+
+#: The least distance along a straight motion is found to this, mm.
+RESOLUTION = 1e-6
+_HALVINGS = 60
+_ROWS = 64
+#: Motions, and points, that follow each other are looked at together.
+_GROUP, _TOGETHER = 16, 24
+
+
+@compiled
+def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
+    """The least of a bound and the distance of a point to the cutter on one motion.
+
+    Along a motion the distance is convex: beyond the middle it stays above the line from the other end to the middle.
+    """
+    up, half = (0.0, 0.0, 1.0), move[6]
+    x, y, z = point[0] - move[0], point[1] - move[1], point[2] - move[2]
+    value = float(signed_distance(cutter, up, x, y, z))
+    if value - half >= best:
+        return best
+    before = float(signed_distance(cutter, up, x + move[3], y + move[4], z + move[5]))
+    after = float(signed_distance(cutter, up, x - move[3], y - move[4], z - move[5]))
+    best = min(best, value, before, after)
+    if 2.0 * value - max(before, after, value) >= best:
+        return best
+    low, high = -1.0, 1.0
+    for _ in range(_HALVINGS):
+        if (high - low) * half < RESOLUTION:
+            break
+        s, t = low + (high - low) / 3.0, high - (high - low) / 3.0
+        one = float(signed_distance(cutter, up, x - s * move[3], y - s * move[4], z - s * move[5]))
+        other = float(signed_distance(cutter, up, x - t * move[3], y - t * move[4], z - t * move[5]))
+        best = min(best, one, other)
+        if min(one, other) - (high - low) * half >= best:
+            break
+        if one < other:
+            high = t
+        else:
+            low = s
+    return best
+
+
+@compiled
+def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
+          groups: NDArray[np.int64], near: NDArray[np.int64]) -> int:
+    """Motions that may come nearer than a distance to a point of a ball, by group; the number of groups with any.
+
+    Row k of `groups` is a group, and where its motions end in `near`.
+    """
+    up, some, count = (0.0, 0.0, 1.0), 0, 0
+    for g in range(balls.shape[0]):
+        x, y, z = ball[0] - balls[g, 0], ball[1] - balls[g, 1], ball[2] - balls[g, 2]
+        if signed_distance(cutter, up, x, y, z) - balls[g, 3] - ball[3] >= most:
+            continue
+        before = count
+        for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
+            x, y, z = ball[0] - moves[k, 0], ball[1] - moves[k, 1], ball[2] - moves[k, 2]
+            if signed_distance(cutter, up, x, y, z) - moves[k, 6] - ball[3] < most:
+                near[count] = k
+                count += 1
+        if count > before:
+            groups[some, 0], groups[some, 1] = g, count
+            some += 1
+    return some
+
+
+@compiled
+def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
+    """Points and moves (middle, half way, half length) in the frame whose z is the axis.
+
+    Points that follow each other are looked at together, and first at the motion that was the nearest for the last one.
+    Distances are told between told[0], from which on nothing less is looked for, and told[1].
+    """
+    up = (0.0, 0.0, 1.0)
+    groups, near = np.empty((balls.shape[0], 2), dtype=np.int64), np.empty(moves.shape[0], dtype=np.int64)
+    ball, last = np.empty(4), 0
+    for start in range(0, points.shape[0], _TOGETHER):
+        end = min(start + _TOGETHER, points.shape[0])
+        _around(points, start, end, ball)
+        some = _near(cutter, balls, moves, ball, told[1], groups, near)
+        for i in range(start, end):
+            best = told[1]
+            if some > 0:
+                best = _least_of(cutter, moves[last], points[i], best)
+            for n in range(some):
+                if best <= told[0]:
+                    break
+                g = groups[n, 0]
+                x, y, z = points[i, 0] - balls[g, 0], points[i, 1] - balls[g, 1], points[i, 2] - balls[g, 2]
+                if signed_distance(cutter, up, x, y, z) - balls[g, 3] >= best:
+                    continue
+                for m in range(groups[n - 1, 1] if n > 0 else 0, groups[n, 1]):
+                    value = _least_of(cutter, moves[near[m]], points[i], best)
+                    if value < best:
+                        best, last = value, near[m]
+                        if best <= told[0]:
+                            break
+            out[i] = best
+
+
+@compiled
+def _around(points: Array, start: int, end: int, ball: Array) -> None:
+    """A ball around points of some rows: its middle and radius."""
+    for c in range(3):
+        ball[c] = 0.0
+        for i in range(start, end):
+            ball[c] += points[i, c] / (end - start)
+    ball[3] = 0.0
+    for i in range(start, end):
+        x, y, z = points[i, 0] - ball[0], points[i, 1] - ball[1], points[i, 2] - ball[2]
+        ball[3] = max(ball[3], np.sqrt(x * x + y * y + z * z))
+
+
+def distance_to_removed_numpy(tool: Tool, axis: Array, starts: Array, ends: Array, points: Array,
+                              most: float = np.inf) -> Array:
+    """The plain twin of `distance_to_removed`; parameters and result as there."""
+    piece = solid_pieces(tool.profile, {})[0]
+    middle, half = (starts + ends) / 2, (ends - starts) / 2
+    found = np.full(len(points), np.inf)
+
+    def _at(gap: Array) -> Array:
+        z = gap @ axis
+        rho = np.linalg.norm(gap - z[..., None] * axis, axis=-1)
+        return np.asarray(piece_distance_numpy(piece, rho, z)[0])
+
+    for row in range(0, len(points), _ROWS):
+        gap = points[row:row + _ROWS, None] - middle
+        low, high = np.full(gap.shape[:2], -1.0), np.ones(gap.shape[:2])
+        best = _at(gap)
+        for _ in range(_HALVINGS):
+            s, t = low + (high - low) / 3, high - (high - low) / 3
+            one, other = _at(gap - s[..., None] * half), _at(gap - t[..., None] * half)
+            best = np.minimum(best, np.minimum(one, other))
+            low, high = np.where(one < other, low, s), np.where(one < other, t, high)
+        found[row:row + _ROWS] = best.min(axis=1, initial=np.inf)
+    return np.asarray(np.minimum(found, most))
+
+
+def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: ArrayLike, points: ArrayLike,
+                        most: float = np.inf, least: float = -np.inf) -> Array:
+    """Signed distance of points to the union of a cutter's positions on straight motions.
+
+    Parameters
+    ----------
+    tool : Tool
+        Its cutter alone counts.
+    axis : (3,) array_like
+        From tip to spindle, the same on all motions.
+    starts, ends : (m, 3) array_like
+        Tips at both ends of each motion, mm.
+    points : (n, 3) array_like
+        mm
+    most, least : float
+        Distances greater than `most` are told as this, mm, and where one is not above `least` no lesser one is looked
+        for: both take less time.
+
+    Returns
+    -------
+    (n,) array
+        mm, negative where the cutter comes; inf where there is no motion. To `RESOLUTION`, from above.
+
+    Raises
+    ------
+    InvalidInput
+        When points are not rows of three finite numbers.
+
+    Notes
+    -----
+    The distance to a convex cutter is a convex function of its place, and changes by no more than the place does: a
+    motion whose middle is farther away than the best one by half its length is left out, on others the least is
+    found by thirds.  So are groups of motions that follow each other.
+
+    **Properties**: 1. it never rises with more motions; 2. it turns with tool and points.
+    """
+    a, b, p = (as_rows(rows, 3, name) for rows, name in ((starts, "starts"), (ends, "ends"), (points, "points")))
+    t = unit(as_rows(axis, 3, "axis")[0])
+    if not _compiled.available:
+        return distance_to_removed_numpy(tool, t, a, b, p, most)
+    sideways = unit(np.cross(t, np.eye(3)[int(np.argmin(np.abs(t)))]))
+    frame = np.array([sideways, np.cross(t, sideways), t]).T
+    half = (b - a) / 2
+    moves = np.ascontiguousarray(np.column_stack([(a + b) / 2 @ frame, half @ frame, np.linalg.norm(half, axis=1)]))
+    out = np.empty(len(p))
+    _least(cutter_numbers(tool, tool.radius / 2, 0.0), _balls(moves), moves, np.ascontiguousarray(p @ frame),
+           (float(least), float(most)), out)
+    return out
+
+
+def _balls(moves: Array) -> Array:
+    """Centres of groups of motions, and how far any place on them is from there, (g, 4)."""
+    first = np.arange(0, len(moves), _GROUP)
+    owner = np.arange(len(moves)) // _GROUP
+    count = np.diff(np.append(first, len(moves)))
+    balls = np.empty((len(first), 4))
+    balls[:, :3] = np.add.reduceat(moves[:, :3], first) / count[:, None] if len(first) else 0.0
+    far = np.linalg.norm(moves[:, :3] - balls[owner, :3], axis=1) + moves[:, 6]
+    balls[:, 3] = np.maximum.reduceat(far, first) if len(first) else 0.0
+    return balls

@@ -1,0 +1,209 @@
+"""All normals of a face at once: the cap that holds them, and the range of their angles to an axis, proven."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.normal_cells import NormalCells
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+_ROUNDS = 13
+#: Cells are not divided further once their normals are known to this angle, rad.
+_FINE = 1e-4
+#: More cells than this are not divided further: at a pole, where the normal has no bound, they would only multiply.
+_MOST = 100_000
+
+
+class Cap(NamedTuple):
+    """The smallest cap of the unit sphere around unit vectors: centre (3,), radius in rad, and the vectors on its rim.
+
+    A radius of pi / 2 with a centre of zeros means that no open hemisphere holds them.
+    """
+
+    centre: Array
+    radius: float
+    rim: NDArray[np.intp]
+
+
+def smallest_cap(vectors: Array) -> Cap:
+    """The smallest cap around unit vectors.
+
+    Parameters
+    ----------
+    vectors : (n, 3) array
+
+    Notes
+    -----
+    It is where their smallest enclosing ball meets the sphere; the ball's centre is 0 when no hemisphere holds them.
+
+    **Properties**: 1. every vector is inside, to 1e-9; 2. at least two are on the rim unless all are equal.
+    """
+    support = np.array([0], dtype=np.intp)
+    centre, square = vectors[0], 0.0
+    for _ in range(200):
+        away = np.sum((vectors - centre) ** 2, axis=1)
+        far = int(np.argmax(away))
+        if away[far] <= square * (1 + 1e-12) + 1e-18:
+            break
+        support, centre, square = _ball(vectors, np.append(support, far))
+    size = float(np.linalg.norm(centre))
+    if size <= 1e-7:
+        return Cap(np.zeros(3), pi / 2, support)
+    middle = centre / size
+    return Cap(middle, float(angle_between(vectors[support], middle).max()), support)
+
+
+def _ball(vectors: Array, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array, float]:
+    """Smallest ball around at most five points: the smallest circumscribed ball of a subset that holds them all."""
+    best: tuple[NDArray[np.intp], Array, float] = (rows, np.zeros(3), np.inf)
+    for count in range(1, min(len(rows), 4) + 1):
+        for chosen in combinations(range(len(rows)), count):
+            some = vectors[rows[list(chosen)]]
+            edges = some[1:] - some[0]
+            offset = np.linalg.lstsq(2 * edges, np.sum(edges**2, axis=1), rcond=None)[0] if count > 1 else np.zeros(3)
+            square = float(offset @ offset)
+            inside = np.sum((vectors[rows] - some[0] - offset) ** 2, axis=1) <= square * (1 + 1e-10) + 1e-18
+            if square < best[2] and inside.all():
+                best = rows[list(chosen)], some[0] + offset, square
+    return best
+
+
+class Range(NamedTuple):
+    """Proven range of a quantity over a face: it lies within low to high, and where its extremes were met.
+
+    low, high : float;  least, greatest : (2,) array, parameters (u, v).
+    """
+
+    low: float
+    high: float
+    least: Array
+    greatest: Array
+
+
+@dataclass(frozen=True, eq=False)
+class NormalField:
+    """The normals of a face.
+
+    Attributes
+    ----------
+    face : Face
+    """
+
+    face: Face
+
+    @cached_property
+    def uv(self) -> Array:
+        """Parameters of the samples: an even grid inside, and points along every loop, (n, 2)."""
+        loops = [_along(loop, 96) for loop in self.face.outline]
+        return np.concatenate([self.face.grid(24, 24), *loops])
+
+    @cached_property
+    def kept(self) -> Array:
+        """Those of `uv` at which there is a normal, (n, 2); InvalidInput where there is none."""
+        found = np.asarray(self.uv[np.linalg.norm(self.face.normal(self.uv), axis=1) > 0.5])
+        if len(found) == 0:
+            raise InvalidInput(f"face {self.face.label} has no area: its normal is defined nowhere; leave it out")
+        return found
+
+    @cached_property
+    def samples(self) -> Array:
+        """Unit normals at `kept`, (n, 3)."""
+        return self.face.normal(self.kept)
+
+    @cached_property
+    def cap(self) -> Cap:
+        """The smallest cap around the samples."""
+        return smallest_cap(self.samples)
+
+    @cached_property
+    def mean(self) -> Array:
+        """Unit mean normal over the area, (3,); the cap's centre where the mean vanishes."""
+        d = self.face.evaluate(self.face.grid(48, 48))
+        total = (-1.0 if self.face.flip else 1.0) * np.cross(d.su, d.sv).sum(axis=0)
+        size = float(np.linalg.norm(total))
+        return total / size if size > 0 else self.cap.centre
+
+    def angles(self, axes: ArrayLike) -> tuple[Array, Array]:
+        """Least and greatest angle of each axis to the sampled normals, (n,) rad each: no bound.
+
+        Parameters
+        ----------
+        axes : (n, 3) array_like
+            Unit vectors.
+        """
+        cosine = np.clip(np.asarray(axes, dtype=float) @ self.samples.T, -1.0, 1.0)
+        return np.arccos(cosine.max(axis=1)), np.arccos(cosine.min(axis=1))
+
+    @cached_property
+    def _cells(self) -> NormalCells:
+        return NormalCells(self.face)
+
+    def range_of_angles(self, axis: ArrayLike, least: float, greatest: float) -> Range:
+        """Range of the angle between an axis and all normals of the face, proven between the samples too.
+
+        Cells are halved until both limits are decided, or the normals in the cells in question are known to 1e-4 rad,
+        or (around a pole) too many cells are in question; the range is wider then.
+
+        Parameters
+        ----------
+        axis : (3,) array_like
+            Unit vector.
+        least, greatest : float
+            Limits that the caller wants decided, rad.
+
+        Returns
+        -------
+        Range
+            All angles lie within low to high; rad.
+
+        Notes
+        -----
+        **Properties**: 1. no normal of the face has an angle outside, but within 0.01 mm of a pole, where the normals
+        in the middles of cells stand for all; 2. low and high are met to 1e-4 rad by a normal of the face where they
+        decide against the limits.
+        """
+        t = np.asarray(axis, dtype=float)
+        kept, cells = self._cells.roots
+        low, high = np.inf, -np.inf
+        seen = [np.inf, -np.inf]
+        where = [cells.rect[0, :2], cells.rect[0, :2]]
+        for rounds in range(_ROUNDS + 1):
+            angle, spread = angle_between(cells.normal, t), cells.spread
+            own = np.flatnonzero(cells.inside)
+            for k, best in enumerate((np.argmin, np.argmax)):
+                if len(own):
+                    i = own[best(angle[own])]
+                    if (angle[i] - seen[k]) * (1 if k else -1) > 0:
+                        seen[k], where[k] = float(angle[i]), cells.middle[i]
+            doubtful = ((angle - spread < min(least, seen[0])) & (seen[0] >= least)) | (
+                (angle + spread > max(greatest, seen[1])) & (seen[1] <= greatest))
+            doubtful &= (spread > _FINE) & (rounds < _ROUNDS)
+            doubtful &= np.count_nonzero(doubtful) <= _MOST
+            low = min(low, float((angle - spread)[~doubtful].min(initial=np.inf)))
+            high = max(high, float((angle + spread)[~doubtful].max(initial=-np.inf)))
+            if not doubtful.any():
+                break
+            kept, cells = self._cells.below(None if kept is None else kept[doubtful], cells.chosen(doubtful))
+            if not len(cells.rect):
+                break
+        return Range(max(low, 0.0), min(high, pi), where[0], where[1])
+
+
+def _along(loop: Array, count: int) -> Array:
+    """Points along a closed loop: its corners, and between them as many as its share of the outline asks for."""
+    ends = np.roll(loop, -1, axis=0)
+    size = np.ptp(loop, axis=0)
+    length = np.linalg.norm((ends - loop) / np.where(size > 0, size, 1.0), axis=1)
+    parts = np.maximum(np.ceil(count * length / max(length.sum(), 1e-300)).astype(int), 1)
+    edge = np.repeat(np.arange(len(loop)), parts)
+    share = np.concatenate([np.arange(k) / k for k in parts])
+    return np.asarray(loop[edge] + share[:, None] * (ends[edge] - loop[edge]))

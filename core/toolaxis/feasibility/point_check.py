@@ -1,0 +1,60 @@
+"""Points of the skin inside the cutter: gouges found for certain, at next to no cost; finding none proves nothing."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.strip.swept_cutter import signed_distance
+from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric.compiled import compiled
+from toolaxis.tools.assembly import Tool
+from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
+
+Array = NDArray[np.float64]
+
+
+@compiled
+def _deepest(cutter: Array, axis: Array, tips: Array, points: Array) -> float:
+    """Least signed distance of points to the cutter at any of the tips, mm."""
+    reach = cutter[4] ** 2 + (cutter[0] + cutter[1] + cutter[4] * cutter[3] / cutter[2]) ** 2
+    best = np.inf
+    for k in range(tips.shape[0]):
+        for i in range(points.shape[0]):
+            x, y, z = points[i, 0] - tips[k, 0], points[i, 1] - tips[k, 1], points[i, 2] - tips[k, 2]
+            if x * x + y * y + z * z < reach:
+                best = min(best, signed_distance(cutter, axis, x, y, z))
+    return best
+
+
+def deepest_numpy(tool: Tool, axis: Array, tips: Array, points: Array) -> float:
+    """The plain twin of `deepest`; parameters and result as there."""
+    piece = solid_pieces(tool.profile, {})[0]
+    apart = points[None] - tips[:, None]
+    z = apart @ axis
+    rho = np.linalg.norm(apart - z[..., None] * axis, axis=-1)
+    least = float(piece_distance_numpy(piece, rho, z)[0].min())
+    return max(-least, 0.0)
+
+
+def deepest(tool: Tool, axis: Array, tips: Array, points: Array) -> float:
+    """Greatest depth at which any of the points lies inside the cutter at any of the tips.
+
+    Parameters
+    ----------
+    tool : Tool
+    axis : (3,) array
+        Unit vector.
+    tips : (n, 3) array
+        mm
+    points : (m, 3) array
+        mm
+
+    Returns
+    -------
+    float, mm; 0 where no point is inside.
+    """
+    if not _compiled.available:
+        return deepest_numpy(tool, axis, tips, points)
+    numbers = np.array([tool.flat_radius, tool.corner_radius, np.cos(tool.half_angle), np.sin(tool.half_angle),
+                        tool.flute_length, tool.corner_radius])
+    found = _deepest(numbers, np.ascontiguousarray(axis), np.ascontiguousarray(tips), np.ascontiguousarray(points))
+    return float(max(-found, 0.0))

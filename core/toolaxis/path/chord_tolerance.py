@@ -1,0 +1,123 @@
+"""Points along curves, close enough that no chord of contacts, tips or moving axes leaves them by the tolerance."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.placement import tips
+from toolaxis.numeric.vectors import unit
+from toolaxis.path.parametrization import Chart, Cut, tip_points
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+_FIRST_GAPS = 4
+_ROUNDS = 12
+_PROBES = np.array([0.25, 0.5, 0.75])
+
+
+def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, Array]:
+    """Values of the along parameter for each piece of a pass.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    pieces : (m, 3) array
+        along0, along1, step of each piece.
+    chord : float
+        Chord tolerance, mm, kept by the polylines through contacts and tips, and where the axis moves through points
+        on it as far from the tip as the cutter is wide.
+
+    Returns
+    -------
+    piece : (n,) array of int
+    along : (n,) array
+        Sorted by piece, then increasing; both ends included.
+    """
+    share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
+    ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
+    owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
+    low, high = ends[:, :-1].ravel(), ends[:, 1:].ravel()
+    done_owner, done_low = [np.arange(len(pieces))], [pieces[:, 1]]
+    for _ in range(_ROUNDS):
+        if not len(owner):
+            break
+        parts = np.ceil(1.05 * np.sqrt(_deviations(chart, cut, low, high, pieces[owner, 2]) / chord))
+        fine = parts <= 1.05
+        done_owner.append(owner[fine])
+        done_low.append(low[fine])
+        owner, low, high = _divide(owner[~fine], low[~fine], high[~fine], np.clip(parts[~fine], 2, 64).astype(int))
+    done_owner.append(owner)
+    done_low.append(low)
+    piece, along = np.concatenate(done_owner), np.concatenate(done_low)
+    order = np.lexsort((along, piece))
+    return piece[order], along[order]
+
+
+def rises(chart: Chart, cut: Cut, steps: Array, piece: Index, along: Array) -> Array:
+    """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
+
+    Between two points on a hollow stretch a straight motion stays above the pass by what `follow` allows, and would
+    leave so much more than the scallop height.  Points there are set deeper by as much: what the motion between them
+    stays above the pass then, it does not stay above the surface.  So all of the chord tolerance goes into the
+    machining tolerance, at the points of hollow stretches and between those of others, and none into the scallop.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    steps : (n,) array
+        Step of the pass that each point belongs to.
+    piece : (n,) array of int
+        Its piece.
+    along : (n,) array
+        Sorted by piece, then increasing, see `follow`.
+    """
+    deeper = np.zeros(len(along))
+    first = np.flatnonzero(piece[1:] == piece[:-1])
+    if not len(first):
+        return deeper
+    places = np.concatenate([[0.0], _PROBES, [1.0]])
+    rows = along[first, None] + (along[first + 1] - along[first])[:, None] * places
+    contact, tip, normal = tip_points(chart, cut, rows.ravel(), np.repeat(steps[first], len(places)))
+    axes = cut.axes(chart.face, chart.uv(rows.ravel(), np.repeat(steps[first], len(places))))
+    shape = (*rows.shape, 3)
+    axes = np.broadcast_to(axes, contact.shape).reshape(shape)
+    point, up = (part.reshape(shape)[:, 1:-1].reshape(-1, 3) for part in (contact, normal))
+    between, leaning = (_between(part.reshape(shape)).reshape(-1, 3) for part in (tip, axes))
+    touching = tips(point, up, unit(leaning), cut.tool, cut.allowance)
+    above = ((between - touching) * up).sum(axis=1).reshape(len(first), -1).max(axis=1)
+    for end in (first, first + 1):
+        np.maximum.at(deeper, end, above)
+    return deeper
+
+
+def _between(rows: Array) -> Array:
+    """Places of straight motions from the first to the last of (m, k, 3) rows, (m, k - 2, 3)."""
+    return np.asarray(rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * _PROBES[:, None])
+
+
+def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:
+    source = np.repeat(np.arange(len(owner)), parts)
+    place = np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)
+    gap = ((high - low) / parts)[source]
+    return owner[source], low[source] + place * gap, low[source] + (place + 1) * gap
+
+
+def _deviations(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
+    """Greatest distance of what is followed from the chords at three inner places of each gap, mm."""
+    places = np.concatenate([[0.0], _PROBES, [1.0]])
+    along = (low[:, None] + (high - low)[:, None] * places).ravel()
+    steps = np.repeat(step, len(places))
+    contact, tip, _ = tip_points(chart, cut, along, steps)
+    axes = cut.axes(chart.face, chart.uv(along, steps))
+    worst = np.zeros(len(low))
+    for curve in (contact, tip) if axes.ndim == 1 else (contact, tip, tip + 2 * cut.tool.radius * axes):
+        nodes = curve.reshape(len(low), len(places), 3)
+        start, line = nodes[:, :1], nodes[:, -1:] - nodes[:, :1]
+        square = np.maximum((line**2).sum(axis=2), np.finfo(float).tiny)
+        inner = nodes[:, 1:-1] - start
+        share = np.clip((inner * line).sum(axis=2) / square, 0.0, 1.0)
+        away = np.linalg.norm(inner - share[..., None] * line, axis=2)
+        worst = np.maximum(worst, away.max(axis=1))
+    return worst

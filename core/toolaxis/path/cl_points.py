@@ -1,0 +1,94 @@
+"""From places of passes to a tool path: order, direction, points and links."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.path.chord_tolerance import follow, rises
+from toolaxis.path.links import Linking, Stroke, link
+from toolaxis.path.parametrization import Chart, Cut, tip_points
+from toolaxis.path.pass_layout import Layout
+
+Array = NDArray[np.float64]
+
+DIRECTIONS = ("zigzag", "climb", "conventional")
+
+
+def climbing(chart: Chart, cut: Cut) -> int:
+    """Sense of the along parameter, 1 or -1, in which a pass climbs.
+
+    A cutter that turns clockwise as seen from the spindle (M3) climbs where the material still to be cut lies on its
+    right, f x T.  Passes proceed in increasing step parameter, so that is where the material lies.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    """
+    a0, a1, s0, s1 = chart.bounds
+    a, s, da, ds = (a0 + a1) / 2, (s0 + s1) / 2, (a1 - a0) * 1e-4, (s1 - s0) * 1e-4
+    uv = chart.uv(np.array([a - da, a + da, a, a]), np.array([s, s, s - ds, s + ds]))
+    p = chart.face.evaluate(uv).point
+    right = np.cross(p[1] - p[0], cut.axis)
+    return 1 if float(right @ (p[3] - p[2])) >= 0 else -1
+
+
+def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLike | None = None,
+          linking: Linking | None = None) -> ToolPath:
+    """Trace passes as a tool path.
+
+    Parameters
+    ----------
+    layout : Layout
+    chord : float
+        How far straight motions may leave passes, mm.
+    direction : str
+        "zigzag" (every other pass back), "climb" or "conventional" (all one way, see `climbing`).
+    box : (2, 3) array_like, optional
+        Corners of the box that links cross above; the face's own unless given.
+    linking : Linking, optional
+        How strokes are joined; by default 5 mm above the box.
+
+    Returns
+    -------
+    ToolPath
+
+    Raises
+    ------
+    InvalidInput
+        When the direction is none of the three.
+    """
+    if direction not in DIRECTIONS:
+        raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
+    chart, cut = layout.chart, layout.cut
+    piece, along = follow(chart, cut, layout.pieces, chord)
+    steps = layout.pieces[piece, 2]
+    contact, tip, normal = tip_points(chart, cut, along, steps)
+    tip = tip - rises(chart, cut, steps, piece, along)[:, None] * normal
+    bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
+    strokes = [Stroke(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
+    return link(_ordered(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))
+
+
+def _ordered(strokes: list[Stroke], layout: Layout, direction: str) -> list[list[Stroke]]:
+    climb = climbing(layout.chart, layout.cut)
+    passes: list[list[Stroke]] = []
+    for i in np.unique(layout.owner):
+        members = [strokes[j] for j in np.flatnonzero(layout.owner == i)]
+        sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
+        passes.append(members if sense > 0 else [_back(s) for s in reversed(members)])
+    return passes
+
+
+def _back(stroke: Stroke) -> Stroke:
+    return Stroke(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1])
+
+
+def _crossing(layout: Layout, box: ArrayLike | None, above: float = 5.0) -> float:
+    """Height along the axis at which the tip is above every corner of the box."""
+    low, high = np.asarray(layout.chart.face.box if box is None else box, dtype=float)
+    axis = layout.cut.axis
+    return float(np.maximum(low * axis, high * axis).sum()) + above

@@ -1,0 +1,143 @@
+"""Passes on which the axis moves: a constant lead towards the growing parameter, no tilt (Sturz milling).
+
+The axis is that of the contact, so it does not depend on the sense in which a pass is cut: on a zigzag every other
+pass is dragged.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.frame import Frame, axis_from_lead_tilt, contact_frame, frame_from_normal
+from toolaxis.contact.placement import tips
+from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
+from toolaxis.contact.strip.swept_volume_moving_axis import least_distance_to_positions
+from toolaxis.contact.strip.width import step_widths
+from toolaxis.path.parametrization import Cut, IsoChart
+from toolaxis.shape.differential import normals
+from toolaxis.shape.face import Face
+from toolaxis.shape.surface import Derivatives
+
+Array = NDArray[np.float64]
+
+#: Positions of the cutter before and behind a contact, and their greatest distance from it in radii of the tool.
+_POSITIONS, _WINDOW = 16, 1.6
+#: Places that are tried at once for the end of a strip, how often the gap between them is narrowed, and the shares of
+#: the half width with a standing axis between which it is looked for first.
+_PLACES, _ROUNDS, _NEAR = 6, 5, (0.6, 1.3)
+
+
+@dataclass(frozen=True, eq=False)
+class LeadCut(Cut):
+    """What cuts with a constant lead.
+
+    Attributes
+    ----------
+    tool, scallop, allowance
+        As for `Cut`.
+    axis : (3,) array
+        About the mean of the axes: what links and the sense of climbing go by.
+    lead : float
+        From the normal towards the growing parameter of the passes, rad.
+    feed : str
+        "u" or "v": that parameter.
+    """
+
+    lead: float = 0.0
+    feed: str = "u"
+
+    def axes(self, face: Face, uv: Array) -> Array:
+        """Unit axes at contacts, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        """
+        return axis_from_lead_tilt(contact_frame(face, uv, self.feed), self.lead, 0.0)
+
+    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
+        """The same at contacts, beyond the face too, whose frames are known, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        frame : Frame
+        """
+        return axis_from_lead_tilt(frame, self.lead, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class LeadChart(IsoChart):
+    """A face in its own parameters, for passes with a constant lead."""
+
+    def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Half widths (n, 2) in the step parameter: what the cutter leaves on its way past, its axis moving.
+
+        Parameters
+        ----------
+        cut : LeadCut
+        along, step : (n,) array
+        """
+        assert isinstance(cut, LeadCut)
+        step = np.clip(step, *self._poles)
+        uv = self.uv(along, step)
+        frozen = step_widths(self.face, cut.tool, uv, cut.axes(self.face, uv), cut.scallop, self.feed, cut.allowance)
+        positions = self._positions(cut, along, step)
+        numbers = cutter_numbers(cut.tool, cut.scallop, cut.allowance)
+        cap = CAP * cut.tool.radius / np.maximum(self._pace(along, step), 1e-9)
+        out = np.empty_like(frozen)
+        for side in (0, 1):
+            sense = 2 * side - 1
+            low, high = (np.minimum(share * frozen[:, side], cap) for share in _NEAR)
+            early = self._off(cut, numbers, (along, (step + sense * low)[None]), positions)[:, 0] > 0
+            low, high = np.where(early, 0.0, low), np.where(early, low, high)
+            for _ in range(_ROUNDS):
+                share = np.linspace(0.0, 1.0, _PLACES + 1)[1:]
+                places = low[:, None] + (high - low)[:, None] * share
+                free = self._off(cut, numbers, (along, step + sense * places.T), positions) > 0
+                first = np.where(free.any(axis=1), np.argmax(free, axis=1), _PLACES - 1)
+                gap = (high - low) / _PLACES
+                low, high = low + gap * first, low + gap * (first + 1)
+            out[:, side] = np.where(frozen[:, side] > 0, low, 0.0)
+        return out
+
+    def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
+        """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
+        across = "v" if self.feed == "u" else "u"
+        uv = self.uv(along, step)
+        return np.asarray(step_widths(self.face, cut.tool, uv, cut.axes(self.face, uv), cut.scallop, across,
+                                      cut.allowance))
+
+    def _pace(self, along: Array, step: Array) -> Array:
+        """mm per unit of the step parameter, (n,)."""
+        d = self.face.evaluate(self.uv(along, step))
+        return np.asarray(np.linalg.norm(d.sv if self.feed == "u" else d.su, axis=1))
+
+    def _positions(self, cut: "LeadCut", along: Array, step: Array) -> tuple[Array, Array]:
+        """Tips and axes along the pass around each contact, (n, k, 3) each."""
+        d = self.face.evaluate(self.uv(along, step))
+        speed = np.linalg.norm(d.su if self.feed == "u" else d.sv, axis=1)
+        reach = _WINDOW * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9)
+        t = np.linspace(-1.0, 1.0, 2 * _POSITIONS + 1)
+        uv = self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t)))
+        near, normal = self._seen(uv)
+        axes = cut.axes_near(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
+        shape = (len(along), len(t), 3)
+        return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
+
+    def _off(self, cut: Cut, numbers: Array, at: tuple[Array, Array], positions: tuple[Array, Array]) -> Array:
+        """Distance to the passing cutter at scallop height over places (m, n) beside each contact, (n, m) mm."""
+        along, steps = at
+        uv = self.uv(np.repeat(along, len(steps)), steps.T.ravel())
+        d, normal = self._seen(uv)
+        points = d.point + (cut.scallop + cut.allowance) * normal
+        return least_distance_to_positions(numbers, points.reshape(len(along), len(steps), 3), *positions)
+
+    def _seen(self, uv: Array) -> tuple[Derivatives, Array]:
+        """Derivatives and normals at parameters."""
+        (u0, u1), (v0, v1) = self.face.surface.domain
+        d = self.face.evaluate(uv)
+        return d, normals(d, self.face.flip, np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - uv)

@@ -1,0 +1,273 @@
+"""Zones of a sub-surface that its passes leave higher than the scallop limit, as closed loops with their area."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.strip.swept_volume import distance_to_removed
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.clipping import grouped
+from toolaxis.numeric.contours import contours
+from toolaxis.numeric.overlay import divided, without
+from toolaxis.path.rest_grid import sampled
+from toolaxis.plan.zone import Zone
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+T = TypeVar("T")
+
+#: Heights count as left from this multiple of the scallop limit on.
+FACTOR = 1.02
+#: Zones that do not come to this multiple of the limit, or are smaller than this share of the cutter's radius squared,
+#: are specks: no work for anybody.
+DEEP, _SPECK = 2.0, 1e-3
+#: Share of a face, clean-up zones aside, that may stay high: specks and undercut zones together. The judge overlooks
+#: twice as much of the same area: the other half is for what lies between the nodes of the grid here, and between the
+#: rays there.
+OVERLOOKED = 5e-4
+#: Size of the cells that outline zones, as shares of the cutter's radius, of the narrowest strip that it may leave, and
+#: of a square as large as the face.
+_OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
+_TRIES = 5
+#: Distances are told up to this, mm: only their signs are asked for.
+_FAR = 1e-3
+#: How much farther than its corners and the middles of its sides a cell may reach from its middle.
+_BULGE = 1.2
+#: Halvings of the edges of fine cells that find the border of a zone: to some nanometres.
+_HALVINGS = 14
+#: Nodes at which it is looked first whether a zone is deep.
+_FIRST = 500
+
+
+def motions_of(path: ToolPath) -> tuple[Array, Array]:
+    """Tips at the start and the end of every cutting motion, (m, 3) each.
+
+    Parameters
+    ----------
+    path : ToolPath
+    """
+    at = np.flatnonzero(path.kind[1:] == Motion.CUT)
+    return path.cl[at], path.cl[at + 1]
+
+
+class Excess:
+    """By how much points at a height above a face stay outside of what the passes remove.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    path : ToolPath
+        With one fixed axis.
+    height : float
+        Above the face, allowance included, mm.
+    """
+
+    def __init__(self, face: Face, tool: Tool, path: ToolPath, height: float) -> None:
+        self._face, self._tool, self._axis, self._height = face, tool, path.axis[0], height
+        self._motions = motions_of(path)
+
+    def __call__(self, uv: Array) -> Array:
+        """Numbers (n,) at parameters (n, 2), beyond the face too: above zero where more than that height is left.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        """
+        return self._distance(self._raised(uv), _FAR)
+
+    def whole(self, middle: Array, around: Array) -> Bools:
+        """Which cells of the face are left all over: their middles are farther from what is removed than they reach.
+
+        Parameters
+        ----------
+        middle : (k, 2) array
+        around : (k, 8, 2) array
+            Corners and middles of the sides of each.
+        """
+        at, ends = self._raised(middle), self._raised(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
+        reach = _BULGE * np.linalg.norm(ends - at[:, None], axis=2).max(axis=1)
+        return np.asarray(self._distance(at, float(reach.max(initial=0.0))) >= reach)
+
+    def _raised(self, uv: Array) -> Array:
+        return np.asarray(self._face.evaluate(uv).point + self._height * self._face.normal(uv))
+
+    def _distance(self, points: Array, most: float) -> Array:
+        return distance_to_removed(self._tool, self._axis, *self._motions, points, most, 0.0)
+
+
+def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
+              walls: Callable[[Array], Bools] | None = None, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
+    """Zones that the passes leave higher than the scallop limit.
+
+    Parameters
+    ----------
+    face : Face
+        The sub-surface.
+    tool : Tool
+    path : ToolPath
+        With one fixed axis; its cutting motions count.
+    scallop : float
+        Limit of the scallop height, mm.
+    allowance : float
+        Stock left on the face, mm.
+    walls : callable, optional
+        Takes (n, 2) parameters and tells where the tool may not stand; all zones lie at walls unless given.
+    progress : Progress
+
+    Returns
+    -------
+    tuple of Zone
+        The largest first. A zone is what stays higher than `FACTOR` times the limit; small and shallow ones are left
+        out where they are less than `may_stay` together with those that do not lie at walls.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+
+    Notes
+    -----
+    The border of a zone is the line on which the surface, raised by that height, meets the swept cutter: exact at the
+    vertices, straight between them, which are a fourteenth of the cutter's radius apart or less. Zones inside the
+    sub-surface that lie between the nodes of a coarse grid may be missed; at its border it is looked at closely
+    everywhere, and where something is found, as far as it goes.
+
+    **Properties**: 1. zones and machined area are the sub-surface, without overlap.
+    """
+    if not len(motions_of(path)[0]):
+        return (Zone(face.outline, face.area),)
+    progress.check()
+    high = Excess(face, tool, path, allowance + FACTOR * scallop)
+    deep = Excess(face, tool, path, allowance + DEEP * scallop)
+    lines, values = sampled(face, high, _size(face, tool, scallop), high.whole)
+    nodes = _above(lines, values)
+    if not len(nodes):
+        return ()
+    progress.check()
+    found = contours(values, lines, high, _HALVINGS)
+    progress.check()
+    zones = [face.trimmed(loops) for loops in grouped(split(face.outline, found)[0])]
+    small, large = _parted([(zone, zone.area) for zone in zones],
+                           lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
+    told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
+    if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
+        told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
+    return tuple(sorted(told, key=lambda zone: -zone.area))
+
+
+def undercut(zones: Sequence[Zone]) -> float:
+    """Area of the zones that do not lie at walls, mm^2.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+    """
+    return sum(zone.area for zone in zones if not zone.at_wall)
+
+
+def may_stay(zones: Sequence[Zone], area: float) -> float:
+    """How much of a face may stay high outside of the zones at walls, mm^2.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+    area : float
+        Of the face, mm^2.
+    """
+    return OVERLOOKED * max(0.0, area - sum(zone.area for zone in zones if zone.at_wall))
+
+
+def _parted(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T], list[T]]:
+    """Those that pass a test, and the others."""
+    passed = [test(one) for one in some]
+    return ([one for one, good in zip(some, passed, strict=True) if good],
+            [one for one, good in zip(some, passed, strict=True) if not good])
+
+
+def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """What of an outline lies inside loops, and the rest; loops are moved by rounding where corners coincide.
+
+    Parameters
+    ----------
+    outline, loops : tuple of (m, 2) arrays
+    """
+    size = np.ptp(np.concatenate(outline), axis=0)
+    for attempt in range(_TRIES):
+        shift = attempt * 3e-10 * size * np.array([1.0, 0.61803398875])
+        try:
+            return divided(outline, tuple(loop + shift for loop in loops))
+        except InvalidInput:
+            continue
+    raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own")
+
+
+def also_machined(face: Face, zone: Zone, others: Sequence[Excess]) -> Zone:
+    """A zone with the area of it that other operations machine.
+
+    Parameters
+    ----------
+    face : Face
+    zone : Zone
+    others : sequence of Excess
+        One an operation.
+    """
+    piece = face.trimmed(zone.loops)
+    uv = piece.grid(48, 48)
+    if not others or not len(uv):
+        return zone
+    d = face.evaluate(uv)
+    weight = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    free = np.min([other(uv) for other in others], axis=0) <= 0
+    return replace(zone, elsewhere=float(zone.area * weight[free].sum() / max(weight.sum(), np.finfo(float).tiny)))
+
+
+def machined(face: Face, zones: tuple[Zone, ...]) -> tuple[Face, ...]:
+    """A sub-surface without its zones, as pieces.
+
+    Parameters
+    ----------
+    face : Face
+    zones : tuple of Zone
+        Of this very sub-surface.
+    """
+    loops: tuple[Array, ...] = face.outline
+    for zone in zones:
+        loops = without(loops, zone.loops)
+    return tuple(face.trimmed(one) for one in grouped(loops))
+
+
+def _size(face: Face, tool: Tool, scallop: float) -> float:
+    """Size of the cells that outline zones, mm: passes leave pieces as narrow as the ends of their strips."""
+    strip = 2 * np.sqrt(2 * (tool.corner_radius or tool.radius) * scallop)
+    return float(min(_OF_RADIUS * tool.radius, _OF_STRIP * strip, _OF_FACE * np.sqrt(face.area)))
+
+
+def _above(lines: tuple[Array, Array], values: Array) -> Array:
+    """Nodes of the grid that are above zero, (n, 2)."""
+    at = np.argwhere(values > 0)
+    return np.column_stack([lines[0][at[:, 0]], lines[1][at[:, 1]]])
+
+
+def _deep(zone: Face, deep: Excess, nodes: Array) -> bool:
+    """Whether a zone comes to `DEEP` times the limit at its border or at nodes, (n, 2), of the grid."""
+    u0, u1, v0, v1 = zone.bounds
+    near = nodes[(nodes[:, 0] >= u0) & (nodes[:, 0] <= u1) & (nodes[:, 1] >= v0) & (nodes[:, 1] <= v1)]
+    first = np.concatenate([near[::max(1, len(near) // _FIRST)], *zone.trims])
+    if (deep(first[zone.contains(first)]) > 0).any():
+        return True
+    return bool((deep(np.concatenate([near[zone.contains(near)], *zone.trims])) > 0).any())
+
+
+def _at_wall(zone: Face, walls: Callable[[Array], Bools] | None) -> bool:
+    if walls is None:
+        return True
+    uv = zone.grid(12, 12)
+    return bool(walls(np.concatenate([uv, *(loop[::5] for loop in zone.trims)])).any())

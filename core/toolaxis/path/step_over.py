@@ -1,0 +1,318 @@
+"""How far the next pass may lie: strips laid one against the other from border to border.
+
+The front is, at every value of the along parameter, the first place on the face that no strip has reached yet.  The
+next pass goes as far as its strip still reaches back to the front everywhere; the last one is drawn back until its
+strip ends on the border.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.path.parametrization import Chart, Cut, columns, extents
+from toolaxis.path.trim_intervals import first_from, last_of, table
+from toolaxis.progress import NO_PROGRESS, Progress
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Numbers of gaps between measured lines that are tried in turn.
+_GAPS = (24, 48, 96, 192)
+#: All lines together are about this many, or as many as lie `PITCH` apart where that makes fewer.
+_FINE = 1024
+#: In radii of the cutter: what is smaller along or across passes changes nothing of where they go.
+PITCH = 0.02
+#: Relative error of interpolated half widths that is accepted at the narrowest places of a pass, and elsewhere.
+_INTERPOLATION, _ELSEWHERE = 5e-4, 3e-3
+_NARROW = 1.1
+#: Strips overlap by up to this share of the narrowest one, half as much on average.
+_ACCURACY = 4e-4
+_MOST_PASSES = 20_000
+#: Places that are tried for the only pass of a face.
+_PLACES = 65
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines across the passes: few on which strips are measured, many between on which they are laid.
+
+    Attributes
+    ----------
+    measured : (n,) array
+        Values of the along parameter at which half widths are computed.
+    along : (m,) array
+        All lines; the measured ones are among them.
+    index, weight : (m, 4) array
+        Measured lines, and their weights, that interpolate to each line by a cubic.
+    """
+
+    measured: Array
+    along: Array
+    index: NDArray[np.intp]
+    weight: Array
+
+    def spread(self, values: Array) -> Array:
+        """Values (n, ...) on the measured lines, interpolated to all lines (m, ...)."""
+        return np.asarray(np.einsum("mk,mk...->m...", self.weight, values[self.index]))
+
+
+def lines(chart: Chart, cut: Cut) -> Lines:
+    """Lines across the passes of a chart: as many measured ones as the half widths need to be interpolated.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    """
+    _, _, s0, s1 = chart.bounds
+    count = int(np.clip(np.ceil(extents(chart)[0] / (PITCH * cut.tool.radius)), 1, _FINE))
+    fine = _grid(chart, _GAPS[-1], count)
+    steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
+    along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
+    exact = chart.half_widths(cut, along, step).reshape(len(fine.measured), len(steps), 2)
+    found = table(columns(chart, fine.measured), len(fine.measured))[:, None]
+    counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
+    width = np.where(counts, exact.sum(axis=2), np.inf)
+    allowed = np.where(width <= _NARROW * width.min(axis=0), _INTERPOLATION, _ELSEWHERE)[..., None] * exact
+    for gaps in _GAPS[:-1]:
+        coarse = _grid(chart, gaps, count)
+        where = np.searchsorted(fine.measured, coarse.measured)
+        if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
+            continue
+        guess = _interpolated(coarse.measured, exact[where], fine.measured)
+        if (np.abs(guess - exact) <= allowed)[counts].all():
+            return coarse
+    return fine
+
+
+def _grid(chart: Chart, gaps: int, count: int) -> Lines:
+    """About so many even gaps, with the surface's breaks among the measured lines, and about so many lines in all."""
+    a0, a1, _, _ = chart.bounds
+    inner = chart.breaks[0]
+    even = np.linspace(a0, a1, gaps + 1)
+    apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf) > 1e-9 * (a1 - a0)
+    measured = np.sort(np.concatenate([even[apart], inner]))
+    between = max(count // len(measured), 2)
+    share = np.arange(between) / between
+    along = np.append((measured[:-1, None] + np.diff(measured)[:, None] * share).ravel(), measured[-1])
+    index, weight = _stencil(measured, along)
+    return Lines(measured, along, index, weight)
+
+
+def _stencil(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
+    """Four nodes around each place, and the weights of the cubic through them."""
+    gap = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, len(nodes) - 2)
+    index = np.clip(gap - 1, 0, len(nodes) - 4)[:, None] + np.arange(4)
+    four = nodes[index]
+    weight = np.ones((len(places), 4))
+    for k in range(4):
+        for other in set(range(4)) - {k}:
+            weight[:, k] *= (places - four[:, other]) / (four[:, k] - four[:, other])
+    return index, weight
+
+
+def _interpolated(nodes: Array, values: Array, places: Array) -> Array:
+    index, weight = _stencil(nodes, places)
+    return np.asarray(np.einsum("mk,mk...->m...", weight, values[index]))
+
+
+@dataclass(frozen=True, eq=False)
+class Spacing:
+    """Places of the passes.
+
+    Attributes
+    ----------
+    steps : (k,) array
+        Step parameter of each pass, increasing.
+    unused : float
+        Share of the last strip that was not needed, 0 to 1.
+    lines : Lines
+    halves : (k, n, 2) array
+        Half widths in the step parameter, towards its lower and its upper end, on the measured lines.
+    """
+
+    steps: Array
+    unused: float
+    lines: Lines
+    halves: Array
+
+
+def _root(function: Callable[[float], float], guess: float, sign: float, tolerance: float) -> float:
+    """Place where a function of slope near `sign` vanishes, from the side on which it is positive."""
+    place, value, slope = guess, function(guess), sign
+    for _ in range(40):
+        if 0 <= value <= tolerance:
+            return place
+        step = (0.5 * tolerance - value) / slope
+        new = place + step
+        after = function(new)
+        if step:
+            slope = sign * min(max(sign * (after - value) / step, 0.3), 3.0)
+        place, value = new, after
+    return place
+
+
+class _Strips:
+    """Half widths along passes, remembered for the last place asked for."""
+
+    def __init__(self, chart: Chart, cut: Cut, across: Lines) -> None:
+        self.chart, self.cut, self.across = chart, cut, across
+        self._step = np.nan
+        self.measured: Array = np.empty((0, 2))
+        self.halves: Array = np.empty((0, 2))
+
+    def at(self, step: float) -> Array:
+        """Half widths (m, 2) at one step parameter, on all lines."""
+        if step != self._step:
+            along = self.across.measured
+            self.measured = self.chart.half_widths(self.cut, along, np.full(len(along), step))
+            self._step, self.halves = step, self.across.spread(self.measured)
+        return self.halves
+
+    def check(self, cutting: Bools) -> None:
+        """Refuse the last place asked for if a line on which it has to cut has no strip."""
+        good = np.asarray((np.isfinite(self.measured) & (self.measured > 0)).all(axis=1))
+        if good.all():
+            return
+        used = np.zeros(len(good), dtype=bool)
+        used[self.across.index[cutting, 1:3]] = True
+        bad = np.flatnonzero(~good & used)
+        if bad.size:
+            axis = ", ".join(f"{round(float(x), 4) + 0.0:g}" for x in self.cut.axis)
+            raise InvalidInput(f"the axis ({axis}) leaves no usable strip on {self._place(int(bad[0]))}: it gouges "
+                               "there, or is normal to the surface; choose another axis")
+
+    def check_progress(self, last: float) -> None:
+        """Refuse the last place asked for if it is no farther than the pass before, as lines with no strip keep it.
+
+        Parameters
+        ----------
+        last : float
+            Place of the pass before.
+        """
+        if not self._step > last:
+            least = int(np.nan_to_num(self.measured).min(axis=1).argmin())
+            raise InvalidInput(f"passes do not advance on {self._place(least)}: their lines meet there, as in a pole; "
+                               "cut along the other parameter")
+
+    def _place(self, row: int) -> str:
+        """A measured line at the last place asked for, in words."""
+        u, v = self.chart.uv(self.across.measured[[row]], np.array([self._step]))[0] + 0.0
+        return f"face {self.chart.face.label} at u {u:.4g}, v {v:.4g}"
+
+
+def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Progress = NO_PROGRESS) -> Spacing:
+    """Lay passes over a face as far apart as the scallop height allows.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    across : Lines
+    material : (m, k, 2) array
+        What has to be covered on each line, padded with inf.
+    progress : Progress
+
+    Returns
+    -------
+    Spacing
+
+    Raises
+    ------
+    InvalidInput
+        When the axis leaves no strip somewhere.
+
+    Notes
+    -----
+    **Properties**: (1) between neighbours the two half widths add up to their distance or more wherever there is
+    material; (2) one place at least is tight, to 0.04 % of the strip; (3) the first and the last strip end on the
+    border.
+    """
+    _, _, s0, s1 = chart.bounds
+    strips, top = _Strips(chart, cut, across), last_of(material)
+    front = first_from(material, np.full(len(across.along), s0))
+    steps: list[float] = []
+    halves: list[Array] = []
+    guess, unused = s0, 0.0
+    while np.isfinite(front).any():
+        active = np.isfinite(front)
+        greedy, place = _next(strips, front, top, min(guess, s1))
+        half = strips.at(place)
+        strips.check(active & (front <= place + half[:, 1]))
+        unused = max(greedy - place, 0.0) / max(float(half.sum(axis=1)[active].min()), 1e-12 * (s1 - s0))
+        if not steps and unused > 0:
+            place = _only_place((max(place, s0), min(greedy, s1)), (greedy + place) / 2, material[active])
+        half = strips.at(place)
+        strips.check_progress(steps[-1] if steps else -np.inf)
+        steps.append(place)
+        halves.append(strips.measured)
+        front = np.where(active, first_from(material, np.maximum(front, place + half[:, 1] * (1 + 1e-9))), np.inf)
+        guess = _forecast(steps, halves, front, across)
+        progress.report("passes", min(max((place - s0) / (s1 - s0), 0.0), 1.0), 1.0)
+        if len(steps) > _MOST_PASSES:
+            raise InvalidInput(f"more than {_MOST_PASSES} passes on face {chart.face.label}: "
+                               "the scallop height is too small for its size")
+    return Spacing(np.array(steps), float(min(unused, 1.0)), across,
+                   np.array(halves).reshape(len(steps), len(across.measured), 2))
+
+
+def _only_place(room: tuple[float, float], middle: float, material: Array) -> float:
+    """Where in its room the only pass is put: as near to the middle as may be without leaving what is to be cut.
+
+    A strip may reach far beyond its pass, as that of a flank does; a pass off the face, or where the tool may not
+    stand, would be cut out again.
+
+    Parameters
+    ----------
+    room : (float, float)
+        Least and greatest step.
+    middle : float
+        The step that is wanted; it may lie outside.
+    material : (m, k, 2) array
+        What is to be cut on each line.
+    """
+    low, high = min(room), max(room)
+    wanted = min(max(middle, low), high)
+    tried = np.append(np.linspace(low, high, _PLACES), wanted)
+    held = _holds(material, tried)
+    best = tried[held == held.max()]
+    return float(best[np.argmin(np.abs(best - wanted))])
+
+
+def _holds(material: Array, steps: Array) -> NDArray[np.intp]:
+    """How many lines have something to be cut at each step."""
+    inside = (material[..., None, :, 0] <= steps[:, None]) & (material[..., None, :, 1] >= steps[:, None])
+    return np.asarray(inside.any(axis=-1).sum(axis=0))
+
+
+def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lines) -> float:
+    """Where the next pass will be, were the half widths to go on changing as they did between the last two."""
+    rate = np.zeros(len(across.measured))
+    if len(steps) > 1:
+        rate = np.clip((halves[-1][:, 0] - halves[-2][:, 0]) / (steps[-1] - steps[-2]), -0.5, 0.5)
+    now, slope = across.spread(halves[-1][:, 0]), across.spread(rate)
+    return float(((front + now - slope * steps[-1]) / (1 - slope)).min())
+
+
+def _next(strips: _Strips, front: Array, top: Array, guess: float) -> tuple[float, float]:
+    """Farthest place of the next pass, and where it is put: the same unless it is the last one."""
+    active = np.isfinite(front)
+
+    def slack(step: float) -> float:
+        return float((front + strips.at(step)[:, 0] - step)[active].min())
+
+    def beyond(step: float) -> float:
+        return float((step + strips.at(step)[:, 1] - top)[active].min())
+
+    width = strips.at(guess).sum(axis=1)[active]
+    tolerance = _ACCURACY * float(np.min(width[width > 0], initial=np.inf))
+    if not np.isfinite(tolerance):
+        return guess, guess
+    greedy = _root(slack, guess, -1.0, tolerance)
+    over = beyond(greedy)
+    if over < 0:
+        return greedy, greedy
+    return greedy, min(_root(beyond, greedy - over, 1.0, tolerance), greedy)

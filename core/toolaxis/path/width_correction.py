@@ -1,0 +1,123 @@
+"""How the exact strip width departs from the second-order one as the cutter leans: a table made on a plane.
+
+Near the normal a cutter's flat bottom, not its curvature, limits the strip.  On a plane the ratio of the two widths
+depends on the lean alone, so one table serves all contacts and axes of a tool and a scallop height.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.width import step_widths
+from toolaxis.numeric.compiled import compiled
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+
+_LEANS, _TURNS = 41, 17
+_LEAST, _MOST = 1e-3, 0.99999
+_BLUNT = 2.0
+
+
+def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> Array:
+    """The cutter's numbers with a corner radius of two scallop heights at least.
+
+    To the second order a sharp corner that leans across the feed leaves no strip at all; a slightly blunt one keeps
+    the ratio to the exact width within bounds.
+
+    Parameters
+    ----------
+    tool : Tool
+    scallop, allowance : float
+        mm
+
+    Returns
+    -------
+    (6,) array as of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`
+    """
+    numbers = cutter_numbers(tool, scallop, allowance)
+    corner = max(tool.corner_radius, min(_BLUNT * scallop, tool.radius))
+    numbers[:2] = tool.radius - corner, corner
+    return numbers
+
+
+def lean_table(tool: Tool, scallop: float) -> Array:
+    """Ratio of the exact strip width on a plane to the second-order one of the `screening_cutter`.
+
+    Parameters
+    ----------
+    tool : Tool
+    scallop : float
+        mm
+
+    Returns
+    -------
+    (41, 17) array, even from 0 to 1 in half the sum of sqrt(sin) and 1 - cos of the angle between axis and normal,
+    which is fine at both ends, and in the square root of the cosine between lean and feed; 1 where the contact is not
+    on the cutter's bottom or arc.
+    """
+    return _table(tool.kind, tool.radius, tool.corner_radius, tool.half_angle, scallop)
+
+
+@lru_cache(maxsize=64)
+def _table(kind: str, radius: float, corner_radius: float, half_angle: float, scallop: float) -> Array:
+    tool = Tool.build(kind, radius, corner_radius, half_angle)
+    size = 40 * tool.radius
+    corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
+    plane = Face.from_bspline(corners, (1, 1))
+    dense = np.linspace(0, 1, 20001) ** 2
+    sine = np.interp(np.linspace(0, 1, _LEANS), [_place(float(s)) for s in dense], dense).clip(_LEAST, _MOST)
+    s, c = (part.ravel() for part in np.meshgrid(sine, np.linspace(0, 1, _TURNS) ** 2, indexing="ij"))
+    k = np.sqrt(1 - c**2)
+    axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
+    exact = size * step_widths(plane, tool, np.full((len(s), 2), 0.5), axes, scallop).sum(axis=1)
+    bottom, corner = screening_cutter(tool, scallop)[:2]
+    second = 2 * np.sqrt(2 * scallop * (corner + bottom * c**2 / s))
+    table = np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
+    table.setflags(write=False)
+    return table
+
+
+@compiled
+def _place(lean: float) -> float:
+    """Place in the table, 0 to 1, of the sine of the angle between axis and normal."""
+    sine = min(lean, 1.0)
+    return float(0.5 * (np.sqrt(sine) + 1.0 - np.sqrt(1.0 - sine * sine)))
+
+
+@compiled
+def lean_ratio(table: Array, along: float, across: float) -> float:
+    """Ratio from the table for an axis with these components along and across the feed, by bilinear interpolation."""
+    square = along * along + across * across
+    if square <= 0.0:
+        return float(table[0, 0])
+    lean = np.sqrt(square)
+    x = _place(lean) * (table.shape[0] - 1)
+    y = np.sqrt(min(abs(along) / lean, 1.0)) * (table.shape[1] - 1)
+    i, j = min(int(x), table.shape[0] - 2), min(int(y), table.shape[1] - 2)
+    x, y = x - i, y - j
+    return float((table[i, j] * (1.0 - x) + table[i + 1, j] * x) * (1.0 - y)
+                 + (table[i, j + 1] * (1.0 - x) + table[i + 1, j + 1] * x) * y)
+
+
+def lean_ratios(table: Array, along: Array, across: Array) -> Array:
+    """Ratios for many components at once; the plain twin of `lean_ratio`.
+
+    Parameters
+    ----------
+    table : (k, m) array
+    along, across : array
+        Components of the unit axis along the feed and to its left.
+    """
+    lean = np.hypot(along, across)
+    sine = np.minimum(lean, 1.0)
+    x = 0.5 * (np.sqrt(sine) + 1 - np.sqrt(1 - sine**2)) * (table.shape[0] - 1)
+    cosine = np.abs(along) / np.where(lean > 0, lean, 1.0)
+    y = np.sqrt(np.minimum(cosine, 1.0)) * (table.shape[1] - 1)
+    i, j = (np.minimum(p.astype(int), n - 2) for p, n in ((x, table.shape[0]), (y, table.shape[1])))
+    x, y = x - i, y - j
+    return np.asarray((table[i, j] * (1 - x) + table[i + 1, j] * x) * (1 - y)
+                      + (table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x) * y)

@@ -1,0 +1,1 @@
+"""The fixed axis that machines a face in the least time, found and proven free."""

@@ -1,0 +1,535 @@
+"""The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.clearance.gouge import least_distance
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
+from toolaxis.feasibility.violations import BACK, CUTTER, Witness
+from toolaxis.feed.schedule import Feeds
+from toolaxis.machine.limits import AxisLimits
+from toolaxis.machine.mounting import MachineLike
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.path.cl_points import trace
+from toolaxis.path.iso_parametric import layout
+from toolaxis.path.links import Linking
+from toolaxis.path.mending import Made, completed
+from toolaxis.path.pass_layout import Layout
+from toolaxis.path.rest_material import left_over, may_stay
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.zone import Zone
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.cost import FEEDS, Worth
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.hemisphere import repaired, search, so_far
+from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
+from toolaxis.search.link_heights import OVER, Crossing, height_over
+from toolaxis.search.local_search import Candidate
+from toolaxis.search.machine_limits import REFUSED, at_face, better_of, combined, held, make_room, mounting_of, stopped
+from toolaxis.search.messages import (
+    Refusal,
+    direction,
+    left_reasons,
+    main_first,
+    nothing_to_cut,
+    sentence,
+    stays_high,
+    tally,
+    why_none,
+)
+from toolaxis.search.path_check import Proof, prove
+from toolaxis.search.rank_by_passes import least_made
+from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
+from toolaxis.search.time_estimate import pace_of
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance, ToleranceLike
+from toolaxis.tools.assembly import Tool
+from toolaxis.work import OutOfWork, better_may_exist, up_to
+
+Array = NDArray[np.float64]
+
+METHODS = {"sphere": search, "sectors": sectors, "roman": by_roman, "normal": by_mean_normal}
+#: Methods that only name an axis: where that is refused, none beside it is tried.
+RULES = ("roman", "normal")
+
+#: Height above everything at which links cross at least, mm.
+CROSSING = 5.0
+_ATTEMPTS = 4
+#: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
+_SEARCHED, _ORDERED = 0.5, 0.4
+#: Where further passes make the cut so many times as long, the other feed is tried too.
+_LONGER = 1.02
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One face to be machined, and everything that decides about an axis for it.
+
+    Attributes
+    ----------
+    feasibility : Feasibility
+        With the distances that the search keeps: a little more than required.
+    worth : Worth
+    groups : tuple of Group
+        The same surroundings with the required distances, for the proof.
+    chord : float
+        How far straight motions may leave passes, mm.
+    progress : Progress
+    direction : str
+        "zigzag", "climb" or "conventional".
+    """
+
+    feasibility: Feasibility
+    worth: Worth
+    groups: tuple[Group, ...]
+    chord: float
+    progress: Progress = NO_PROGRESS
+    direction: str = "zigzag"
+
+    @property
+    def box(self) -> Array:
+        """Corners of the box around everything, (2, 3) mm."""
+        boxes = np.array([group.box for group in self.groups])
+        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+    def top(self, axis: Array) -> float:
+        """Height along an axis of a tip that is above everything, and above what may stand there, mm.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        low, high = self.box
+        clear = max(CROSSING, height_over(self.worth.scallop) + OVER)
+        return float(np.maximum(low * axis, high * axis).sum()) + clear
+
+    def laid(self, axis: Array, feed: str) -> Layout:
+        """The passes with an axis, cut out where the tool must not go, before they are traced.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        worth, feasibility = self.worth, self.feasibility
+        return layout(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
+                      reach=lambda uv: feasibility.reach(uv, axis), progress=self.progress)
+
+    def traced(self, placed: Layout) -> ToolPath:
+        """Passes with their links.
+
+        Next to walls and where the skin goes on beyond the sub-surface they begin and end without ramps: a ramp goes on
+        along the feed, into what stands there.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
+        axis = placed.cut.axis
+        height = self.top(axis)
+        own = self.worth.face
+        walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
+                    for group in self.groups)
+        over = height_over(self.worth.scallop)
+        crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
+        return trace(placed, self.chord, self.direction,
+                     linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
+                                     beside=crossing.beside))
+
+    def made(self, axis: Array, feed: str) -> ToolPath:
+        """The very passes, links and ramps included, that `finished` proves.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        return self.completed(self.laid(axis, feed)).path
+
+    def completed(self, placed: Layout) -> Made:
+        """Passes with the further ones that it takes to leave little on which the cutter may stand.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
+        axis = placed.cut.axis
+        return completed(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+
+    def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
+        """Zones that passes leave higher than the scallop limit, the largest first.
+
+        Parameters
+        ----------
+        path : ToolPath
+            With one fixed axis.
+        """
+        worth = self.worth
+        return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
+                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress)
+
+
+def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
+         objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
+         surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
+         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> Task:
+    """Gather what decides about an axis for a face.
+
+    Parameters
+    ----------
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, feeds
+        As for `best_axis`.
+    limits : AxisLimits, optional
+    progress : Progress
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+    """
+    given = Tolerance.of(tolerance)
+    pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
+    worth = Worth(face, tool, scallop, allowance, objective, pace)
+    chord = given.chord_for(scallop)
+    kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
+                   shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
+    strict, groups = (grouped(face, replace(limit, gouge=allowance - least_distance(tool, limit.gouge, allowance)),
+                              allowance, part=part, skin=skin, surroundings=surroundings,
+                              obstacles=obstacles) for limit in (kept, given))
+    reach = at_face(limits, face, tool)
+    return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress, direction)
+
+
+def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
+              method: str = "sphere", objective: str = "length", *, part: Part | None = None,
+              skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
+              allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
+              starts: ArrayLike | None = None, feeds: Feeds | None = None,
+              progress: Progress = NO_PROGRESS) -> Orientation:
+    """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+    scallop : float
+        Scallop height, mm.
+    machine : Machine, Mounting, AxisLimits or str, optional
+        A machine, its name or file, one with the part on its table (`toolaxis.machine.mounting`), or limits of the
+        axis and their short form.
+    obstacles : Part, Face or sequence of Face, optional
+        What the tool must keep away from besides the part.
+    method : str
+        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; for comparison "roman":
+        the axis of Roman's rule, and "normal": the mean normal, each with the same proof and nothing beside it.
+    objective : str
+        "length", "passes" or "time": what is to be least. Time goes by an estimate (`toolaxis.search.time_estimate`),
+        and by the planner of feeds between the best axes of different lobes.
+    part : Part, optional
+        The part that the face belongs to, by its number: its skin and its other faces are looked after.
+    skin, surroundings : sequence of Face
+        Faces that continue this one smoothly, and others, where there is no part.
+    tolerance : float or Tolerance, optional
+        The machining tolerance, mm, or all tolerances: 0.01 mm unless given.
+    allowance : float
+        Stock left on the face, mm.
+    limits : AxisLimits or str, optional
+        Further limits.
+    direction : str
+        "zigzag", "climb" or "conventional": the passes that are proven.
+    starts : (k, 3) array_like, optional
+        Axes that are worth a look before others, such as a division's; for the method "sphere".
+    feeds : Feeds, optional
+        What is programmed; for the objective "time", which also needs a machine that states its limits.
+    progress : Progress
+
+    Returns
+    -------
+    Orientation
+        "feasible" with axis, passes made and what was proven of them; "infeasible" only where it is proven that no
+        axis exists; "not_found" where none was found; "cancelled" with what is known so far.
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+
+    Notes
+    -----
+    **Source**: [zhu2016] Eq. (8): greatest strip width under gouge and interference constraints, here with bounds.
+
+    **Properties**: 1. the result does not depend on the number of threads or on earlier calls; 2. moving face and
+    surroundings together moves the axis; 3. no motion of the passes breaks a limit.
+    """
+    if method not in METHODS:
+        raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
+    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
+               progress=progress)
+    return searched(job, method, starts)[0]
+
+
+def searched(job: Task, method: str = "sphere",
+             starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
+    """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
+
+    Parameters
+    ----------
+    job : Task
+    method : str
+        One of `METHODS`.
+    starts : (k, 3) array_like, optional
+        Axes that are worth a look before others.
+    """
+    first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
+    ledger = Ledger(job.feasibility, job.worth, job.progress, first)
+    result: tuple[Orientation, ToolPath | None] | None = None
+    try:
+        impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
+        if impossible:
+            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
+        result = _settled(job, ledger, method)
+        if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
+            return result
+        ledger = Ledger(ledger.feasibility, job.worth, job.progress, first)
+        return better_of(result, _settled(job, ledger, method))
+    except Cancelled:
+        return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
+                           evaluations=ledger.evaluations, map=ledger.map()), None
+    except OutOfWork as reason:
+        if result is not None and result[0].axis is not None:
+            return _ended(result)
+        return Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
+                           evaluations=ledger.evaluations, map=ledger.map()), None
+
+
+def _settled(job: Task, ledger: Ledger, method: str) -> tuple[Orientation, ToolPath | None]:
+    """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
+    if method in RULES:
+        return settled(job, ledger, METHODS[method](ledger), 1)
+    try:
+        with up_to(_SEARCHED):
+            found = METHODS[method](ledger)
+    except OutOfWork as reason:
+        result, path = _first_accepted(job, ledger, held(ledger, so_far(ledger)))
+        if result.axis is not None:
+            return _ended((result, path))
+        return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
+    return settled(job, ledger, found)
+
+
+def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
+    """An axis that is proven, with the word that the limit of work ended the search for a better one."""
+    words, (result, path) = better_may_exist(), found
+    known = words in result.reasons
+    return (result if known else replace(result, reasons=(*result.reasons, words))), path
+
+
+def settled(job: Task, ledger: Ledger, found: list[Candidate],
+            attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+    """The best candidate that the proof accepts, with its passes, or why there is none.
+
+    Parameters
+    ----------
+    job : Task
+    ledger : Ledger
+    found : list of Candidate
+        The best of each lobe, best first.
+    attempts : int
+        How often each is tried, repaired between; 1 to take them as they are.
+
+    Raises
+    ------
+    OutOfWork
+        When the work that was allowed is done, and none was accepted.
+    """
+    found = held(ledger, found)
+    with suppress(OutOfWork), up_to(_ORDERED):
+        found = least_made(job.worth, found, job.made)
+    return _first_accepted(job, ledger, found, attempts)
+
+
+def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate],
+                    attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+    """The first candidate that the proof accepts, with its passes, or why there is none."""
+    refused: list[Refusal] = []
+    for k, one in enumerate(found):
+        best = _accepted(job, ledger, one, refused, attempts)
+        if best is None:
+            continue
+        others: tuple[Orientation, ...] = ()
+        with suppress(OutOfWork):  # only other feeds and lobes are left to be looked at
+            best = _other_feed(job, ledger, best) or best
+            others = tuple(_other(job, other) for other in found[k + 1:] if _sound(job, other))
+        reasons = (*best.orientation.reasons, *(why.words for why in refused), tally(ledger))
+        return replace(best.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations,
+                       lobes=others), best.path
+    if ledger.proven:
+        outcome, lead = "infeasible", "infeasible: limits and normals leave no axis"
+    else:
+        outcome, lead = "not_found", "no axis found"
+    words = main_first(refused) if found else [f"{lead}: {why_none(ledger)}"]
+    return Orientation(None, outcome=outcome, reasons=(*words, tally(ledger)), map=ledger.map(),
+                       evaluations=ledger.evaluations), None
+
+
+def _sound(job: Task, one: Candidate) -> bool:
+    return job.feasibility.witness(one.axis) is None
+
+
+class Finished(NamedTuple):
+    """What became of a candidate.
+
+    one : Candidate
+    orientation : Orientation
+    proof : Proof, refused too where passes leave more on which the cutter may stand than may stay
+    path : ToolPath or None, the very passes that were proven; None where none can be laid
+    longer : float, cutting length over that without further passes
+    """
+
+    one: Candidate
+    orientation: Orientation
+    proof: Proof
+    path: ToolPath | None
+    longer: float = 1.0
+
+    @property
+    def value(self) -> float:
+        """What is to be least, with the further passes."""
+        return self.one.value * self.longer
+
+
+def _other_feed(job: Task, ledger: Ledger, done: Finished) -> Finished | None:
+    """The same axis with the other feed, where that takes less after further passes; None where it does not."""
+    one, feed = done.one, 1 - done.one.feed
+    if done.longer <= _LONGER or job.worth.feed is not None:
+        return None
+    other = Candidate(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
+    if not other.value < done.value:
+        return None
+    again = finished(job, other)
+    return again if again.proof.witness is None and again.value < done.value else None
+
+
+def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[Refusal],
+              attempts: int) -> Finished | None:
+    """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
+    candidate: Candidate | None = one
+    for attempt in range(attempts):
+        if candidate is None:
+            return None
+        witness = ledger.feasibility.witness(candidate.axis)
+        if witness is None:
+            done = finished(job, candidate)
+            if done.proof.witness is None:
+                return done
+            witness = done.proof.witness
+        words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
+        refused.append(Refusal(witness.reason, witness.amount, words))
+        make_room(ledger, candidate.axis, witness)
+        candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
+    return None
+
+
+def finished(job: Task, one: Candidate) -> Finished:
+    """Passes made and proven for one candidate.
+
+    Parameters
+    ----------
+    job : Task
+    one : Candidate
+    """
+    feed = FEEDS[one.feed]
+    try:
+        placed = job.laid(one.axis, feed)
+    except InvalidInput as reason:  # a place between the counted ones leaves no strip
+        return Finished(one, Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), None)
+    if not len(placed.pieces):
+        why = Witness(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
+        return Finished(one, Orientation(None, feed), Proof(why), None)
+    made = job.completed(placed)
+    proof = _proven(job, made.path)
+    if proof.witness is not None and made.placed is not placed:  # further passes are no reason to refuse an axis
+        path = job.traced(placed)
+        made = Made(placed, path, job.left_by(path))
+        proof = _proven(job, path)
+    path, area = made.path, job.worth.face.area
+    if proof.witness is None and made.undercut > may_stay(made.zones, area):
+        proof = Proof(Witness(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
+    unreached = min((made.left - made.undercut) / area, 1.0)
+    length = path.length(Motion.CUT)
+    width = area * (1 - unreached) / length if length > 0 else 0.0
+    words = left_reasons(made.zones, job.worth.face)
+    found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
+                        "feasible", words, unreached=unreached)
+    return Finished(one, found, proof, path, made.longer)
+
+
+def _proven(job: Task, path: ToolPath) -> Proof:
+    """The proof of a path, after a look at whether its machine reaches all of it."""
+    beyond = stopped(job.feasibility, path, job.groups)
+    if beyond:
+        return Proof(beyond)
+    return prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
+
+
+def _other(job: Task, one: Candidate) -> Orientation:
+    """The best axis of another lobe; its passes were not made."""
+    return Orientation(one.axis, FEEDS[one.feed], 0, one.passes, one.length,
+                       job.worth.face.area / one.length, outcome="feasible", unreached=one.unreached)
+
+
+def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machine: MachineLike | None = None,
+                  obstacles: Obstacles = None, feed: str | None = None, objective: str = "length", *,
+                  part: Part | None = None, skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
+                  tolerance: ToleranceLike = None, allowance: float = 0.0, limits: AxisLimits | str | None = None,
+                  progress: Progress = NO_PROGRESS) -> Orientation:
+    """What one given axis comes to, judged as `best_axis` judges its own.
+
+    Parameters
+    ----------
+    face, tool, scallop, machine, obstacles, objective, part, skin, surroundings, tolerance, allowance, limits, progress
+        As for `best_axis`.
+    axis : (3,) array_like
+        From tip to spindle.
+    feed : "u" or "v", optional
+        The better one unless given.
+
+    Returns
+    -------
+    Orientation
+        "infeasible" with the reason where the axis breaks a limit.
+
+    Raises
+    ------
+    InvalidInput
+        When an argument is out of range.
+    """
+    if feed not in (None, *FEEDS):
+        raise InvalidInput(f"feed is {feed!r}: it must be 'u' or 'v'")
+    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+               surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
+    t = unit(as_rows(axis, 3, "axis")[0])
+    ledger = Ledger(job.feasibility, job.worth, progress)
+    feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]
+    try:
+        witness = job.feasibility.witness(t)
+        if witness is None:
+            best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
+            done = finished(job, best)
+            if done.proof.witness is None:
+                return replace(done.orientation, evaluations=1 + len(feeds))
+            witness = done.proof.witness
+    except Cancelled:
+        return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",))
+    return Orientation(None, FEEDS[feeds[0]], outcome="infeasible", evaluations=ledger.evaluations + 1,
+                       reasons=(f"infeasible: {sentence(witness, job.feasibility)}",))

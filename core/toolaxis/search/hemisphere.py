@@ -1,0 +1,318 @@
+"""The whole hemisphere, coarse to fine: a spiral of axes, rings around the promising ones, exact counts for the best.
+
+Optima lie on the border of the free region, and there are often several.  So rings are laid around the best free axes
+and around forbidden ones next to free ones that would be better; all lobes are followed; and what decides is the exact
+count, because the screening value is least true just where it is best.
+"""
+
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.feasibility.normal_cone import NormalField
+from toolaxis.feasibility.violations import BACK, FREE, Witness
+from toolaxis.numeric.ties import settled
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.search.branch_and_bound import hunt
+from toolaxis.search.direction_grid import COVER, own_frame, ring, spiral
+from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.flank_axes import flank_axes
+from toolaxis.search.local_search import Candidate, counted, polish, proven, sound
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+#: Spacing of the first axes, rad.
+SPACING = radians(10)
+#: Axes around which rings are laid, level by level.
+_BEAM = (14, 10, 8)
+#: Fewer where normals and limits leave little: one for so many first axes, but not below the second number.
+_SHARE, _NARROWEST = 9, 6
+#: How often all free axes may be refused by closer looks before the search ends without one.
+_HUNTS = 3
+#: Lobes are at least so far apart, rad.
+APART = radians(12)
+_LOBES = 5
+#: Lobes that cost so many times the best one's price are left out, but for the second best.
+_POOR = 1.5
+_POLISHED = 4
+#: Lobes whose first exact value is this much worse than the best are not polished.
+_HOPELESS = 0.02
+#: Values closer than this are ties.
+TIE = 0.001
+#: Free axes so near a refused one are not tried, rad.
+_REPELLED = radians(0.15)
+#: Clearances closer than this are the same, mm.
+_SHARES = 0.25
+
+
+def search(ledger: Ledger) -> list[Candidate]:
+    """Search the hemisphere of axes that see the face.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Empty; holds everything that was looked at afterwards.
+
+    Returns
+    -------
+    list of Candidate, the best axis of each lobe, best first; empty when no free axis was found.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    field = ledger.feasibility.normals
+    frame = frame_of(field)
+    ledger.look(np.concatenate([np.stack([field.mean, frame[2]]), ledger.starts]))
+    ledger.lay(flank_axes(ledger.feasibility))
+    first = len(ledger.axes)
+    ledger.lay(spiral(frame, SPACING))
+    for _ in range(_HUNTS):
+        if not np.isfinite(ledger.price).any():
+            ledger.proven = hunt(ledger, first, COVER * SPACING)
+        if not np.isfinite(ledger.price).any():
+            return []
+        found = ties(ledger) if indifferent(ledger) else _refined(ledger)
+        if found:
+            return found
+    return []
+
+
+def _refined(ledger: Ledger) -> list[Candidate]:
+    """The best of each lobe from rings around the promising axes; none where a closer look refuses all of them."""
+    spacing, most = SPACING, max(_NARROWEST, (len(ledger.axes) - ledger.excluded) // _SHARE)
+    for width in np.minimum(_BEAM, most):
+        probe(ledger, width // 2)
+        refine(ledger, spacing, width)
+        spacing /= 2
+    return polished(ledger, spacing)
+
+
+def frame_of(field: NormalField) -> Array:
+    """The frame that the spiral lies in, (3, 3): it moves with the face, with z in the middle of its normals.
+
+    Parameters
+    ----------
+    field : NormalField
+    """
+    return own_frame(field.samples, field.cap.centre if field.cap.centre.any() else field.mean)
+
+
+def indifferent(ledger: Ledger) -> bool:
+    """Whether all free axes cost the same: those of a ball end, where none of them leaves anything at walls.
+
+    In time they differ.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    if ledger.worth.objective == "time":
+        return False
+    return ledger.feasibility.tool.flat_radius == 0 and not ledger.unreached[ledger.reason == FREE].any()
+
+
+def ties(ledger: Ledger) -> list[Candidate]:
+    """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    """
+    free = np.flatnonzero(np.isfinite(ledger.price))
+    away = settled(angle_between(ledger.axes[free], ledger.feasibility.normals.mean))
+    free = free[np.argsort(away, kind="stable")][:48]
+    room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
+    order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
+    best = ledger.values[order[0]].argmin()
+    value, passes, length = ledger.count(ledger.axes[order[0]], int(best), float(ledger.unreached[order[0]]))
+    return [Candidate(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
+
+
+def probe(ledger: Ledger, most: int) -> None:
+    """Look closer at the best axes, so that screening learns where the skin is gouged between its points.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    most : int
+        Number of axes to be found sound.
+    """
+    looked: set[int] = set()
+    for _ in range(3 * most):
+        price = ledger.price
+        price[list(looked)] = np.inf
+        row = int(np.argmin(price))
+        if not np.isfinite(price[row]) or most == 0:
+            return
+        near = np.flatnonzero(angle_between(ledger.axes, ledger.axes[row]) <= APART / 2)
+        if sound(ledger, row):
+            looked.update(near.tolist())
+            most -= 1
+
+
+def refine(ledger: Ledger, spacing: float, width: int) -> None:
+    """Lay rings of half the spacing around the most promising axes.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    spacing : float
+        Of the axes so far, rad.
+    width : int
+        Number of axes to lay rings around: best free ones, and forbidden ones next to free ones, half and half.
+    """
+    price, all_values = ledger.price, ledger.values.min(axis=1)
+    free = np.flatnonzero(np.isfinite(price))
+    if not len(free):  # a closer look has refused the last one
+        return
+    best = _spread(ledger.axes, free[np.argsort(price[free], kind="stable")], 0.6 * spacing, width - width // 2)
+    border = np.flatnonzero((ledger.reason > BACK) & np.isfinite(all_values) & (all_values < 1.02 * price.min()))
+    if len(border):
+        near = angle_between(ledger.axes[border][:, None], ledger.axes[free][None]).min(axis=1) <= 1.4 * spacing
+        border = border[near]
+        border = border[np.argsort(_next_to(ledger, border, free, spacing), kind="stable")]
+    chosen = [*best, *_spread(ledger.axes, border, 0.6 * spacing, width // 2)]
+    turn = spacing
+    for i in chosen:
+        around = ring(ledger.axes[i], spacing / 2, turn)
+        new = angle_between(around[:, None], ledger.axes[None]).min(axis=1) > 0.35 * spacing / 2
+        ledger.look(around[new])
+
+
+def _next_to(ledger: Ledger, border: Index, free: Index, spacing: float) -> Array:
+    """Price of the best free axis near each forbidden one, (k,)."""
+    near = angle_between(ledger.axes[border][:, None], ledger.axes[free][None]) <= 1.4 * spacing
+    return np.asarray(np.where(near, ledger.price[free], np.inf).min(axis=1))
+
+
+def _spread(axes: Array, order: Index, apart: float, most: int) -> list[int]:
+    """The first rows of an order that keep apart from those before them."""
+    chosen: list[int] = []
+    for i in order:
+        if len(chosen) == most:
+            break
+        if not chosen or angle_between(axes[i], axes[chosen]).min() > apart:
+            chosen.append(int(i))
+    return chosen
+
+
+def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
+    """The best axis of each lobe by exact count, best first.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    spacing : float
+        First step, rad.
+    """
+    starts = []
+    price = ledger.price
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    tops = lobes(ledger.axes, price, order)[:_LOBES]
+    for i in [i for k, i in enumerate(tops) if k < 2 or price[i] <= _POOR * price.min()]:
+        start = _first_proven(ledger, ledger.axes[i], order)
+        if start is not None:
+            starts.append(start)
+    starts.sort(key=lambda c: c.value)
+    done: list[Candidate] = []
+    for k, start in enumerate(starts):
+        hopeless = start.value > starts[0].value * (1 + _HOPELESS) or k >= _POLISHED
+        done.append(start if hopeless else polish(ledger, start, spacing))
+    return ranked(ledger, distinct(sorted(done, key=lambda c: c.value)))
+
+
+def so_far(ledger: Ledger) -> list[Candidate]:
+    """The best axis of each lobe among those that were looked at, best first, by their screened prices.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Of a search that was ended.
+    """
+    price, feed = ledger.price, ledger.values.argmin(axis=1)
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    rows = lobes(ledger.axes, price, order)[:_LOBES]
+    if not rows:
+        return []
+    whole = ledger.worth.screen(ledger.axes[rows])  # nothing charged for what stays
+    return [Candidate(ledger.axes[i], int(feed[i]), float(price[i]), float(whole.passes[k, feed[i]]),
+                      float(whole.length[k, feed[i]]), float(ledger.unreached[i])) for k, i in enumerate(rows)]
+
+
+def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
+    """Candidates with ties at the top decided: the larger clearance first, then the smaller angle to the mean normal.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    found : list of Candidate
+        By value.
+    """
+    tied = [one for one in found if one.value <= found[0].value * (1 + TIE)]
+    if len(tied) < 2:
+        return found
+    mean, judged = ledger.feasibility.normals.mean, ledger.feasibility
+    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES), float(settled(angle_between(c.axis, mean)))))
+    return tied + found[len(tied):]
+
+
+def distinct(found: list[Candidate]) -> list[Candidate]:
+    """Candidates of different lobes: those that ended within half the lobes' distance of a better one are dropped."""
+    kept: list[Candidate] = []
+    for one in found:
+        if all(float(angle_between(one.axis, other.axis)) > APART / 2 for other in kept):
+            kept.append(one)
+    return kept
+
+
+def lobes(axes: Array, price: Array, order: Index) -> list[int]:
+    """Rows that are the best within the lobes' distance of themselves, best first.
+
+    Parameters
+    ----------
+    axes : (n, 3) array
+    price : (n,) array
+    order : (k,) array of int
+        Free rows by price.
+    """
+    chosen: list[int] = []
+    for i in order:
+        near = order[angle_between(axes[i], axes[order]) <= APART]
+        if price[i] <= price[near].min() and (not chosen or angle_between(axes[i], axes[chosen]).min() > APART):
+            chosen.append(int(i))
+    return chosen
+
+
+def _first_proven(ledger: Ledger, top: Array, order: Index) -> Candidate | None:
+    """The best axis of a lobe that the proof form accepts, counted; None when a dozen are refused."""
+    near = [i for i in order if float(angle_between(ledger.axes[i], top)) <= APART][:12]
+    for i in near:
+        if ledger.reason[i] == FREE and sound(ledger, int(i)) and proven(ledger, int(i)):
+            return counted(ledger, int(i))
+    return None
+
+
+def repaired(ledger: Ledger, refused: Candidate, found: Witness, attempt: int = 0) -> Candidate | None:
+    """Another axis of the same lobe after the proof of the passes refused one.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    refused : Candidate
+    found : Witness
+    attempt : int
+        How often this lobe was repaired before: its neighbourhood that is left alone grows fourfold each time.
+
+    Returns
+    -------
+    Candidate, or None when the lobe holds no other free axis.
+    """
+    ledger.close(refused.axis, _REPELLED * 4**attempt, found)
+    price = ledger.price
+    order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
+    start = _first_proven(ledger, refused.axis, order)
+    return None if start is None else polish(ledger, start, 4 * _REPELLED, 2 * _REPELLED)

@@ -1,0 +1,115 @@
+"""How a tool gets from stroke to stroke: straight over to one beside, or with the least lift that nothing stands in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.clearance.queries import judged
+from toolaxis.feasibility.surroundings import OTHER, Group
+from toolaxis.path.links import BESIDE, LIFTS, ROOFS
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: What the cutter keeps from the skin while it crosses, mm and in scallop heights, whichever is more: stock that is
+#: still to be cut may stand there, and where no pass reaches it stays; the judge takes it to be as high.
+OVER, SCALLOPS = 1.0, 20.0
+
+
+def height_over(scallop: float) -> float:
+    """What the cutter keeps from the skin while it crosses, mm.
+
+    Parameters
+    ----------
+    scallop : float
+        mm
+    """
+    return max(OVER, SCALLOPS * scallop)
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """The surroundings of links with one axis.
+
+    Attributes
+    ----------
+    tool : Tool
+    groups : tuple of Group
+        With the distances to keep.
+    axis : (3,) array
+    top : float
+        Height along the axis, mm, at which the tip crosses above everything.
+    allowance : float
+        Stock left on the skin, mm.
+    over : float
+        What it keeps from the skin while it crosses, mm, see `height_over`.
+    """
+
+    tool: Tool
+    groups: tuple[Group, ...]
+    axis: Array
+    top: float
+    allowance: float = 0.0
+    over: float = OVER
+
+    def heights(self, ends: Array, begins: Array) -> Array:
+        """The least heights along the axis at which the tip may cross, (k,) mm.
+
+        Lifting, crossing and coming down keep the distances to walls and obstacles, and crossing keeps `over` from the
+        skin too; bounds hold along the motions.
+
+        Parameters
+        ----------
+        ends, begins : (k, 3) array
+            Tips from which it is lifted, and down to which it comes, mm.
+        """
+        found = np.full(len(ends), self.top)
+        base = np.maximum(ends @ self.axis, begins @ self.axis)
+        left = np.arange(len(ends))
+        for lift in LIFTS:
+            left = left[base[left] + lift < self.top]
+            if not len(left):
+                break
+            height = base[left] + lift
+            high = [tips[left] + (height - tips[left] @ self.axis)[:, None] * self.axis for tips in (ends, begins)]
+            over, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
+            free = self._clear(*over, across=True) & self._clear(*up) & self._clear(*down)
+            found[left[free]] = height[free]
+            left = left[~free]
+        return found
+
+    def beside(self, ends: Array, begins: Array) -> Array:
+        """Tips over which it may go straight from stroke to stroke at feed rate, (k, 3) mm; nan where it must lift.
+
+        Both straights keep what the strokes themselves keep: the gouge limit from the skin, distances to all else.
+
+        Parameters
+        ----------
+        ends, begins : (k, 3) array
+            Tips at the end of a stroke and at the begin of the next, mm.
+        """
+        found = np.full(ends.shape, np.nan)
+        far = np.linalg.norm(begins - ends, axis=1)
+        left = np.flatnonzero(far <= BESIDE)
+        for share in ROOFS:
+            over = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * self.axis
+            free = self._clear(ends[left], over) & self._clear(over, begins[left])
+            found[left[free]] = over[free]
+            left = left[~free]
+        return found
+
+    def _clear(self, start: Array, end: Array, across: bool = False) -> Bools:
+        """Whether straight motions keep their distances, (k,)."""
+        axes = np.broadcast_to(self.axis, start.shape)
+        moves = np.stack([(start + end) / 2, (end - start) / 2, axes], axis=1)
+        free = np.ones(len(moves), dtype=bool)
+        for group in self.groups:
+            required = group.required.copy()
+            if across and group.role != OTHER:
+                required[0] = self.allowance + self.over
+            table = np.tile(required, (len(group.faces), 1))
+            some = np.flatnonzero(free)
+            free[some] = judged(group.cells, self.tool, moves[some], table).blocked < 0
+        return free

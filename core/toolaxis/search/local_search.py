@@ -1,0 +1,223 @@
+"""Exact values of axes, and the walk from a good axis to the best one near it."""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.feasibility.check_points import Contacts
+from toolaxis.feasibility.refined_check import closer
+from toolaxis.feasibility.violations import FREE
+from toolaxis.numeric.vectors import perpendicular, unit
+from toolaxis.search.direction_grid import ring
+from toolaxis.search.evaluated_axes import Ledger
+
+Array = NDArray[np.float64]
+
+#: Last radius of the rings, rad: in front of a border that keeps better axes away, and otherwise.
+_FINEST, _FINE = radians(0.02), radians(0.12)
+#: Axes of a ring.
+_RING = 6
+#: Smallest step that counts as one, as a share of the value; what is gained by walking on must promise more.
+_WORTHWHILE = 5e-5
+#: Axes of a ring that are counted at most, and how far above the best value screening may see them, per rad of step.
+_TRIED, _DOUBT = 2, 0.2
+#: Counted axes so near, in steps, tell the slope of exact over screening value; how much they resist a slope.
+_NEAR, _STIFF = 2.5, 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An axis with its exact value.
+
+    Attributes
+    ----------
+    axis : (3,) array
+    feed : int
+        0 for "u", 1 for "v".
+    value : float
+        What is to be least, charged for what stays.
+    passes, length : float
+        Exact count and cutting length, mm, over the whole face.
+    unreached : float
+        Share of the area left to a clean-up tool, from screening.
+    """
+
+    axis: Array
+    feed: int
+    value: float
+    passes: float
+    length: float
+    unreached: float
+
+
+def sound(ledger: Ledger, row: int) -> bool:
+    """Whether an axis stands the closer look at the screening contacts; where it does not, the ledger learns.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    row : int
+    """
+    return _stands(ledger, row, ledger.feasibility.sparse)
+
+
+def proven(ledger: Ledger, row: int) -> bool:
+    """Whether the proof form accepts an axis; where it does not, the ledger learns and its contacts are watched.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    row : int
+    """
+    return _stands(ledger, row, ledger.feasibility.dense)
+
+
+def _stands(ledger: Ledger, row: int, contacts: Contacts) -> bool:
+    ledger.closer += 1
+    found = closer(ledger.feasibility, ledger.axes[row], contacts)
+    if found.reason != FREE:
+        ledger.forbid(row, found.reason, found.amount)
+        ledger.heed(found)
+    return found.reason == FREE
+
+
+def counted(ledger: Ledger, row: int, feed: int | None = None) -> Candidate:
+    """Exact value of a row, in the better feed; both are counted when screening cannot tell.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    row : int
+    feed : int, optional
+        The one that is known to be better.
+    """
+    axis, unreached = ledger.axes[row], float(ledger.unreached[row])
+    values = ledger.values[row]
+    feeds = [int(values.argmin()) if feed is None else feed]
+    if feed is None and values.max() < 1.04 * values.min():
+        feeds = [0, 1]
+    return min((Candidate(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
+               key=lambda c: c.value)
+
+
+@dataclass
+class _Walk:
+    """A walk from axis to axis.
+
+    best : the best axis so far;  known : axes that were counted, with exact over screening value.
+    """
+
+    ledger: Ledger
+    best: Candidate
+    known: list[tuple[Array, float]]
+
+    def hopes(self, rows: slice, step: float) -> Array:
+        """What screening promises of rows, as shares of the best value, corrected by what was counted near.
+
+        Screening knows no width beyond the second-order limit of curvature, though the exact cutter may reach some way
+        further: in a ring, what stands opposite is mirrored there.
+        """
+        values, axes = self.ledger.values[rows, self.best.feed], self.ledger.axes[rows]
+        hope = np.asarray(values * self._ratios(axes, step) / self.best.value)
+        opposite = np.roll(hope, len(hope) // 2)
+        mirrored = np.where(np.isfinite(opposite), 2 - opposite, 1.0)
+        return np.where(np.isinf(hope) & (self.ledger.reason[rows] == FREE), mirrored, hope)
+
+    def _ratios(self, axes: Array, step: float) -> Array:
+        """Exact over screening value at axes near the best one: its own, and a slope through those of others near."""
+        middle, own = self.best.axis, self.known[-1][1]
+        x, y = perpendicular(middle)
+        across = np.stack([x, y], axis=1) / np.sin(step)
+        places = np.array([axis for axis, _ in self.known]) @ across
+        off = np.array([ratio for _, ratio in self.known]) / own - 1
+        near = np.linalg.norm(places, axis=1) <= _NEAR
+        slope = np.linalg.solve(places[near].T @ places[near] + _STIFF * np.eye(2), places[near].T @ off[near])
+        return np.asarray(own * (1 + axes @ across @ slope))
+
+    def better(self, rows: slice, hope: Array, step: float) -> bool:
+        """Whether a row, in the order of what is hoped for, counts better than the best and is proven: then it is it.
+        """
+        ledger, best = self.ledger, self.best
+        order = np.argsort(np.where(ledger.reason[rows] == FREE, hope, np.inf), kind="stable")
+        for row, promise in zip((rows.start + order)[:_TRIED], hope[order], strict=False):
+            if ledger.reason[row] != FREE or not promise < 1 + _DOUBT * step:
+                return False
+            found = counted(ledger, int(row), best.feed)
+            screened = float(ledger.values[row, best.feed])
+            ratio = found.value / screened if np.isfinite(screened) else self.known[-1][1]
+            if found.value < best.value * (1 - _WORTHWHILE) and proven(ledger, int(row)):
+                self.best = found
+                self.known.append((found.axis, ratio))
+                return True
+            if np.isfinite(found.value):
+                self.known.insert(0, (found.axis, ratio))
+        return False
+
+
+def polish(ledger: Ledger, start: Candidate, step: float, finest: float = _FINEST) -> Candidate:
+    """Walk to a local optimum by exact counts.
+
+    Rings, turned from one to the next, go around the best axis; where no axis of a ring counts better, the lowest
+    place of the parabola through the ring is tried, and then the ring is halved.  The walk ends early where a ring
+    shows that nothing worthwhile is left.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    start : Candidate
+        An axis that the proof form accepts.
+    step : float
+        First radius of the rings, rad.
+    finest : float
+        Last one, rad.
+    """
+    walk, turn = _Walk(ledger, start, [(start.axis, _ratio(ledger, start))]), 0.0
+    while step >= finest:
+        turn += 2.399963
+        rows = ledger.look(ring(walk.best.axis, step, turn, _RING))
+        hope = walk.hopes(rows, step)
+        if walk.better(rows, hope, step):
+            continue
+        lowest = _lowest(walk.best.axis, ledger.axes[rows], walk.hopes(rows, step), step)
+        if lowest is not None:
+            rows = ledger.look(lowest[None])
+            if walk.better(rows, walk.hopes(rows, step), step):
+                step /= 2
+                continue
+        step /= 2
+        if step < _FINE and _flat(hope):
+            break
+    return walk.best
+
+
+def _flat(hope: Array) -> bool:
+    """Whether a ring, in shares of its middle's value, shows neither a better axis nor a steep rise."""
+    return bool(hope.min() > 1 - _WORTHWHILE)
+
+
+def _lowest(middle: Array, axes: Array, hope: Array, step: float) -> Array | None:
+    """The axis where the parabola through a ring and its middle is least, within two steps; None where it has none."""
+    if not np.isfinite(hope).all():
+        return None
+    x, y = perpendicular(middle)
+    p = np.stack([axes @ x, axes @ y], axis=1) / np.sin(step)
+    table = np.column_stack([p, p[:, 0] ** 2 / 2, p[:, 0] * p[:, 1], p[:, 1] ** 2 / 2])
+    gx, gy, xx, xy, yy = np.linalg.lstsq(table, hope - 1, rcond=None)[0]
+    values, vectors = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
+    if values[0] <= 0:
+        return None
+    move = -vectors @ ((vectors.T @ [gx, gy]) / values)
+    size = float(np.linalg.norm(move))
+    move *= min(1.0, 2.0 / max(size, 1e-12))
+    gain = -(move @ [gx, gy] + 0.5 * move @ [xx * move[0] + xy * move[1], xy * move[0] + yy * move[1]])
+    return None if gain < _WORTHWHILE else unit(middle + np.tan(step) * (move[0] * x + move[1] * y))
+
+
+def _ratio(ledger: Ledger, one: Candidate) -> float:
+    """Exact value of a candidate over its screening value; 1 where screening knows none."""
+    found = ledger.worth.screen(one.axis[None])
+    charge = ledger.worth.charge(float(found.length[0].min()), one.unreached)
+    screened = float(ledger.worth.values(one.axis[None], found)[0, one.feed]) * charge
+    return one.value / screened if np.isfinite(screened) else 1.0

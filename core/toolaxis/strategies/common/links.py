@@ -1,0 +1,195 @@
+"""From strokes with a moving axis to one tool path: each is left along its own last axis, and the axis turns above.
+
+To a stroke that begins beside the end of the last one the tip goes straight over at feed rate.  Elsewhere it is lifted
+along the axis at the end of a stroke, goes straight across while the axis turns to that of the next begin, and comes
+down along it.  As high as `Swivelling.height` asks, the whole tool is above everything.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.path.links import (
+    BESIDE,
+    LIFTS,
+    ROOFS,
+    Linking,
+    Stroke,
+    entry_points,
+    exit_points,
+    kinds_of,
+    near_end,
+)
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Cosine of the angle to the direction upwards below which lifting along an axis does not lead above everything.
+_UPWARDS = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class MovingStroke(Stroke):
+    """One cutting motion without interruption with a moving axis.
+
+    Attributes
+    ----------
+    contact, tip, normal
+        As of `Stroke`.
+    axis : (n, 3) array
+    """
+
+    axis: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Swivelling:
+    """How strokes with moving axes are joined.
+
+    Attributes
+    ----------
+    linking : Linking
+        Ramps; its height is the one above which nothing stands, measured along `up`.
+    up : (3,) array
+        Unit vector: about the mean of the axes.
+    tool : Tool
+        What has to be above that height.
+    clear : callable, optional
+        Takes the tips at both ends of links and the axes there, (k, 3) each, and whether they are the crossing itself
+        rather than the way up or down, and answers which are free on the whole way, (k,) bool; all cross above
+        everything without it.
+    """
+
+    linking: Linking
+    up: Array
+    tool: Tool
+    clear: Callable[[Array, Array, Array, Array, bool], Bools] | None = None
+
+    def height(self, axes: Array) -> float:
+        """Height along `up` of the tip at which all of the tool is above everything with any of the axes, mm.
+
+        Parameters
+        ----------
+        axes : (k, 3) array
+            Their directions between two of them, on the shortest way, count too.
+        """
+        rims = [np.array([[self.tool.radius, 0.0], [self.tool.profile.top_radius, self.tool.profile.top]]),
+                *self.tool.outlines.values()]
+        rho, z = np.concatenate(rims).T
+        lean = np.linspace(0.0, float(np.max(angle_between(axes, self.up))), 64)[:, None]
+        below = float((rho * np.sin(lean) - z * np.cos(lean)).max())
+        spread = (float(lean[-1, 0]) / 63) * float(np.hypot(rho, z).max())  # between the angles looked at
+        return self.linking.height + max(below, 0.0) + spread
+
+
+def joined(passes: list[list[MovingStroke]], how: Swivelling) -> ToolPath:
+    """Join strokes with moving axes.
+
+    Parameters
+    ----------
+    passes : list of lists of MovingStroke
+        Each pass with its strokes in the order of cutting.
+    how : Swivelling
+
+    Returns
+    -------
+    ToolPath
+
+    Raises
+    ------
+    InvalidInput
+        When an axis at an end of a stroke lies so low that lifting along it leads nowhere.
+
+    Notes
+    -----
+    **Properties**: (1) the CUT points are those of the strokes in their order; (2) the axis turns only on cuts and on
+    the motions across, or over to a stroke beside; (3) each of these is free by `clear`, or above everything.
+    """
+    strokes = [stroke for some in passes for stroke in some]
+    if not strokes:
+        empty = np.empty((0, 3))
+        return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
+    begins = [entry_points(one, one.axis[0], how.linking) for one in strokes]
+    ends = [exit_points(one, one.axis[-1], how.linking) for one in strokes]
+    first, last = (np.array([one.axis[k] for one in strokes]) for k in (0, -1))
+    top = how.height(np.concatenate([first, last]))
+    down = _above(np.array([one[0] for one in begins]), first, how.up, top)
+    up = _above(np.array([one[-1] for one in ends]), last, how.up, top)
+    _lower((up, down), (ends, begins), (last, first), how)
+    over = _over((ends, begins), (last, first), how)
+    stays = np.isfinite(over[:, 0])
+    pieces = []
+    for k, stroke in enumerate(strokes):
+        before, after = np.concatenate([down[k][None], begins[k]]), np.concatenate([ends[k], up[k][None]])
+        kind = kinds_of(len(before), len(stroke.tip), len(after))
+        before, turned = before[2 * stays[k]:], np.tile(last[k], (len(after), 1))
+        if stays[k + 1]:
+            after = np.concatenate([ends[k][:-1], over[k + 1:k + 2]])
+            turned = np.concatenate([turned[2:], unit(last[k] + first[k + 1])[None]])
+        axis = np.concatenate([np.tile(first[k], (len(before), 1)), stroke.axis, turned])
+        pieces.append((np.concatenate([before, stroke.contact, after]), np.concatenate([before, stroke.tip, after]),
+                       axis, np.concatenate([axis[:len(before)], stroke.normal, turned]),
+                       kind[2 * stays[k]:len(kind) - stays[k + 1]]))
+    contacts, tips, axes, normals, kinds = (np.concatenate(rows) for rows in zip(*pieces, strict=True))
+    size = np.cumsum([len(piece[4]) for piece in pieces])
+    breaks = np.concatenate([[0], size[np.cumsum([len(some) for some in passes]) - 1]])
+    return ToolPath(contacts, tips, axes, normals, kinds.astype(np.int8), breaks.astype(np.int64))
+
+
+def _above(tips: Array, axes: Array, up: Array, height: float) -> Array:
+    """Tips lifted along their axes to a height along `up`."""
+    slope = axes @ up
+    if (slope < _UPWARDS).any():
+        k = int(np.argmin(slope))
+        raise InvalidInput(f"the axis {np.round(axes[k], 4).tolist()} at an end of a pass lies more than 84 deg from "
+                           "the mean one: a retract along it does not leave the part")
+    return np.asarray(tips + (np.maximum(height - tips @ up, 0.0) / slope)[:, None] * axes)
+
+
+def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: Swivelling) -> Array:
+    """Tips over which it goes straight to each stroke, and after the last one, (strokes + 1, 3); nan where it lifts."""
+    over = np.full((len(low[0]) + 1, 3), np.nan)
+    if how.clear is None or len(low[0]) < 2:
+        return over
+    ends = np.array([near_end(one[::-1], axis, how.linking) for one, axis in zip(low[0], axes[0], strict=True)])[:-1]
+    begins = np.array([near_end(one, axis, how.linking) for one, axis in zip(low[1], axes[1], strict=True)])[1:]
+    before, after = axes[0][:-1], axes[1][1:]
+    far = np.linalg.norm(begins - ends, axis=1)
+    left = np.flatnonzero((far <= BESIDE) & (far > 0) & ((before * after).sum(axis=1) > 0))
+    middle = np.asarray(unit(before + after)) if len(left) else before
+    for share in ROOFS:
+        some = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * middle[left]
+        free = how.clear(ends[left], some, before[left], middle[left], False)
+        free &= how.clear(some, begins[left], middle[left], after[left], False)
+        over[left[free] + 1] = some[free]
+        left = left[~free]
+    return over
+
+
+def _lower(tops: tuple[Array, Array], low: tuple[list[Array], list[Array]], axes: tuple[Array, Array],
+           how: Swivelling) -> None:
+    """Replace the ends of links by lower ones where a crossing there is free."""
+    if how.clear is None or len(tops[0]) < 2:
+        return
+    up, down = tops
+    starts, stops = np.array([one[-1] for one in low[0][:-1]]), np.array([one[0] for one in low[1][1:]])
+    before, after = axes[0][:-1], axes[1][1:]
+    left = np.arange(len(starts))
+    for lift in LIFTS:
+        high = starts[left] + lift * before[left], stops[left] + lift * after[left]
+        lower = ((high[0] - up[:-1][left]) * before[left]).sum(axis=1) < 0
+        lower &= ((high[1] - down[1:][left]) * after[left]).sum(axis=1) < 0
+        left, high = left[lower], (high[0][lower], high[1][lower])
+        if not len(left):
+            return
+        free = how.clear(high[0], high[1], before[left], after[left], True)
+        free &= how.clear(starts[left], high[0], before[left], before[left], False)
+        free &= how.clear(stops[left], high[1], after[left], after[left], False)
+        up[left[free]], down[left[free] + 1] = high[0][free], high[1][free]
+        left = left[~free]

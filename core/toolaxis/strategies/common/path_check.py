@@ -1,0 +1,242 @@
+"""The last word on passes with a moving axis.
+
+While the axis turns by up to an angle from that in the middle of a motion, no point of a component leaves the place
+that it would have with the middle axis by more than the angle times its distance from the tip.  So distances that are
+proven for a straight motion with the middle axis, larger by that, hold along the whole motion; motions are split until
+they do.  The cutter on the skin touches it: there no distance is left for that, and it is judged where it stands, at
+points of the path close to each other.
+"""
+
+from dataclasses import dataclass
+from math import inf, radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.contact.clearance.queries import judged, motions
+from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
+from toolaxis.feasibility.violations import Witness
+from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.link_heights import OVER
+from toolaxis.search.path_check import COMPONENTS, Proof, greatest_depth, worst_motion
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Angles from the middle axis to which motions are split in turn, rad.
+_TURNS = (0.01, 0.0025, 0.0005)
+#: Greatest distance and angle between points of the path at which the cutter is held against the skin.
+NEAR_MM, NEAR = 0.5, radians(0.5)
+
+
+class Spans(NamedTuple):
+    """Motions on which tips run straight, (n, 3) mm, and axes turn from one to the other, (n, 3)."""
+
+    start: Array
+    end: Array
+    before: Array
+    after: Array
+
+    def rows(self, which: NDArray[np.intp]) -> "Spans":
+        """Some of them."""
+        return Spans(*(each[which] for each in self))
+
+    def split(self, parts: NDArray[np.int64]) -> tuple["Spans", NDArray[np.intp]]:
+        """Each cut into so many parts, with the number of the one that each part belongs to; axes are interpolated as
+        cutter location data are, linearly."""
+        owner = np.repeat(np.arange(len(parts)), parts)
+        place = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+        low, high = ((place + k)[:, None] / parts[owner][:, None] for k in (0, 1))
+        one = self.rows(owner)
+        tip, turn = one.end - one.start, one.after - one.before
+        return Spans(one.start + low * tip, one.start + high * tip, _unit(one.before + low * turn),
+                     _unit(one.before + high * turn)), owner
+
+
+def _unit(rows: Array) -> Array:
+    return np.asarray(unit(rows)) if len(rows) else rows
+
+
+def spans_of(path: ToolPath) -> Spans:
+    """The motions of a path.
+
+    Parameters
+    ----------
+    path : ToolPath
+    """
+    axes = _unit(path.axis)
+    return Spans(path.cl[:-1], path.cl[1:], axes[:-1], axes[1:])
+
+
+def kept(tool: Tool, group: Group, spans: Spans, required: Array) -> Bools:
+    """Whether every component is proven to keep its distance from a group along motions, (n,).
+
+    Parameters
+    ----------
+    tool : Tool
+    group : Group
+    spans : Spans
+    required : (3,) array
+        Least signed distances of cutter, shank and holder, mm; -inf where one does not count.
+    """
+    reach = _reaches(tool)
+    left = np.arange(len(spans.start))
+    for most in _TURNS:
+        turn = angle_between(spans.before[left], spans.after[left])
+        parts, owner = spans.rows(left).split(np.maximum(np.ceil(0.5 * turn / most), 1).astype(np.int64))
+        middle = _unit(parts.before + parts.after)
+        moves = np.stack([(parts.start + parts.end) / 2, (parts.end - parts.start) / 2, middle], axis=1)
+        free = np.ones(len(left), dtype=bool)
+        off = np.maximum(angle_between(parts.before, middle), angle_between(parts.after, middle))
+        for some in (np.flatnonzero(turn[owner] == 0), np.flatnonzero(turn[owner] > 0)):
+            table = np.tile(required + off[some].max(initial=0.0) * reach, (len(group.faces), 1))
+            free[owner[some[judged(group.cells, tool, moves[some], table).blocked >= 0]]] = False
+        left = left[~free]
+        if not len(left) or not (turn[~free] > 0).any():
+            break
+    answer = np.ones(len(spans.start), dtype=bool)
+    answer[left] = False
+    return answer
+
+
+def _reaches(tool: Tool) -> Array:
+    """How far from the tip a point of each component may be, (3,) mm."""
+    reach = np.zeros(3)
+    reach[0] = np.hypot(max(tool.radius, tool.profile.top_radius), tool.profile.top)
+    for name, line in tool.outlines.items():
+        reach[COMPONENTS.index(name)] = np.hypot(*line.T).max()
+    return reach
+
+
+@dataclass(frozen=True, eq=False)
+class MovingCrossing:
+    """The surroundings of links between strokes with moving axes.
+
+    Attributes
+    ----------
+    tool : Tool
+    groups : tuple of Group
+        With the distances to keep.
+    allowance : float
+        Stock left on the skin, mm.
+    over : float
+        What they keep from the skin where they cross, mm, see `toolaxis.search.link_heights.height_over`.
+    """
+
+    tool: Tool
+    groups: tuple[Group, ...]
+    allowance: float = 0.0
+    over: float = OVER
+
+    def clear(self, start: Array, end: Array, before: Array, after: Array, across: bool) -> Bools:
+        """Whether links are free, (k,): they keep their distances, and where they cross `over` from the skin too.
+
+        Parameters
+        ----------
+        start, end : (k, 3) array
+            Tips, mm.
+        before, after : (k, 3) array
+            Axes there.
+        across : bool
+            Whether they cross.
+        """
+        free = np.ones(len(start), dtype=bool)
+        for group in self.groups:
+            required = group.required.copy()
+            if across and group.role != OTHER:
+                required[0] = self.allowance + self.over
+            some = np.flatnonzero(free)
+            free[some] = kept(self.tool, group, Spans(start, end, before, after).rows(some), required)
+        return free
+
+
+def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: float = 0.0, *,
+                 progress: Progress = NO_PROGRESS) -> Proof:
+    """Judge a path with a moving axis: every motion by bounds, the cutter on the skin at points.
+
+    Parameters
+    ----------
+    path : ToolPath
+    tool : Tool
+    groups : tuple of Group
+        From `toolaxis.feasibility.surroundings.grouped`, with the distances to keep.
+    allowance : float
+        Stock left on the skin, mm.
+    progress : Progress
+
+    Returns
+    -------
+    Proof
+        Its gouge is the greatest depth at the points looked at, as an upper bound there; clearances are those that were
+        asked for.
+
+    Raises
+    ------
+    Cancelled
+        When the user asked to stop.
+    """
+    spans, cutting = spans_of(path), path.kind[1:] == Motion.CUT
+    gouge = 0.0
+    for number, group in enumerate(groups):
+        progress.report("proof", number, len(groups))
+        on = np.flatnonzero(cutting & (group.role != OTHER))
+        off = np.flatnonzero(~cutting | (group.role == OTHER))
+        without = np.concatenate([[-inf], group.required[1:]])
+        for rows, required in ((on, without), (off, group.required)):
+            free = kept(tool, group, spans.rows(rows), required)
+            if not _alone(tool, group, spans.rows(rows[~free]), required):
+                return Proof(_witness(tool, group, spans.rows(rows[~free]), required))
+        if len(on):
+            depth = _touching(tool, group, spans.rows(on), allowance)
+            if depth.witness is not None:
+                return depth
+            gouge = max(gouge, depth.gouge)
+    known = [name for name in COMPONENTS if name == "cutter" or name in tool.outlines]
+    least = {name: min(float(group.required[COMPONENTS.index(name)]) for group in groups
+                       if name != "cutter" or group.role == OTHER) for name in known
+             if name != "cutter" or any(group.role == OTHER for group in groups)}
+    return Proof(None, gouge, least)
+
+
+def _alone(tool: Tool, group: Group, spans: Spans, required: Array) -> bool:
+    """Whether motions that are not proven together are each proven alone: bounds are those of the widest turn among
+    them, and links were laid by their own."""
+    return all(kept(tool, group, spans.rows(np.array([k])), required)[0] for k in range(len(spans.start)))
+
+
+def standing(spans: Spans) -> Array:
+    """Positions on motions, ends included, no farther apart than `NEAR_MM` and `NEAR`, (n, 3, 3) as `motions` gives.
+
+    Parameters
+    ----------
+    spans : Spans
+    """
+    way = np.linalg.norm(spans.end - spans.start, axis=1) / NEAR_MM
+    turn = angle_between(spans.before, spans.after) / NEAR
+    parts, _ = spans.split(np.maximum(np.ceil(np.maximum(way, turn)), 2).astype(np.int64))
+    last = np.append((parts.end[:-1] != parts.start[1:]).any(axis=1), len(parts.end) > 0)
+    return motions(np.concatenate([parts.start, parts.end[last]]), np.concatenate([parts.before, parts.after[last]]))
+
+
+def _touching(tool: Tool, group: Group, spans: Spans, allowance: float) -> Proof:
+    """The cutter where it stands on the skin, or at faces that meet it harmlessly."""
+    moves = standing(spans)
+    required = np.array([group.required[0], -inf, -inf])
+    table = np.tile(required, (len(group.faces), 1))
+    bad = np.flatnonzero(judged(group.cells, tool, moves, table).blocked >= 0)
+    if len(bad):
+        return Proof(_worst(tool, group, moves[bad], required))
+    return Proof(None, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
+
+
+def _witness(tool: Tool, group: Group, spans: Spans, required: Array) -> Witness:
+    """The worst position on motions that were not proven to keep their distances."""
+    return _worst(tool, group, standing(spans), required)
+
+
+def _worst(tool: Tool, group: Group, moves: Array, required: Array) -> Witness:
+    return worst_motion(tool, group, moves, required, np.maximum(required, 0.0))

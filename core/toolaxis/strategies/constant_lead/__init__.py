@@ -1,0 +1,1 @@
+"""A constant lead angle along each pass (Sturz milling)."""

@@ -1,0 +1,202 @@
+"""Passes with one rotary axis clamped: the other turns as a smooth function of the place on the face (4+1 axes).
+
+The angle is a bicubic spline over the parameters along and across the passes, so that it has no jump along a pass and
+none from pass to pass.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+
+from toolaxis.contact.frame import Frame
+from toolaxis.contact.strip.second_order import contact_forms, second_order_each
+from toolaxis.contact.strip.width import step_widths
+from toolaxis.machine.configurations import Machine
+from toolaxis.machine.kinematics import placement, tool_axes
+from toolaxis.numeric.vectors import unit
+from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.width_correction import lean_ratios
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AngleField:
+    """An angle over a chart.
+
+    Attributes
+    ----------
+    along, step : (n,), (m,) array
+        Parameters of the nodes, ascending, four at least.
+    values : (n, m) array
+        Angles there, rad.
+    """
+
+    along: Array
+    step: Array
+    values: Array
+
+    @cached_property
+    def _spline(self) -> RectBivariateSpline:
+        return RectBivariateSpline(self.along, self.step, self.values, kx=3, ky=3, s=0)
+
+    def at(self, along: Array, step: Array) -> Array:
+        """Angles at parameters, (k,) rad; beyond the nodes they go on ever slower, by what the last slope makes of one
+        gap at most.
+
+        Parameters
+        ----------
+        along, step : (k,) array
+        """
+        a, s = np.clip(along, *self.along[[0, -1]]), np.clip(step, *self.step[[0, -1]])
+        value = self._spline.ev(a, s)
+        for beyond, order, nodes in ((along - a, {"dx": 1}, self.along), (step - s, {"dy": 1}, self.step)):
+            some, gap = np.flatnonzero(beyond), float(nodes[1] - nodes[0])
+            if len(some):
+                value[some] += gap * np.tanh(beyond[some] / gap) * self._spline.ev(a[some], s[some], **order)
+        return np.asarray(value)
+
+
+@dataclass(frozen=True, eq=False)
+class Clamp:
+    """A machine with one of its two rotary axes clamped.
+
+    Attributes
+    ----------
+    machine : Machine
+    which : int
+        The clamped one in the order of `Machine.rotary`.
+    angle : float
+        Where it is clamped, rad.
+    table_from_part : array, optional
+        Where the part stands on the table, all axes at zero.
+    """
+
+    machine: Machine
+    which: int
+    angle: float
+    table_from_part: Array | None = None
+
+    def rotary(self, free: Array) -> Array:
+        """Both rotary angles, (n, 2) rad.
+
+        Parameters
+        ----------
+        free : (n,) array
+            Of the free axis, rad.
+        """
+        rows = np.full((len(free), 2), self.angle)
+        rows[:, 1 - self.which] = free
+        return rows
+
+    def axes(self, free: Array) -> Array:
+        """Tool axes in the part's frame, (n, 3).
+
+        Parameters
+        ----------
+        free : (n,) array
+            rad
+        """
+        return np.asarray(unit(tool_axes(self.machine, self.rotary(free)) @ placement(self.table_from_part)[:3, :3]))
+
+
+@dataclass(frozen=True, eq=False)
+class ClampedCut(LeadCut):
+    """What cuts with one rotary axis clamped.
+
+    Attributes
+    ----------
+    tool, axis, scallop, allowance, feed
+        As for `LeadCut`, the axis about the mean one; its lead means nothing here.
+    clamp : Clamp
+    field : AngleField
+        The free axis over the chart with that feed.
+    """
+
+    clamp: Clamp | None = None
+    field: AngleField | None = None
+
+    def free(self, uv: Array) -> Array:
+        """Angles of the free axis at contacts, (n,) rad.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        """
+        assert self.field is not None
+        rows = np.atleast_2d(uv)
+        a, s = (0, 1) if self.feed == "u" else (1, 0)
+        return self.field.at(rows[:, a], rows[:, s])
+
+    def axes(self, face: Face, uv: Array) -> Array:
+        """Unit axes at contacts, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        """
+        assert self.clamp is not None
+        return self.clamp.axes(self.free(uv))
+
+    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
+        """The same, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        frame : Frame
+            Of no matter here.
+        """
+        return self.axes(face, uv)
+
+
+@dataclass(frozen=True, eq=False)
+class ClampedChart(LeadChart):
+    """A face in its own parameters, for passes with one rotary axis clamped.
+
+    Attributes
+    ----------
+    face, feed
+        As for `LeadChart`.
+    standing : bool
+        Whether half widths are those of the axis that stands still where it is at each contact: for comparing fields,
+        as long as turning is slow.
+    """
+
+    standing: bool = False
+
+    def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
+        """Half widths (n, 2) in the step parameter.
+
+        Parameters
+        ----------
+        cut : ClampedCut
+        along, step : (n,) array
+        """
+        if not self.standing:
+            return super().half_widths(cut, along, step)
+        uv = self.uv(along, np.clip(step, *self._poles))
+        return np.asarray(step_widths(self.face, cut.tool, uv, cut.axes(self.face, uv), cut.scallop, self.feed,
+                                      cut.allowance))
+
+    def screen(self, cut: Cut, along: Array, step: Array) -> Array:
+        """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean.
+
+        Parameters
+        ----------
+        cut : ClampedCut
+        along, step : (n,) array
+        """
+        assert isinstance(cut, ClampedCut)
+        uv = self.uv(along, step)
+        axes, forms = cut.axes(self.face, uv), contact_forms(self.face, uv, self.feed, True)
+        half = second_order_each(forms, axes, cut.numbers, cut.scallop)
+        lean = ((forms[:, k:k + 3] * axes).sum(axis=1) for k in (0, 3))
+        return np.asarray(2 * half * lean_ratios(cut.leans, *lean))

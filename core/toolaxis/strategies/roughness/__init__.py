@@ -1,0 +1,1 @@
+"""Five axes with a rotary spline for each pass, by strip width and roughness."""

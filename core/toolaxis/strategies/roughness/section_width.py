@@ -1,0 +1,237 @@
+"""Strip width of the standing cutter in the plane across the feed, by distances along the surface's normals.
+
+This is the strip width of a cutter in one position.  What passes leave is that of the swept cutter, in
+`toolaxis.contact.strip.width`; the two agree to the second order where the axis leans along the feed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.frame import Feed, contact_frame
+from toolaxis.contact.placement import tips
+from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.scallop import effective_radius
+from toolaxis.contact.strip.swept_volume_moving_axis import cutter_distances
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import axis_rows, dot
+from toolaxis.shape.differential import normals
+from toolaxis.shape.face import Face
+from toolaxis.strategies.roughness.feasible_area import check_bull_nose
+from toolaxis.tools.assembly import Tool
+from toolaxis.work import spend
+
+Array = NDArray[np.float64]
+
+#: Places on each side of a contact, how far they reach in radii of the tool, and how much closer they lie near it.
+_PLACES, _REACH, _CLOSER, _FEWEST = 56, 2.0, 1.3, 16
+#: Newton steps to a place in the section, and to the end of a strip.
+_SECTION_STEPS, _END_STEPS = 8, 6
+#: By how much a place may still miss the section before the last step, mm: steps converge like squares.
+_CLOSE = 1e-5
+#: As many bounds of distances as take as long as no widths; each place takes as long as one.
+_QUESTION = 4000
+
+
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """Lifted points of a surface in the planes across the feed at contacts; the same for all axes.
+
+    Attributes
+    ----------
+    point, normal : (n, 3) array
+        Of the contacts.
+    places : (k,) array
+        Distances from the contact in the tangent plane, growing, the contact left out, mm.
+    lifted : (n, 2, k, 3) array
+        Points as high above the surface as the scallop and the allowance, left and right of the contact, mm.
+    tool : Tool
+    scallop, allowance : float
+        mm
+    """
+
+    point: Array
+    normal: Array
+    places: Array
+    lifted: Array
+    tool: Tool
+    scallop: float
+    allowance: float
+
+    def widths(self, axis: Array) -> Array:
+        """Widths left and right, (n, 2) mm, of the cutter with unit axes (n, 3); see `section_width`."""
+        numbers = cutter_numbers(self.tool, self.scallop, self.allowance)
+        tip = tips(self.point, self.normal, axis, self.tool, self.allowance)
+        spend(_QUESTION + self.lifted[..., 0].size)
+        off = cutter_distances(numbers, self.lifted - tip[:, None, None], axis[:, None, None])
+        first = np.concatenate([np.full((*off.shape[:2], 1), -min(self.scallop, self.tool.radius)), off], axis=2)
+        places = np.concatenate([[0.0], self.places])
+        outside = first[..., 1:] > 0
+        k = np.where(outside.any(axis=2), np.argmax(outside, axis=2) + 1, len(places) - 1)
+        return np.where(outside.any(axis=2), _crossing(places, first, k), places[-1])
+
+
+def _crossing(places: Array, values: Array, k: NDArray[np.intp]) -> Array:
+    """Where the cubic through four values around the gap before each k vanishes."""
+    begin = np.clip(k - 2, 1, len(places) - 4)[..., None] + np.arange(4)
+    at, some = places[begin], np.take_along_axis(values, begin, axis=2)
+    low, high = places[k - 1], places[k]
+    before, after = (np.take_along_axis(values, (k - j)[..., None], axis=2)[..., 0] for j in (1, 0))
+    slope = np.where(after > before, after - before, 1.0)
+    x = low - before * (high - low) / slope
+    for _ in range(_END_STEPS):
+        f, df = np.zeros_like(x), np.zeros_like(x)
+        for i in range(4):
+            others = [j for j in range(4) if j != i]
+            part = [x - at[..., j] for j in others]
+            scale = some[..., i] / np.prod([at[..., i] - at[..., j] for j in others], axis=0)
+            f += scale * part[0] * part[1] * part[2]
+            df += scale * (part[0] * part[1] + part[0] * part[2] + part[1] * part[2])
+        x = np.clip(x - f / np.where(df > 0, df, np.inf), low, high)
+    return np.asarray(x)
+
+
+def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed = "u", allowance: float = 0.0,
+             reach: float | None = None) -> Sections:
+    """Lifted points in the planes across the feed at contacts.
+
+    Parameters
+    ----------
+    face, tool, uv, scallop, feed, allowance
+        As for `section_width`.
+    reach : float, optional
+        How far to look on each side, mm; 2 R unless given, and no farther than that.
+    """
+    check_bull_nose(tool)
+    cutter_numbers(tool, scallop, allowance)
+    rows = np.atleast_2d(np.asarray(uv, dtype=float))
+    far = _REACH * tool.radius
+    near = far if reach is None else min(reach, far)
+    count = max(int(np.ceil(_PLACES * (near / far) ** (1 / _CLOSER))), _FEWEST)
+    places = near * (np.arange(1, count + 1) / count) ** _CLOSER
+    at, up = section_points(face, section_parameters(face, rows, np.concatenate([places, -places]), feed))
+    lifted = (at + (scallop + allowance) * up).reshape(len(rows), 2, count, 3)
+    point, normal = face.evaluate(rows).point, contact_frame(face, rows, feed).normal
+    return Sections(point, normal, places, lifted, tool, scallop, allowance)
+
+
+def section_parameters(face: Face, uv: ArrayLike, offsets: ArrayLike, feed: Feed = "u") -> Array:
+    """Parameters of the points of a surface in the planes across the feed at contacts, (n, k, 2).
+
+    Parameters
+    ----------
+    face : Face
+    uv : (n, 2) array_like
+    offsets : (k,) array_like
+        Distances from the contact to the left in the tangent plane, mm.
+    feed : "u", "v" or (3,) or (n, 3) array_like
+    """
+    frame, rows = contact_frame(face, uv, feed), np.atleast_2d(np.asarray(uv, dtype=float))
+    away = np.asarray(offsets, dtype=float)
+    feeds, lefts, origin, at = (np.repeat(each, len(away), axis=0) for each in
+                                (frame.feed, frame.left, face.evaluate(rows).point, rows))
+    across = np.tile(away, len(rows))
+    for _ in range(_SECTION_STEPS):
+        d = face.evaluate(at)
+        miss_f, miss_k = dot(d.point - origin, feeds), dot(d.point - origin, lefts) - across
+        uf, vf, uk, vk = dot(d.su, feeds), dot(d.sv, feeds), dot(d.su, lefts), dot(d.sv, lefts)
+        det = uf * vk - vf * uk
+        det = np.where(np.abs(det) > 1e-12, det, 1e-12)
+        at = at - np.stack([vk * miss_f - vf * miss_k, uf * miss_k - uk * miss_f], axis=1) / det[:, None]
+        if max(np.abs(miss_f).max(initial=0.0), np.abs(miss_k).max(initial=0.0)) < _CLOSE:
+            break
+    return np.asarray(at.reshape(len(rows), len(away), 2))
+
+
+def section_points(face: Face, parameters: Array) -> tuple[Array, Array]:
+    """Points and normals at (n, k, 2) parameters, (n, k, 3) each; beyond its domain the surface goes straight ahead.
+
+    Parameters
+    ----------
+    face : Face
+    parameters : (n, k, 2) array
+        As `section_parameters` gives.
+    """
+    (u0, u1), (v0, v1) = face.surface.domain
+    at = parameters.reshape(-1, 2)
+    d = face.evaluate(at)
+    normal = normals(d, face.flip, np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - at)
+    shape = (*parameters.shape[:2], 3)
+    return d.point.reshape(shape), normal.reshape(shape)
+
+
+def section_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: Feed = "u",
+                  allowance: float = 0.0) -> Array:
+    """Widths left and right of the feed in which the standing cutter leaves less than the scallop height.
+
+    Parameters
+    ----------
+    face : Face
+    tool : Tool
+        A torus or a flat end.
+    uv : (n, 2) array_like
+        Parameters of the contacts.
+    axis : (3,) or (n, 3) array_like
+        Tool axis, tip to spindle.
+    scallop : float
+        Scallop height h, mm.
+    feed : "u", "v" or (3,) or (n, 3) array_like
+    allowance : float
+        Stock left on the surface, mm.
+
+    Returns
+    -------
+    (n, 2) array
+        W_L and W_R, mm: distances along the tangent across the feed from the contact to the first point of the surface,
+        in the plane across the feed, at which the distance to the cutter along the normal is h; 2 R at most.
+
+    Raises
+    ------
+    InvalidInput
+        When the corner radius is the cutter's radius, or a number is out of range.
+
+    Notes
+    -----
+    **Source**: [dong2023] Sec. 3.1, Eqs. (12) and (13).
+
+    **Properties**: 1. never above the swept width by more than the surface's own bend; 2. the sum is least across
+    changes of the direction where the axis leans along the feed on a plane.
+    """
+    bench = sections(face, tool, uv, scallop, feed, allowance)
+    return bench.widths(axis_rows(axis, len(bench.point)))
+
+
+def expected_widths(tool: Tool, lean: float, scallop: float) -> tuple[float, float]:
+    """Range of the expected strip width, mm: that of a lean on a plane, more or less a tenth of the radius.
+
+    Parameters
+    ----------
+    tool : Tool
+    lean : float
+        rad, along the feed.
+    scallop : float
+        mm
+
+    Raises
+    ------
+    InvalidInput
+        When the corner radius is the cutter's radius, or the lean or the height is out of range.
+
+    Notes
+    -----
+    **Source**: [dong2023] Eq. (14).
+
+    Examples
+    --------
+    >>> [round(x, 4) for x in expected_widths(Tool.torus(10, 3), np.radians(20.0), 0.1)]
+    [2.1529, 3.1529]
+    """
+    check_bull_nose(tool)
+    if not (0 < lean < np.pi / 2):
+        raise InvalidInput(f"lean is {np.degrees(lean)} deg: it must lie between 0 and 90")
+    radius = float(effective_radius(tool, lean))
+    if not 0 < scallop < radius:
+        raise InvalidInput(f"scallop height is {scallop} mm: it must lie above zero and below {radius:.4g} mm")
+    middle = 2 * float(np.sqrt(radius**2 - (radius - scallop) ** 2))
+    return middle - tool.radius / 10, middle + tool.radius / 10

@@ -1,0 +1,1 @@
+"""Flat ends that touch the surface at two points: tilts, strips and passes."""

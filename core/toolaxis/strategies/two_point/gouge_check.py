@@ -1,0 +1,100 @@
+"""Whether a cutter gouges on motions on which its axis turns: bounds that hold between all points of a path.
+
+While the axis turns by up to an angle from a middle one, no point of the cutter leaves the place that it has under the
+middle axis by more than the angle times its distance from the tip.  Motions are cut so short that this costs only a
+share of the gouge that is allowed; and because it costs less near the tip, the lower end of the cutter, which touches
+the skin, is looked at apart from what is above, which only has to stay out of it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.clearance.gouge import least_distance, skin_cells
+from toolaxis.contact.clearance.queries import judged
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+from toolaxis.shape.cells import Cells
+from toolaxis.shape.face import Face
+from toolaxis.tools.assembly import Tool
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+#: Share of the allowed distance that the turning on a piece may cost, coarse first, and pieces looked at together.
+SHARES, AT_ONCE = (0.85, 0.4, 0.1), 65536
+
+
+def turning_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | list[Face] | tuple[Face, ...],
+                   limit: float, *, allowance: float = 0.0) -> Flags:
+    """Whether the cutter may reach deeper than a limit between points of a path: False is proven, (n - 1,).
+
+    Parameters
+    ----------
+    tool : Tool
+        With an upright side.
+    tips : (n, 3) array_like
+        mm
+    axis : (n, 3) array_like
+        Unit tool axis, tip to spindle; interpolated linearly between the points, as cutter location data are.
+    skin : Cells or sequence of Face
+    limit : float
+        Depth below the stock that is left, mm, above zero.
+    allowance : float
+        Stock left on the skin, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When shapes do not fit, or the limit is not a finite number above zero.
+
+    Notes
+    -----
+    **Properties**: 1. False only where no point between the ends gouges deeper; 2. a straight motion without a turn is
+    judged as `toolaxis.contact.clearance.gouge.segment_gouges` does.
+    """
+    rows, axes = as_rows(tips, 3, "tool tips"), unit(as_rows(axis, 3, "axis"))
+    if len(axes) != len(rows):
+        raise InvalidInput(f"{len(axes)} axes are given for {len(rows)} tips: one is needed for each")
+    if not (np.isfinite(limit) and limit > 0):
+        raise InvalidInput(f"gouge limit is {limit} mm: it must be a finite number above zero")
+    cells, split = skin_cells(skin), _split(tool)
+    deep = least_distance(tool, limit, allowance)
+    room = allowance - deep
+    answer = np.ones(max(len(rows) - 1, 0), dtype=bool)
+    for share in SHARES:
+        left = np.flatnonzero(answer)
+        for some in np.array_split(left, max(1, len(left) // 256)):
+            answer[some] = _judged(split, (rows, axes), some, cells, (deep, share * room))
+    return answer
+
+
+def _split(tool: Tool) -> tuple[Tool, float, float]:
+    """The cutter in two: its lower end, and the rest as if it were a shank; how far their points are from the tip."""
+    radius, top = tool.radius, tool.profile.top
+    low = min(max(0.5 * radius, 2 * tool.corner_radius), top)
+    upper = np.array([[radius, low], [radius, top]]) if top > low else None
+    return (replace(tool, flute_length=low, shank=upper, holder=None, stickout=None), float(np.hypot(radius, low)),
+            float(np.hypot(radius, top)))
+
+
+def _judged(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp], cells: Cells,
+            ask: tuple[float, float]) -> Flags:
+    """Whether some motions were not proven, (k,): least signed distance of the lower end, and what turning may cost."""
+    (tool, near, far), (tips, axes), (deep, cost) = split, path, ask
+    begin, end, before, after = tips[which], tips[which + 1], axes[which], axes[which + 1]
+    parts = np.maximum(np.ceil(0.5001 * angle_between(before, after) * near / cost), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(which)), parts)
+    place = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / parts[owner]
+    half = 0.5 / parts[owner]
+    way, turn = (end - begin)[owner], (after - before)[owner]
+    middle = before[owner] + place[:, None] * turn
+    moves = np.stack([begin[owner] + place[:, None] * way, half[:, None] * way,
+                      middle / np.linalg.norm(middle, axis=1, keepdims=True)], axis=1)
+    size = 0.5001 * angle_between(before, after) / parts
+    slack = float(size.max(initial=0.0))
+    required = np.tile([deep + near * slack, max(far * slack, 1e-9), -np.inf], (len(cells.faces), 1))
+    bad = np.zeros(len(which), dtype=bool)
+    bad[owner[judged(cells, tool, moves, required).blocked >= 0]] = True
+    return bad

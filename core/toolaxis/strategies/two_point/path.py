@@ -1,0 +1,122 @@
+"""From strips of a flat end to a tool path with an axis for each point, and its proof."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.strategies.common.links import MovingStroke
+from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.postures import postures
+from toolaxis.strategies.two_point.strips import Lane, Strip, left_out, places
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Places across a strip at which it is looked whether the face is there.
+_ACROSS = 15
+
+
+def strokes(work: Work, strips: tuple[Strip, ...], direction: str = "zigzag",
+            progress: Progress = NO_PROGRESS) -> list[list[MovingStroke]]:
+    """Cutting motions of passes in the order of cutting.
+
+    Parameters
+    ----------
+    work : Work
+    strips : tuple of Strip
+    direction : str
+        "zigzag" (every other pass back), "climb" or "conventional" (all one way, for a cutter that turns clockwise).
+    progress : Progress
+    """
+    climbs = _climbs(work)
+    found: list[list[MovingStroke]] = []
+    for number, one in enumerate(strips):
+        progress.report("postures", number, len(strips))
+        onward = number % 2 == 0 if direction == "zigzag" else climbs == (direction == "climb")
+        pieces = [_stroke(work, one, lane, span) for lane, where in one.shares
+                  for span in _spans(work, one, lane, where)]
+        if pieces:
+            found.append(pieces if onward else [_back(piece) for piece in reversed(pieces)])
+    return found
+
+
+def _climbs(work: Work) -> bool:
+    """Whether travel in growing parameter climbs: passes proceed in growing step parameter, where material is left."""
+    a0, a1, s0, s1 = work.span
+    uv = work.uv(np.array([(a0 + a1) / 2]), (s0 + s1) / 2)
+    d, normal = work.face.evaluate(uv), work.face.normal(uv)[0]
+    along, across = (d.su[0], d.sv[0]) if work.feed == "u" else (d.sv[0], d.su[0])
+    return bool(np.cross(along, normal) @ across >= 0)
+
+
+def _spans(work: Work, one: Strip, lane: Lane, where: slice) -> list[tuple[float, float]]:
+    """From where to where along a pass a lane works: as far as its strip holds some of the face."""
+    along = places(work)
+    low, high = one.step - one.halves[:, 0], one.step + one.halves[:, 1]
+    share = np.linspace(0.0, 1.0, _ACROSS)
+    steps = np.clip(low[:, None] + (high - low)[:, None] * share, *work.span[2:])
+    pair = np.stack(np.broadcast_arrays(along[:, None], steps), axis=-1).reshape(-1, 2)
+    on = work.face.contains(pair if work.feed == "u" else pair[:, ::-1]).reshape(steps.shape).any(axis=1)
+    on = on & ~left_out(one)
+    on[1:-1] |= on[2:] | on[:-2]
+    own = np.zeros(len(on), dtype=bool)
+    own[where] = True
+    rows = np.flatnonzero(np.diff(np.concatenate([[0], (on & own).astype(int), [0]])))
+    found = []
+    for first, after in rows.reshape(-1, 2):
+        reach = lane.reach[max(first - 1, 0):after + 1]
+        reach = reach[np.isfinite(reach).all(axis=1)]
+        if len(reach) and reach[:, 1].max() > reach[:, 0].min():
+            found.append((float(reach[:, 0].min()), float(reach[:, 1].max())))
+    return found
+
+
+def _stroke(work: Work, one: Strip, lane: Lane, span: tuple[float, float]) -> MovingStroke:
+    """Points of a pass, so close that straight motions keep the chord tolerance, at tip, rim and twice that high."""
+    on = (lane.along >= span[0]) & (lane.along <= span[1])
+    along = np.unique(np.concatenate([[span[0]], lane.along[on], [span[1]]]))
+    parts = np.interp((along[1:] + along[:-1]) / 2, lane.along[1:-1], _parts(work, lane)).round().astype(np.int64)
+    along = np.concatenate([*(np.linspace(a, b, n, endpoint=False)
+                              for (a, b), n in zip(pairwise(along), parts, strict=True)), along[-1:]])
+    found = postures(work, along, one.step, lane.sense, (lane.along, lane.postures.stand))
+    stroke = MovingStroke(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
+    return replace(stroke, tip=stroke.tip - _rises(work, stroke, along)[:, None] * stroke.normal)
+
+
+def _rises(work: Work, stroke: MovingStroke, along: Array) -> Array:
+    """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
+
+    As `toolaxis.path.chord_tolerance.rises`, but from how the poses bend at their neighbours: what tip and rim rise by.
+    """
+    if len(along) < 3:
+        return np.zeros(len(along))
+    gap = np.diff(along)
+    bends = []
+    for height in (0.0, work.tool.radius):
+        way = np.diff(stroke.tip + height * stroke.axis, axis=0) / gap[:, None]
+        bends.append(2 * np.diff(way, axis=0) / (gap[1:] + gap[:-1])[:, None])
+    tip, rim = bends
+    bend = (tip * stroke.normal[1:-1]).sum(axis=1) + np.linalg.norm(rim - tip, axis=1)
+    bend = np.concatenate([bend[:1], bend, bend[-1:]])
+    above = np.maximum(np.maximum(bend[1:], bend[:-1]), 0.0) * gap**2 / 8
+    above = np.minimum(above, work.chord)  # corners of the way lie at points: between them there are none
+    return np.asarray(np.maximum(np.append(above, 0.0), np.append(0.0, above)))
+
+
+def _parts(work: Work, lane: Lane) -> NDArray[np.int64]:
+    """Into how many parts the gaps around a posture must be cut, at all but the first and the last."""
+    found, gap = lane.postures, np.diff(lane.along)
+    sag = np.zeros(len(gap) - 1)
+    for height in (0.0, work.tool.radius):
+        way = np.diff(found.ring.tip + height * found.ring.axis, axis=0) / gap[:, None]
+        bend = 2 * np.linalg.norm(np.diff(way, axis=0), axis=1) / (gap[1:] + gap[:-1])
+        sag = np.maximum(sag, bend * np.maximum(gap[1:], gap[:-1])**2 / 8)
+    wide = np.maximum(np.maximum(sag, np.append(sag[1:], 0.0)), np.append(0.0, sag[:-1]))
+    return np.asarray(np.clip(np.ceil(np.sqrt(wide / work.chord)), 1, 12).astype(np.int64))
+
+
+def _back(stroke: MovingStroke) -> MovingStroke:
+    return MovingStroke(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1], stroke.axis[::-1])
