@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from toolaxis.numeric.compiled import fused
+from toolaxis.numeric.jit import fused
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.shape.face import Face
 

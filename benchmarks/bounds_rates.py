@@ -15,10 +15,10 @@ from toolaxis.contact.clearance.queries import bounded, motions
 from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
-from toolaxis.shape.cells import cells
+from toolaxis.shape.bounding.bounding_tree import cells
+from toolaxis.shape.bounding.build import subdivided
 from toolaxis.shape.face import Face
-from toolaxis.shape.subdivision import subdivided
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 BODY = {"stickout": 60, "shank": [(6, 0), (6, 60)], "holder": [(10, 0), (10, 40), (25, 40), (25, 80)]}
 TOOLS = (Tool.torus(12, 1, **BODY), Tool.ball(8, **BODY), Tool.flat(10, **BODY), Tool.tapered(6, 1, 4, **BODY))

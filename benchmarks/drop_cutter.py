@@ -10,9 +10,9 @@ from toolaxis.contact.drop_cutter.drop_cutter import cutter_of, drop_cutter, dro
 from toolaxis.contact.drop_cutter.drop_cutter_numpy import drop_numpy
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import perpendicular, unit
-from toolaxis.shape.cells import cells
+from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 POINTS, AXIS = 20_000, unit([0.3, -0.15, 1.0])
 #: Size of the patch, mm, squares along its side, two triangles each, points for opencamlib, and the aim over its rate.

@@ -10,9 +10,9 @@ import numpy as np
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.feed.five_axes import five_axis_time
-from toolaxis.feed.schedule import Feeds, machining_time
-from toolaxis.machine.configurations import Machine
+from toolaxis.feed.fixed_axis_time import Feeds, machining_time
+from toolaxis.feed.moving_axis_time import five_axis_time
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import unit
 
 LENGTH, STEP, LEAD = 100.0, 0.1, np.radians(10)

@@ -16,16 +16,16 @@ from benchmarks._papers import GOUGE
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.feed.five_axes import FiveAxisSchedule
-from toolaxis.feed.schedule import Feeds
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.moving_axis_time import FiveAxisSchedule
 from toolaxis.job.timing import feeds_of
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
 from toolaxis.strategies.four_plus_one.search import Finder, clamped_range
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 FACES = ("freeform", "saddle", "hyperbolic_paraboloid")
 MACHINE, TOOL, SCALLOP = "mikron-ucp-710", "torus:12x1", 0.02

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from benchmarks._manta import manta_passes
 
-from toolaxis.feed.constraints import linear_bounds
-from toolaxis.feed.ramps import ramps
-from toolaxis.feed.schedule import Feeds, index_time
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.fixed_axis_time import Feeds, index_time
+from toolaxis.feed.limits import linear_bounds
+from toolaxis.feed.velocity_ramps import ramps
+from toolaxis.machine.feed_polytopes import Level, alignments, best_along, box, pole_zone, preferred
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level, alignments, best_along, box, pole_zone, preferred
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
 from toolaxis.search.fastest_setup import cutting_seconds, fastest
 from toolaxis.search.kinematic_setup import Setup, Stretch, setup, setups_by_pass

@@ -11,7 +11,7 @@ import numpy as np
 from toolaxis.job.axes import try_axis
 from toolaxis.job.run import plan
 from toolaxis.job.timing import feeds_of, timed
-from toolaxis.machine.polytopes import Level
+from toolaxis.machine.feed_polytopes import Level
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.search.cost import FEEDS

@@ -18,7 +18,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.placement import place
 from toolaxis.errors import ToolAxisError
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.search.fixed_axis import task

@@ -18,19 +18,19 @@ from numpy.typing import NDArray
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.feed.axis_motion import AxisMotion, axis_motion
-from toolaxis.feed.five_axes import five_axis_time
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.numeric.corners import corner
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.moving_axis_time import five_axis_time
+from toolaxis.machine.library import load_machine
+from toolaxis.numeric.corner_rounding import corner
 from toolaxis.search.fixed_axis import task
-from toolaxis.shape.skins import join
+from toolaxis.shape.joining.smooth_skins import join
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
 from toolaxis.strategies.blade.layers import along_blade
 from toolaxis.strategies.blade.plan import blade
 from toolaxis.strategies.blade.reschedule import swing_of_path
 from toolaxis.strategies.blade.schedule import Layer, Scheduled, Swing, reschedule
 from toolaxis.strategies.blade.section import base_of, section
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ from toolaxis.contact.strip.width import (
 )
 from toolaxis.contact.strip.width_numpy import half_widths_numpy
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 SCALLOP = 0.02
 

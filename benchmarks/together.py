@@ -13,8 +13,8 @@ from toolaxis.contact.clearance.gouge import gouges
 from toolaxis.contact.placement import place
 from toolaxis.contact.strip.second_order import second_order_many_axes
 from toolaxis.contact.strip.width import step_widths_many_axes
-from toolaxis.shape.cells import cells
-from toolaxis.tools.assembly import Tool
+from toolaxis.shape.bounding.bounding_tree import cells
+from toolaxis.tools.tool import Tool
 
 TOOLS = (Tool.torus(12, 1, **BODY), Tool.ball(8, **BODY), Tool.flat(10, **BODY))
 SCALLOP, CONTACTS, AXES = 0.02, 60, 40

@@ -29,9 +29,9 @@ from matplotlib.figure import Figure
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import ToolAxisError
-from toolaxis.feed.five_axes import five_axis_motion
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.moving_axis_time import five_axis_motion
+from toolaxis.machine.library import load_machine
 from toolaxis.report.plots import GREY, VERMILION, bare, cutting_lines, figure
 from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import Task, task
@@ -47,7 +47,7 @@ from toolaxis.strategies.two_point.inputs import Work
 from toolaxis.strategies.two_point.search import PROBES, TRIED, gouging, linked, told
 from toolaxis.strategies.two_point.strips import lay_strips, nodes, strip
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task as Judged
 from toolaxis.verify.verdict import OperationVerdict, judge
 

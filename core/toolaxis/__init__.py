@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from toolaxis.job.judge import verify as verify
     from toolaxis.job.reading import read_cl as read_cl
     from toolaxis.job.run import plan as plan
-    from toolaxis.machine.mounting import Mounting as Mounting
+    from toolaxis.machine.setup import Mounting as Mounting
     from toolaxis.partition.regions import partition as partition
     from toolaxis.path.estimate import estimate as estimate
     from toolaxis.path.iso_parametric import passes as passes
@@ -37,22 +37,22 @@ if TYPE_CHECKING:
     from toolaxis.plan.sub_surface import SubSurface as SubSurface
     from toolaxis.search.fixed_axis import best_axis as best_axis
     from toolaxis.shape.face import Face as Face
+    from toolaxis.shape.joining.smooth_skins import join as join
     from toolaxis.shape.part import Part as Part
-    from toolaxis.shape.skins import join as join
     from toolaxis.tolerances import Tolerance as Tolerance
-    from toolaxis.tools.assembly import Tool as Tool
+    from toolaxis.tools.tool import Tool as Tool
 
 __version__ = "0.1.0"
 
 _HOME = {
-    "Tool": "tools.assembly", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances",
-    "load": "cad.loading", "place": "contact.placement", "strip_width": "contact.strip.width",
-    "gouge": "contact.clearance.gouge", "clearance": "contact.clearance.clearance",
-    "drop_cutter": "contact.drop_cutter.drop_cutter", "sample_points": "path.sampling", "estimate": "path.estimate",
-    "count": "path.pass_count", "passes": "path.iso_parametric", "best_axis": "search.fixed_axis",
-    "partition": "partition.regions", "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors",
-    "InvalidInput": "errors", "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors",
-    "Cancelled": "errors", "load_machine": "cad.machines", "Mounting": "machine.mounting", "join": "shape.skins",
+    "Tool": "tools.tool", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances", "load": "cad.loading",
+    "place": "contact.placement", "strip_width": "contact.strip.width", "gouge": "contact.clearance.gouge",
+    "clearance": "contact.clearance.clearance", "drop_cutter": "contact.drop_cutter.drop_cutter",
+    "sample_points": "path.sampling", "estimate": "path.estimate", "count": "path.pass_count",
+    "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.regions",
+    "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors",
+    "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
+    "load_machine": "cad.machines", "Mounting": "machine.setup", "join": "shape.joining.smooth_skins",
     "batch": "batch.run", "read_cl": "job.reading", "SubSurface": "plan.sub_surface", "export": "job.exporting",
     "to_trimesh": "job.exporting",
 }

@@ -19,7 +19,7 @@ from toolaxis.cad.pieces import AXIS, LINES, PART, Piece, piece_of, pieces, rest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.run import plan as planned
 from toolaxis.plan.plan import Plan
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 __all__ = ["assembly", "locations", "passes", "planes", "sub_surfaces"]
 

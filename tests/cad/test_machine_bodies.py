@@ -8,8 +8,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.catalogue import machine_from_toml, machine_to_toml
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import machine_from_toml, machine_to_toml
+from toolaxis.machine.setup import Mounting
 
 cadquery = pytest.importorskip("cadquery")
 

@@ -12,9 +12,9 @@ import pytest
 from toolaxis.cad import load
 from toolaxis.cad.transfer import read_shape
 from toolaxis.shape.face import Face
+from toolaxis.shape.joining.smooth_skins import join, skins
 from toolaxis.shape.nearest import nearest
-from toolaxis.shape.skins import join, skins
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"

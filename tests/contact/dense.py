@@ -8,7 +8,7 @@ import numpy as np
 
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 #: Limits of the gouge, mm: a tight one, and the machining tolerance unless another is given; and for each how deep
 #: contacts are lowered, some of them only just beyond it.

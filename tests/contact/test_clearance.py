@@ -20,7 +20,7 @@ from toolaxis.shape.adjacency import Edge
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(12, 1, flute_length=20, stickout=50, shank=[(5, 0), (5, 50)],
                   holder=[(10, 0), (10, 20), (25, 20), (25, 60)])

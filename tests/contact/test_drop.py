@@ -8,7 +8,7 @@ from toolaxis.contact.drop_cutter import drop_cutter as drop
 from toolaxis.contact.drop_cutter.drop_cutter_numpy import drop_numpy
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOLS = {
     "torus": Tool.torus(12, 1), "ball": Tool.ball(8), "flat": Tool.flat(10),

@@ -7,7 +7,7 @@ from toolaxis.contact.clearance.gouge import gouge
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 ocl = pytest.importorskip("opencamlib")
 

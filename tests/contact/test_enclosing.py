@@ -8,10 +8,10 @@ from toolaxis.contact.clearance.ball_bound_numpy import Curved, enclosing_gap_nu
 from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import nearest_piece_numpy, solid_pieces
+from toolaxis.tools.tool import Tool
 
 BODY = {"stickout": 60, "shank": [(5, 0), (5, 60)], "holder": [(10, 0), (10, 40), (25, 40), (25, 80)]}
 TOOLS = [Tool.torus(12, 1), Tool.torus(20, 5), Tool.ball(8), Tool.flat(10), Tool.tapered(6, 1, 10),

@@ -14,7 +14,7 @@ from toolaxis.strategies.roughness.feasible_area import (
     nearest_feasible,
     torus_curvatures,
 )
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(10, 3)
 PLANES = np.linspace(0, np.pi, 2001)

@@ -19,9 +19,9 @@ from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.analytic import Sphere
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOLS = [Tool.torus(12, 1), Tool.ball(8), Tool.flat(10), Tool.tapered(6, 1, 4)]
 

@@ -9,12 +9,12 @@ import pytest
 import toolaxis as ta
 from toolaxis.collision.index_moves import Stop, hull_of, trouble_between, turning
 from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward
-from toolaxis.machine.mounting import Mounting
-from toolaxis.shape.cells import forest
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
+from toolaxis.shape.bounding.bounding_tree import forest
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40)])

@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.contact.placement import place, tips
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 PLANE = Face.from_bspline([[[0, 0, 0], [0, 60, 0]], [[60, 0, 0], [60, 60, 0]]], degree=(1, 1))
 TOOLS = [Tool.torus(12, 1), Tool.torus(16, 6), Tool.ball(8), Tool.flat(20), Tool.tapered(6, 1, 4),

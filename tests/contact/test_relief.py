@@ -8,10 +8,10 @@ import pytest
 from toolaxis.contact.clearance import queries as distances
 from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
 from toolaxis.contact.clearance.relief import relief_over, relief_over_numpy
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.seams import REACH, Mismatch
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 BALL = Tool.ball(8)
 

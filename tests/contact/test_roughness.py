@@ -12,7 +12,7 @@ from toolaxis.strategies.roughness.roughness import (
     scallop_of_roughness,
     step_of_roughness,
 )
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(10, 3)
 

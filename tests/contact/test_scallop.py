@@ -15,7 +15,7 @@ from toolaxis.contact.strip.second_order import second_order_width
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def plane():

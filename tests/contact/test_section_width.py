@@ -12,7 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.analytic import Cylinder, Plane
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.section_width import expected_widths, section_width
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(10, 3)
 FACES = {"plane": Face(Plane((-30.0, 30.0), (-30.0, 30.0)).nurbs()),

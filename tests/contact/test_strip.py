@@ -9,7 +9,7 @@ from toolaxis.contact.strip.second_order import second_order_step_widths, second
 from toolaxis.contact.strip.width import step_widths, step_widths_many_axes, strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 SHARE = np.cos(np.pi / 4)
 CENTRE = [[0.5, 0.5]]

@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 from toolaxis.contact.strip.width import step_widths, strip_width
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 CASES = 1000
 BATCHES = 10

@@ -10,9 +10,9 @@ from toolaxis.contact.strip import width as strip
 from toolaxis.contact.strip.second_order import second_order_many_axes
 from toolaxis.contact.strip.width import step_widths, step_widths_many_axes, strip_width
 from toolaxis.contact.strip.width_numpy import half_widths_numpy
-from toolaxis.numeric import compiled
+from toolaxis.numeric import jit as compiled
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOLS = ["torus:12x1", "torus:8x3", "ball:10", "flat:9", "tapered:8x1x6"]
 

@@ -8,12 +8,12 @@ from scipy.optimize import brentq
 
 import toolaxis as ta
 from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward, linear_coordinates
-from toolaxis.machine.mounting import Mounting
-from toolaxis.shape.cells import forest
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.strategies.common.machine_collision import Motions, meeting_in_motion, motions
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)

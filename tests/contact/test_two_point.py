@@ -24,7 +24,7 @@ from toolaxis.strategies.two_point.contact import (
 )
 from toolaxis.strategies.two_point.gouge_check import turning_gouges
 from toolaxis.strategies.two_point.rings import Setting, Stand, rings, stand_of
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "biquintic.json"
 ROWS = [(40, 48.5904, 46.3712, 23.0002, 31.2769), (60, 30.0000, 28.1881, 22.4108, 30.8468),

@@ -6,7 +6,7 @@ import pytest
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.axis_motion import axis_motion
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.library import load_machine
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
 from toolaxis.strategies.blade.section import section
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.linalg import solveh_banded
 
-from toolaxis.feed import barrier
-from toolaxis.feed.barrier import SpeedProblem, greatest_speeds, system_numpy, value_numpy
-from toolaxis.feed.barrier_compiled import barrier_system, barrier_value, solved
-from toolaxis.numeric import compiled
+from toolaxis.feed import interior_point as barrier
+from toolaxis.feed.interior_point import SpeedProblem, greatest_speeds, system_numpy, value_numpy
+from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solved
+from toolaxis.numeric import jit as compiled
 
 
 def _problem(seed: int, n: int = 60, axes: int = 5) -> tuple[SpeedProblem, np.ndarray]:

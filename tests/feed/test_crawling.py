@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.feed.crawling import LONG, SLOW
-from toolaxis.feed.five_axes import FiveAxisMotion, five_axis_motion
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.feed_drop import LONG, SLOW
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.moving_axis_time import FiveAxisMotion, five_axis_motion
+from toolaxis.machine.library import load_machine
 from toolaxis.numeric.vectors import unit
 
 MIKRON = load_machine("mikron-ucp-710")

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import linprog
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds
-from toolaxis.feed.curve import _problem, schedule_curve
-from toolaxis.feed.profile import travel_time
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.limits import AxisBounds
+from toolaxis.feed.time_optimal import _problem, schedule_curve
 
 MIKRON = AxisBounds(np.full(3, 500.0), np.array([2500.0, 3000.0, 2100.0]), np.full(3, 5000.0))
 Curve = Callable[[np.ndarray], np.ndarray]

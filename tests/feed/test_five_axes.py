@@ -7,11 +7,11 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.five_axes import FiveAxisSchedule, axis_bounds, five_axis_time, turns
-from toolaxis.feed.schedule import Feeds, machining_time
-from toolaxis.feed.turning import OFF, following
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.continuous_ik import OFF, following
+from toolaxis.feed.fixed_axis_time import Feeds, machining_time
+from toolaxis.feed.moving_axis_time import FiveAxisSchedule, axis_bounds, five_axis_time, turns
 from toolaxis.machine.kinematics import forward, tool_axes
+from toolaxis.machine.library import load_machine
 from toolaxis.numeric.vectors import angle_between, unit
 
 FEEDS = Feeds(50.0, crossing=150.0, tolerance=0.002, smooth=True)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds
+from toolaxis.feed.jerk_profile import reachable, travel_time
+from toolaxis.feed.limits import AxisBounds
 from toolaxis.feed.polyline import look_ahead, schedule_polyline
-from toolaxis.feed.profile import reachable, travel_time
 
 MIKRON = AxisBounds(np.full(3, 500.0), np.array([2500.0, 3000.0, 2100.0]), np.full(3, 5000.0))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.profile import peak_velocity, profile, ramp_length, reachable, travel_time
+from toolaxis.feed.jerk_profile import peak_velocity, profile, ramp_length, reachable, travel_time
 
 RNG = np.random.default_rng(7)
 

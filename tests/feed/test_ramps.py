@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds
-from toolaxis.feed.curve import schedule_curve
-from toolaxis.feed.profile import profile
-from toolaxis.feed.ramps import Ramps, ramps
+from toolaxis.feed.jerk_profile import profile
+from toolaxis.feed.limits import AxisBounds
+from toolaxis.feed.time_optimal import schedule_curve
+from toolaxis.feed.velocity_ramps import Ramps, ramps
 
 MIKRON = AxisBounds(np.full(3, 500.0), np.array([2500.0, 3000.0, 2100.0]), np.full(3, 5000.0))
 

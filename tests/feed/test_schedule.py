@@ -7,11 +7,11 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.feed.profile import travel_time
-from toolaxis.feed.schedule import Feeds, index_time, machining_time, path_schedule
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.fcm import machine_from_fcm
+from toolaxis.feed.fixed_axis_time import Feeds, index_time, machining_time, path_schedule
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.machine.freecad_machine import machine_from_fcm
 from toolaxis.machine.kinematics import inverse
+from toolaxis.machine.library import load_machine
 from toolaxis.plan.timing import MachiningTime
 
 MIKRON = load_machine("mikron-ucp-710")

@@ -3,9 +3,9 @@
 import numpy as np
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.feed.five_axes import five_axis_motion
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.moving_axis_time import five_axis_motion
+from toolaxis.machine.library import load_machine
 from toolaxis.numeric.vectors import unit
 
 #: Tip, mm, and axis: a pass of a flat end, the first dozen points 0.0006 mm apart.

@@ -12,7 +12,7 @@ from toolaxis.feasibility.violations import CUTTER, Witness
 from toolaxis.search.messages import sentence
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def plane(corner, one, two, number):

@@ -17,7 +17,7 @@ from toolaxis.contact.placement import tips
 from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, Group, grouped
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge
 

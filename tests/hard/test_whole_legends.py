@@ -5,7 +5,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan

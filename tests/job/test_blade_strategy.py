@@ -10,7 +10,7 @@ import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.pictures import draw_plan
 from toolaxis.job.spec import check_five_axes, with_rings
-from toolaxis.shape.rings import ring_around
+from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.strategies.blade.layers import closed_parameter
 
 TOOL = ta.Tool.ball(8, stickout=90, holder=[(12.5, 0), (12.5, 60)])

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.feed.turning import following
+from toolaxis.feed.continuous_ik import following
 from toolaxis.job.order import arranged
 from toolaxis.job.posting import posted
 from toolaxis.job.timing import timed
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.passes import beyond

@@ -14,7 +14,7 @@ from toolaxis.contact.clearance.queries import bounded, motions
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, limited, spend, up_to
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -7,7 +7,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
+from toolaxis.feed.continuous_ik import following
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.roughness_pictures import draw_roughness, study
 from toolaxis.shape.nearest import nearest

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.feed.schedule import index_time
+from toolaxis.feed.fixed_axis_time import index_time
 from toolaxis.job.axes import try_axis, with_operations
 from toolaxis.job.folder import read_json, read_plan, write_plan
 from toolaxis.job.judge import verdict_document
 from toolaxis.job.timing import timed
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.report.tables import plan_table
 
 HOLDER = [(10.0, 0.0), (10.0, 40.0)]

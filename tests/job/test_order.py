@@ -12,21 +12,21 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.collision.index_moves import Stop, trouble_between
 from toolaxis.collision.machine_collision import Surroundings
-from toolaxis.feed.profile import travel_time
+from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.order import arranged
 from toolaxis.job.posting import posted
 from toolaxis.job.timing import timed
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.setup import Mounting
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.post.setting import Options
 from toolaxis.report.tables import plan_table
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.part import Part
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])

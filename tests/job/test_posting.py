@@ -17,8 +17,8 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_plan, staged, write_plan
 from toolaxis.job.posting import posted
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 
 Capture = pytest.CaptureFixture[str]

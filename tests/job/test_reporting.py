@@ -21,7 +21,7 @@ from toolaxis.job.folder import read_plan, staged, write_json, write_plan
 from toolaxis.job.judge import verdict_document, verify_plan
 from toolaxis.job.reporting import report
 from toolaxis.job.views import read_views, write_views
-from toolaxis.numeric.lambert import from_equal_area
+from toolaxis.numeric.equal_area import from_equal_area
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.plan.orientation import REASONS
 from toolaxis.plan.plan import Plan

@@ -10,7 +10,7 @@ from toolaxis.job.baselines import compared
 from toolaxis.job.folder import read_json, read_plan, write_plan
 from toolaxis.job.spec import by_strategy, check_five_axes
 from toolaxis.job.timing import timed
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan
 from toolaxis.report.plots import standing

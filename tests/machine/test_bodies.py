@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.catalogue import library, load_machine, machine_from_toml, machine_to_toml
+from toolaxis.machine.body_poses import bed_from_body, beside_part, part_from_bed, standing
 from toolaxis.machine.kinematics import forward
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.standing import bed_from_body, beside_part, part_from_bed, standing
+from toolaxis.machine.library import library, load_machine, machine_from_toml, machine_to_toml
+from toolaxis.machine.setup import Mounting
 
 AXES = """name = "m"
 [[linear]]

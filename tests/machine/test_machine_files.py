@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import Drive
-from toolaxis.machine.catalogue import library, load_machine, machine_from_toml
-from toolaxis.machine.fcm import machine_from_fcm
+from toolaxis.machine.axis import Drive
+from toolaxis.machine.freecad_machine import machine_from_fcm
 from toolaxis.machine.kinematics import inverse, placement, rotary_angles
+from toolaxis.machine.library import library, load_machine, machine_from_toml
 
 LINEAR = "".join(f'[[linear]]\nname="{name}"\ndirection={way}\nlimits=[-100,100]\n'
                  "velocity=500\nacceleration=2500\njerk=5000\n"

@@ -5,9 +5,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.catalogue import library, load_machine
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.kinematics import (
     forward,
     inverse,
@@ -16,8 +14,10 @@ from toolaxis.machine.kinematics import (
     rotary_angles,
     tool_axes,
 )
+from toolaxis.machine.library import library, load_machine
+from toolaxis.machine.machine import Machine
 from toolaxis.machine.reach import reach_excess, travel_excess
-from toolaxis.numeric.turning import one_turn, two_turns
+from toolaxis.numeric.rotations import one_turn, two_turns
 from toolaxis.numeric.vectors import rotation
 
 NAMES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.catalogue import library, load_machine, machine_from_toml, machine_to_toml
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.kinematics import forward, rotary_angles
+from toolaxis.machine.library import library, load_machine, machine_from_toml, machine_to_toml
 from toolaxis.machine.limits import AllOf, Cone, refusal
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 

@@ -5,11 +5,11 @@ import pytest
 from scipy.optimize import linprog
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.machine.axes import LinearAxis
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import LinearAxis
+from toolaxis.machine.feed_polytopes import Level, alignments, along, best_along, best_angles, box, pole_zone, preferred
 from toolaxis.machine.kinematics import part_from_machine
-from toolaxis.machine.polytopes import Level, alignments, along, best_along, best_angles, box, pole_zone, preferred
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.polytopes import box_vertices, halfspaces, reach
 
 MIKRON = load_machine("mikron-ucp-710")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.numeric.vectors import rotation, unit
 
 FEED = np.array([[1.0, 0.1, 0.3], [1.0, -0.1, 0.2], [0.9, 0.0, -0.4]])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.numeric.bsp import centroid, distances, partition, two_means
+from toolaxis.numeric.feature_partition import centroid, distances, partition, two_means
 
 
 def _scene(seed=0, n=500):

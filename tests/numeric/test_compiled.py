@@ -22,7 +22,8 @@ def run(script: str, folder: Path, **environment: str) -> str:
 def test_without_numba_the_twins_run(tmp_path: Path) -> None:
     script = """
 import sys, numpy as np
-from toolaxis.numeric import bspline, compiled
+from toolaxis.numeric import bspline
+from toolaxis.numeric import jit as compiled
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -67,8 +68,8 @@ def test_without_compilation_kernels_are_plain_functions(tmp_path: Path) -> None
 
 def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
     pytest.importorskip("numba")
-    inner = "from toolaxis.numeric.compiled import compiled\n\n\n@compiled\ndef inner(x):\n    return x + {}\n"
-    (tmp_path / "outer_kernel.py").write_text("from inner_kernel import inner\nfrom toolaxis.numeric.compiled import "
+    inner = "from toolaxis.numeric.jit import compiled\n\n\n@compiled\ndef inner(x):\n    return x + {}\n"
+    (tmp_path / "outer_kernel.py").write_text("from inner_kernel import inner\nfrom toolaxis.numeric.jit import "
                                               "compiled\n\n\n@compiled\ndef outer(x):\n    return inner(x)\n")
     script = "from outer_kernel import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
     source, answers = tmp_path / "inner_kernel.py", []
@@ -83,7 +84,7 @@ def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
 def test_kept_code_for_other_arguments_is_not_taken(tmp_path: Path) -> None:
     """Two processes that compile at the same time may both write the file of the first's code."""
     pytest.importorskip("numba")
-    (tmp_path / "half_kernel.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+    (tmp_path / "half_kernel.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
                                              "@compiled\ndef half(x):\n    return x[0] / 2\n")
     script = ("import numpy as np\nfrom half_kernel import half\n"
               "print(half(np.array([3.0])), half(np.array([3])), sum(half.stats.cache_hits.values()))")
@@ -100,13 +101,13 @@ def test_kept_code_for_other_arguments_is_not_taken(tmp_path: Path) -> None:
 def test_nothing_else_imports_numba() -> None:
     importing = re.compile(r"^\s*(import|from) numba\b", re.MULTILINE)
     guilty = [str(path.relative_to(CORE)) for path in CORE.rglob("*.py") if importing.search(path.read_text())]
-    assert guilty == ["toolaxis/numeric/compiled.py"]
+    assert guilty == ["toolaxis/numeric/jit.py"]
 
 
 def test_what_has_to_be_compiled_is_counted(tmp_path: Path) -> None:
-    (tmp_path / "one.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+    (tmp_path / "one.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
                                      "@compiled\ndef double(x):\n    return 2 * x\n")
-    script = ("from toolaxis.numeric.compiled import compilations\nseen = compilations()\nimport one\n"
+    script = ("from toolaxis.numeric.jit import compilations\nseen = compilations()\nimport one\n"
               "assert one.double(1.5) == 3.0\nprint('seen', seen())")
     counts = [run(script, tmp_path, **environment) for environment in ({}, {}, {"TOOLAXIS_NUMBA": "0"})]
     assert [text.strip() for text in counts] == ["seen 1", "seen 0", "seen 0"]

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.constrained import constrained_least_squares
+from toolaxis.numeric.constrained_least_squares import constrained_least_squares
 
 
 def _problem(seed: int, n: int = 7, e: int = 2, m: int = 12):

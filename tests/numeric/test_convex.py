@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from toolaxis.numeric.convex import boxes, hull, places, segments, separation, turned_body
+from toolaxis.numeric.support_functions import boxes, hull, places, segments, separation, turned_body
 
 RNG = np.random.default_rng(5)
 

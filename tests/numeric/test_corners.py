@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.corners import RoundedLine, corner, greatest_height
+from toolaxis.numeric.corner_rounding import RoundedLine, corner, greatest_height
 
 EXACT = {"Bi0": (5.80323, 1.160646), "Bi1": (7.976613, 1.595323), "Bj1": (11.650766, 3.238075),
          "Bj3": (13.09737, 4.323028)}

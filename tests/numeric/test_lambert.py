@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.numeric.lambert import equal_area, from_equal_area
+from toolaxis.numeric.equal_area import equal_area, from_equal_area
 
 POLE, RIGHT = np.array([1.0, -2.0, 2.0]) / 3, [0.0, 1.0, 1.0]
 

@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided, united, without
+from toolaxis.numeric.polygon_boolean import divided, united, without
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.numeric.roots import least_between
+from toolaxis.numeric.golden_section import least_between
 
 
 def test_minima_inside_and_at_both_ends() -> None:

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from toolaxis.numeric.thinning import thinned, thinned_loop
+from toolaxis.numeric.simplify_polyline import thinned, thinned_loop
 
 
 def farthest(points: np.ndarray, kept: np.ndarray) -> float:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from toolaxis.numeric.ties import settled, settled_prices, signed
+from toolaxis.numeric.rounding import settled, settled_prices, signed
 from toolaxis.numeric.vectors import perpendicular
 
 

@@ -5,8 +5,8 @@ from itertools import pairwise, permutations, product
 import numpy as np
 import pytest
 
-from toolaxis.numeric import tours
-from toolaxis.numeric.tours import Steps, in_order, shortest
+from toolaxis.numeric import sequencing as tours
+from toolaxis.numeric.sequencing import Steps, in_order, shortest
 
 
 def random_steps(seed: int, things: int = 5, groups: int = 5, holes: float = 0.0) -> Steps:

@@ -22,7 +22,7 @@ from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
 from toolaxis.search.hemisphere import Candidate, repaired, search
 from toolaxis.search.path_check import Proof, prove
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(8, 1)
 HELD = Tool.torus(8, 1, stickout=40, holder=[(12, 0), (12, 30)])

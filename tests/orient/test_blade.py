@@ -11,19 +11,19 @@ from benchmarks._blades import loft, sections
 from toolaxis.cad.loading import load
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import rotation
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.face import Face
-from toolaxis.shape.skins import join
+from toolaxis.shape.joining.smooth_skins import join
 from toolaxis.strategies.blade.clearance_limits import Room
 from toolaxis.strategies.blade.layers import Ring, along_blade, closed_parameter
 from toolaxis.strategies.blade.plan import BladeSearch, blade
 from toolaxis.strategies.blade.schedule import Layer, Swing, plane_of, reschedule, swing_of
 from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.strategies.common.path_check import prove_moving
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.verdict import Task as Judged
 from toolaxis.verify.verdict import judge
 

@@ -9,7 +9,7 @@ from toolaxis.strategies.blade.angle_channel import Channel, channel
 from toolaxis.strategies.blade.key_points import best_rule, key_curve
 from toolaxis.strategies.blade.minimum_acceleration import least_curve, least_peak
 from toolaxis.strategies.blade.section import base_of, section
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TURN = 2 * np.pi
 CLEAR = np.radians(1.0)

@@ -11,7 +11,7 @@ from toolaxis.post.apt_reading import read_apt
 from toolaxis.strategies.blade.reschedule import reschedule_path, swing_of_path
 from toolaxis.strategies.blade.schedule import Swing
 from toolaxis.strategies.blade.section import section
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.ball(6, flute_length=20)
 UP = Swing(np.array([0.0, 0.0, 1.0]))

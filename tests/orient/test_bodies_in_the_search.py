@@ -7,13 +7,13 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import Cone
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.search.fixed_axis import best_axis, evaluate_axis
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])

@@ -7,7 +7,7 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def plane(corner, one, two, number):

@@ -5,13 +5,13 @@ from math import comb, radians
 import numpy as np
 import pytest
 
-from toolaxis.feed.constraints import linear_bounds
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
-from toolaxis.feed.ramps import ramps
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.velocity_ramps import ramps
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.search.fastest_setup import cutting_seconds, fastest
 from toolaxis.search.kinematic_setup import Domain, Stretch, allowed_angles, rotary_grid, setup
 

@@ -15,7 +15,7 @@ from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.search.direction_grid import spiral
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(8, 1)
 HELD = Tool.torus(8, 1, stickout=30, holder=[(12, 0), (12, 30)])

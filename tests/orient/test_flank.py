@@ -13,7 +13,7 @@ from toolaxis.search.fixed_axis import task
 from toolaxis.search.flank_axes import flank_axes
 from toolaxis.search.hemisphere import search
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(6, 1)
 

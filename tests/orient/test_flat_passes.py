@@ -16,7 +16,7 @@ from toolaxis.strategies.two_point.lean_field import field_of
 from toolaxis.strategies.two_point.postures import BEHIND, CONVEX, REASONS, TWO, postures
 from toolaxis.strategies.two_point.search import gouging, told, two_point
 from toolaxis.strategies.two_point.strips import lane, lay_strips, next_strip, places, strip
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge
 

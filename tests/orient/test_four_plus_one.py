@@ -10,9 +10,9 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import SKIN, Group
 from toolaxis.feasibility.violations import GOUGE
-from toolaxis.feed.turning import following
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.path_check import prove_moving
 from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
@@ -26,7 +26,7 @@ from toolaxis.strategies.four_plus_one.search import (
     machine_of,
     screened,
 )
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 from .conftest import flat, floor_and_wall, seeded  # type: ignore[import-not-found]
 

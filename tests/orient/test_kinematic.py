@@ -7,9 +7,9 @@ import pytest
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level, along
+from toolaxis.machine.feed_polytopes import Level, along
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.search.kinematic_setup import (
     Domain,
     Stretch,

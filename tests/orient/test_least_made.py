@@ -13,7 +13,7 @@ from toolaxis.search.local_search import Candidate
 from toolaxis.search.rank_by_passes import _left as least_made_left
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(6, 1)
 H = 0.15

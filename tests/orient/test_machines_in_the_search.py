@@ -7,10 +7,10 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.limits import Cone
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)

@@ -9,9 +9,9 @@ from scipy.optimize import minimize
 from toolaxis.contact.strip.scallop import RA_SHARE
 from toolaxis.contact.strip.second_order import second_order_width
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import RotaryAxis
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import rotary_angles
+from toolaxis.machine.library import load_machine
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.paper_iteration import pinned
 from toolaxis.strategies.roughness.pass_constraints import (
@@ -32,7 +32,7 @@ from toolaxis.strategies.roughness.plan import racing
 from toolaxis.strategies.roughness.rotary_velocity import left
 from toolaxis.strategies.roughness.section_width import expected_widths, section_width
 from toolaxis.strategies.roughness.smoothing import smoothed
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 from .conftest import patch  # type: ignore[import-not-found]
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.schedule import Feeds, machining_time
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.fixed_axis_time import Feeds, machining_time
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.search.cost import FEEDS, Worth
 from toolaxis.search.evaluated_axes import Ledger
@@ -17,7 +17,7 @@ from toolaxis.search.local_search import Candidate
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.time_estimate import Pace
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 TOOL, H = Tool.torus(diameter=12, corner_radius=2), 0.1

@@ -14,7 +14,7 @@ from toolaxis.search.fixed_axis import task
 from toolaxis.search.hemisphere import search
 from toolaxis.search.local_search import _lowest, counted, polish, proven
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(12, 1)
 H = 0.02

@@ -20,7 +20,7 @@ from toolaxis.search.hemisphere import search
 from toolaxis.search.sectors import mean_normal, roman_axis, sectors
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(8, 1)
 H = 0.05

@@ -12,7 +12,7 @@ from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.common.passes import made
 from toolaxis.strategies.common.path_check import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
 from toolaxis.strategies.constant_lead.search import Sturz, sturz
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 from .conftest import bowl, flat, floor_and_wall, seeded  # type: ignore[import-not-found]
 

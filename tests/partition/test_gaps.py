@@ -6,7 +6,7 @@ import pytest
 from toolaxis.partition.gaps import ahead, nearness, reach_along_normal, widest
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def sheet(z, size=20.0, flip=False, at=0.0):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.feed.schedule import Feeds
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import Divider
@@ -17,7 +17,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import Task, task
 from toolaxis.search.time_estimate import Pace
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 TOOL, H = Tool.torus(diameter=12, corner_radius=1), 0.05

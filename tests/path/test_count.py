@@ -12,7 +12,7 @@ from toolaxis.path.sampling import sample_points
 from toolaxis.path.width_correction import lean_ratio, lean_ratios, lean_table
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TORUS = Tool.torus(12, 1)
 

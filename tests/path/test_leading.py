@@ -14,7 +14,7 @@ from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.links import Linking
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 from .conftest import flat, wavy  # type: ignore[import-not-found]
 

@@ -13,7 +13,7 @@ from toolaxis.path.links import Linking
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TORUS = Tool.torus(12, 1)
 H = 0.02

@@ -15,7 +15,7 @@ from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.path.rest_material import OVERLOOKED, Excess
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 BALL, H = 40.0, 0.1
 TOOL = Tool.torus(12, 2)

@@ -6,7 +6,7 @@ import pytest
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path.sampling import sample_points
 from toolaxis.shape.differential import curvatures, normals
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(12, 1)
 

@@ -12,7 +12,7 @@ import pytest
 from toolaxis.cad.records import left_out
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.operation import Operation
@@ -24,7 +24,7 @@ from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 FILES = {"part": {"file": "part.json", "sha256": "00"}, "obstacles": [], "operations": ["op01-face1.apt", None]}
 

@@ -5,14 +5,14 @@ from math import degrees, pi, radians
 import numpy as np
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 DATUM = np.array([3.0, -7.0, 11.0])
 TOOL = Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40), (25, 40), (25, 80)])

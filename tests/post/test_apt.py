@@ -9,7 +9,7 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.post.apt import apt_text, cutter_statement, locations_text
 from toolaxis.post.apt_reading import read_apt
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(diameter=12, corner_radius=1)
 

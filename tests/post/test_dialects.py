@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.dialects.known import DIALECTS
 from toolaxis.post.gcode import Dialect, program_of, program_text

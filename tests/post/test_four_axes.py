@@ -8,7 +8,7 @@ import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.posting import posted
 from toolaxis.job.reading import read_cl
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.post.setting import Options
 
 TOOL = ta.Tool.ball(8, stickout=90, holder=[(12.5, 0), (12.5, 60)])

@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.job.posting import posted
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 
 DIGITS = {"fanuc": (3, 3), "siemens": (5, 7), "heidenhain": (4, 4)}

@@ -9,9 +9,9 @@ from test_moving import _plan
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.job.posting import posted
-from toolaxis.machine.catalogue import load_machine
 from toolaxis.machine.kinematics import inverse
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.post.nc_reading import read_nc
 
 MIKRON = load_machine("mikron-ucp-710")

@@ -11,8 +11,8 @@ import pytest
 from nc_plans import DATUM, a_plan, axes_at, chain, held_angles
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.dialects.known import DIALECTS
 from toolaxis.post.gcode import program_of, program_text

@@ -8,7 +8,7 @@ from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, settle, two_point_lead
 from toolaxis.strategies.two_point.pictures import contacts_picture
 from toolaxis.strategies.two_point.rings import Setting
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def _drawn(lift):

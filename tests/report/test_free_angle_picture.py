@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.machine.catalogue import load_machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
@@ -15,7 +15,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.strategies.four_plus_one.passes import Clamp
 from toolaxis.strategies.four_plus_one.pictures import free_angle_picture, turning_of
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 MIKRON = load_machine("mikron-ucp-710")
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from toolaxis.feed.constraints import linear_bounds
-from toolaxis.feed.ramps import ramps
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.feed.limits import linear_bounds
+from toolaxis.feed.velocity_ramps import ramps
+from toolaxis.machine.feed_polytopes import Level, along
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level, along
+from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.placement import tips
-from toolaxis.machine.setup import work_coordinates
+from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
@@ -30,7 +30,7 @@ from toolaxis.report.plots import (
 )
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.maps import SurfaceMap
 
 TOOL = Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)])

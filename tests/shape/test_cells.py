@@ -7,9 +7,9 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
-from toolaxis.shape.cells import cells, forest
+from toolaxis.shape.bounding.base_cells import grid_lines
+from toolaxis.shape.bounding.bounding_tree import cells, forest
 from toolaxis.shape.face import Face
-from toolaxis.shape.gridlines import grid_lines
 
 RING = np.linspace(0, 2 * np.pi, 90, endpoint=False)
 
@@ -251,7 +251,7 @@ def test_forest_holds_every_face():
 def test_kept_while_the_face_lives():
     face = _wavy(seed=9)
     assert cells(face).nodes is cells(face).nodes
-    from toolaxis.shape import cells as module
+    from toolaxis.shape.bounding import bounding_tree as module
     count = len(module._known)
     del face
     gc.collect()

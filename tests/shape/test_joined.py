@@ -13,12 +13,12 @@ from toolaxis.numeric.knots import elevated, insert_knot, restricted
 from toolaxis.shape.adjacency import Edge
 from toolaxis.shape.analytic import Cylinder, Sphere
 from toolaxis.shape.face import Face
-from toolaxis.shape.joined import joined, joins
+from toolaxis.shape.joining.joined_surface import joined, joins
+from toolaxis.shape.joining.shared_boundary import meetings
+from toolaxis.shape.joining.smooth_skins import join, own_pieces, skins
 from toolaxis.shape.kinks import kinks_of, split_at_kinks, with_kinks
-from toolaxis.shape.meeting import meetings
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
-from toolaxis.shape.skins import join, own_pieces, skins
 
 PARTS = Path(__file__).parents[3] / "shared" / "parts"
 SHARES = np.random.default_rng(7).random((400, 2))

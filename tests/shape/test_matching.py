@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.shape.adjacency import consistent, edges_from_borders
 from toolaxis.shape.face import Face
-from toolaxis.shape.matching import matched, sides_of
+from toolaxis.shape.joining.edge_matching import matched, sides_of
 from toolaxis.shape.part import Part
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from toolaxis.errors import InvalidInput
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def test_the_tool_of_the_first_page() -> None:

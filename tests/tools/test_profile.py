@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from toolaxis.errors import InvalidInput
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.profile import Profile
+from toolaxis.tools.tool import Tool
 
 TOOLS = [Tool.torus(12, 1), Tool.ball(8), Tool.flat(20), Tool.tapered(6, 3, 4), Tool.tapered(6, 1, 10),
          Tool.tapered(10, 0, 45)]

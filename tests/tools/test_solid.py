@@ -8,8 +8,8 @@ from scipy.spatial import cKDTree
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import nearest_piece, nearest_piece_numpy, outline_pieces, signed_distance, solid_pieces
+from toolaxis.tools.tool import Tool
 
 BODY = {"stickout": 40, "shank": [(4, 0), (4, 30), (6, 36), (6, 60)],
         "holder": [(9, 0), (14, 12), (11, 20), (20, 20), (20, 45)]}

@@ -9,13 +9,13 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.verify.bodies import Rig, least_room
 from toolaxis.verify.things import body_thing, cutter_line, turned_thing
 

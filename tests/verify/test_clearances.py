@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled
+from toolaxis.numeric import jit as compiled
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile

@@ -5,8 +5,8 @@ from math import radians
 import numpy as np
 import pytest
 
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.machine import Machine
 from toolaxis.verify.machine import machine_faults
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import Cancelled, InvalidInput
-from toolaxis.numeric import compiled
+from toolaxis.numeric import jit as compiled
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.progress import Progress
 from toolaxis.tools.profile import Profile

@@ -10,7 +10,7 @@ from toolaxis.feasibility.surroundings import SKIN, TOUCHING, grouped
 from toolaxis.shape.adjacency import Border, edges_from_borders
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge
 

@@ -9,7 +9,7 @@ from third import Corner, depth_of_cut, edge, stair, swept
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.clearance.gouge import RESOLUTION, segment_penetration
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import judge
 

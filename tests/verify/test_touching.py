@@ -10,8 +10,8 @@ from toolaxis.feasibility.surroundings import SKIN, TOUCHING, Group
 from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.profile import Profile
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import OperationVerdict, verify
 

@@ -20,7 +20,7 @@ from freecad.toolaxis.places import matrix_of
 from toolaxis.cad.freecad import shape_of
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.progress import Progress
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TURNED = Placement(Vector(100, -20, 5), Rotation(Vector(1, 2, 3), 50))
 

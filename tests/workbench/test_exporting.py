@@ -12,7 +12,7 @@ from toolaxis.cad.machines import load_machine
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.job.folder import read_plan, write_plan
 from toolaxis.job.posting import posted
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 
 OFFSET = (0.0, 0.0, 60.0)
 MACHINE = "bc-table-table"

@@ -14,9 +14,9 @@ from freecad.toolaxis.preferences import PLACE
 
 import toolaxis as ta
 from toolaxis.errors import Cancelled, InvalidInput
-from toolaxis.machine.catalogue import library
+from toolaxis.machine.body_poses import beside_part
 from toolaxis.machine.kinematics import forward
-from toolaxis.machine.standing import beside_part
+from toolaxis.machine.library import library
 from toolaxis.progress import NO_PROGRESS, Progress
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30, holder=[(10, 0), (10, 40)])

@@ -15,7 +15,7 @@ from freecad.toolaxis.places import matrix_of
 from freecad.toolaxis.results import child
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 TURNED = Placement(Vector(100, -20, 5), Rotation(Vector(1, 2, 3), 50))
 RAISED = Placement(Vector(0, 0, 50), Rotation(Vector(0, 0, 1), 30))

@@ -16,15 +16,15 @@ from toolaxis.batch.task import Source, Task
 from toolaxis.cad.loading import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.spec import Spec, by_strategy, roughness_for
-from toolaxis.machine.catalogue import load_machine, machine_to_toml
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
+from toolaxis.machine.machine import Machine
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
 from toolaxis.plan.plan import Inputs
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
            "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float}

@@ -22,7 +22,7 @@ from toolaxis import __version__
 from toolaxis.batch.hand import MEGABYTE, descendants
 from toolaxis.batch.task import Answer, Source, Task
 from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
-from toolaxis.numeric.compiled import compilations
+from toolaxis.numeric.jit import compilations
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from toolaxis.machine.configurations import Machine
-from toolaxis.tools.assembly import Tool
+from toolaxis.machine.machine import Machine
+from toolaxis.tools.tool import Tool
 
 #: Why a job failed: its input, a fault in planning, its process ended, its time or its memory was used up, or the disk.
 CAUSES = ("input", "error", "crash", "timeout", "memory", "disk")

@@ -7,8 +7,8 @@ import numpy as np
 from toolaxis.cad.records import FaceRecord, ShapeRecord
 from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gaps
 from toolaxis.shape.face import Face
+from toolaxis.shape.joining.edge_matching import matched
 from toolaxis.shape.kinks import with_kinks
-from toolaxis.shape.matching import matched
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import seam_warnings
 

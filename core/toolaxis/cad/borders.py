@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.cad.kernel import KernelEdge, KernelFace
 from toolaxis.cad.records import FaceRecord
 from toolaxis.shape.adjacency import Border
-from toolaxis.shape.matching import Side
+from toolaxis.shape.joining.edge_matching import Side
 
 Array = NDArray[np.float64]
 

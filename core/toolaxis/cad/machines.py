@@ -7,10 +7,10 @@ import numpy as np
 from toolaxis.cad.loading import load
 from toolaxis.collision.index_moves import hull_of
 from toolaxis.errors import InvalidInput
-from toolaxis.machine import catalogue
+from toolaxis.machine import library as catalogue
 from toolaxis.machine.bodies import Body
-from toolaxis.machine.configurations import Machine
-from toolaxis.shape.cells import forest
+from toolaxis.machine.machine import Machine
+from toolaxis.shape.bounding.bounding_tree import forest
 
 
 def load_machine(text: str) -> Machine:

@@ -22,8 +22,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.setup import WorkCoordinates
-from toolaxis.numeric.thinning import thinned_loop
+from toolaxis.machine.work_coordinates import WorkCoordinates
+from toolaxis.numeric.simplify_polyline import thinned_loop
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cad.arcs import ParameterMap
 from toolaxis.shape.adjacency import Border
-from toolaxis.shape.matching import Side
+from toolaxis.shape.joining.edge_matching import Side
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import LEFT_OUT, Body
 

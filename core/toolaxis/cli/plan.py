@@ -10,7 +10,7 @@ from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled
 from toolaxis.job.folder import PLAN, read_json, staged, write_plan
 from toolaxis.job.spec import Spec, by_strategy, roughness_for
-from toolaxis.machine.catalogue import load_machine
+from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of

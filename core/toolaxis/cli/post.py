@@ -12,7 +12,7 @@ from toolaxis.job.posting import posted, verdict_of
 from toolaxis.job.reading import read_cl
 from toolaxis.job.reposting import reposted
 from toolaxis.job.spec import offset_from
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text
 from toolaxis.post.dialects.known import APT

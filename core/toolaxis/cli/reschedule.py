@@ -16,10 +16,10 @@ from toolaxis.job.reading import read_cl
 from toolaxis.job.rescheduling import NewAngles, reschedule
 from toolaxis.job.spec import offset_from
 from toolaxis.job.toolfile import load_holder, load_tool
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.post.apt import locations_text
 from toolaxis.report.tables import table
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:

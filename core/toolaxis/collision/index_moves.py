@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from toolaxis.collision.machine_collision import Meeting, Surroundings, meeting_on, words
-from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.bodies import BED
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.body_poses import bed_from_body, beside_part, carried_by
 from toolaxis.machine.kinematics import linear_coordinates, placement, tool_axes
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.standing import bed_from_body, beside_part, carried_by
-from toolaxis.numeric.convex import Convex, hull, segments, separation
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
+from toolaxis.numeric.support_functions import Convex, hull, segments, separation
 from toolaxis.numeric.vectors import angle_between, perpendicular
-from toolaxis.shape.cells import Cells
+from toolaxis.shape.bounding.bounding_tree import Cells
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces
 
 Array = NDArray[np.float64]

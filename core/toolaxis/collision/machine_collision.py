@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.machine.bodies import BED
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.body_poses import Standing, beside_part, part_from_bed, standing
 from toolaxis.machine.kinematics import forward, linear_coordinates
-from toolaxis.machine.mounting import Mounting, in_tenths
-from toolaxis.machine.standing import Standing, beside_part, part_from_bed, standing
-from toolaxis.numeric.convex import Convex, boxes, places, segments, separation
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting, in_tenths
+from toolaxis.numeric.support_functions import Convex, boxes, places, segments, separation
 from toolaxis.numeric.vectors import as_rows, perpendicular
 from toolaxis.progress import breathe
-from toolaxis.shape.cells import Cells
-from toolaxis.tools.assembly import Tool
+from toolaxis.shape.bounding.bounding_tree import Cells
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

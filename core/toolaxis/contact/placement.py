@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric.vectors import as_rows, axis_rows, dot
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.queries import judged, motions
-from toolaxis.numeric.ties import settled
-from toolaxis.shape.cells import cells
+from toolaxis.numeric.rounding import settled
+from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

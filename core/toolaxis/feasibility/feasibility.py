@@ -33,11 +33,11 @@ from toolaxis.feasibility.violations import (
     Witness,
 )
 from toolaxis.machine.limits import AxisLimits, refusal
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -10,7 +10,7 @@ from toolaxis.contact.clearance.queries import Found, bounded, judged, motions
 from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.feasibility.violations import CUTTER, FREE, GOUGE, Trouble
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

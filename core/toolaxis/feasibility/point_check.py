@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import signed_distance
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
-from toolaxis.tools.assembly import Tool
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.feasibility.check_points import Contacts
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.violations import FREE, GOUGE
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 from toolaxis.shape.nearest import nearest
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.cells import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import Cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import Mismatch, mismatch_of

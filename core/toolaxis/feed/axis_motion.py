@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
-from toolaxis.machine.configurations import Machine
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.machine import Machine
 
 Array = NDArray[np.float64]
 

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds
-from toolaxis.feed.motion import JointMotion
-from toolaxis.feed.profile import ramp_length, reachable, segment_durations, travel_time
-from toolaxis.numeric.compiled import compiled
+from toolaxis.feed.jerk_profile import ramp_length, reachable, segment_durations, travel_time
+from toolaxis.feed.joint_motion import JointMotion
+from toolaxis.feed.limits import AxisBounds
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]

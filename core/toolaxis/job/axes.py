@@ -10,7 +10,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.job.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.machine.setup import WorkCoordinates, work_coordinates
+from toolaxis.machine.work_coordinates import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation

@@ -7,8 +7,8 @@ import numpy as np
 from toolaxis.collision.index_moves import Stop, trouble_at_the_ends, trouble_between
 from toolaxis.collision.machine_collision import Surroundings, words
 from toolaxis.errors import InvalidInput, about
-from toolaxis.feed.turning import following
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of

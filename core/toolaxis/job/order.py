@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from toolaxis.collision.index_moves import RETRACT, Stop, trouble_at_the_ends, trouble_between
 from toolaxis.collision.machine_collision import FLAT, Surroundings, free_solutions
 from toolaxis.errors import about
-from toolaxis.feed.profile import travel_time
+from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.job.in_motion import kept_clear, refused
-from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
-from toolaxis.numeric.tours import EXACT, Steps, Tour, in_order, shortest
+from toolaxis.machine.setup import Mounting
+from toolaxis.numeric.sequencing import EXACT, Steps, Tour, in_order, shortest
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
 from toolaxis.plan.timing import Order
-from toolaxis.shape.cells import forest
+from toolaxis.shape.bounding.bounding_tree import forest
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from toolaxis.search.infeasibility import tight_fillet
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 from toolaxis.shape.part import PLAIN_KINDS, Body, Part
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -42,7 +42,7 @@ from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.four_plus_one.pictures import free_angle_picture, turning_of
 from toolaxis.strategies.two_point.pictures import contacts_picture
 from toolaxis.strategies.two_point.rings import Setting, rings, stand_of
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.verdict import Verdict
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from toolaxis.job.timing import feeds_of, timed
 from toolaxis.job.turned import followed, spread_out, with_refused
 from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.cover import shared, trade
 from toolaxis.partition.divider import MOST, Divider, Regions
@@ -45,7 +45,7 @@ from toolaxis.strategies.constant_lead.search import sturz
 from toolaxis.strategies.four_plus_one.search import four_plus_one
 from toolaxis.strategies.roughness.plan import multiscale
 from toolaxis.strategies.two_point.search import two_point
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import MOVING, Budget, OutOfWork, limited
 
 Array = NDArray[np.float64]

@@ -8,9 +8,9 @@ import numpy as np
 from toolaxis.errors import InvalidInput
 from toolaxis.job.folder import read_json
 from toolaxis.job.order import arranged
-from toolaxis.machine.catalogue import machine_to_toml
 from toolaxis.machine.kinematics import placement
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import machine_to_toml
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import apt_text
 from toolaxis.post.dialects.known import APT, dialect_named

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from toolaxis.cad.machines import load_machine
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.machine import Machine
 from toolaxis.post.apt_reading import read_apt
 from toolaxis.post.locations import CutterLocations
 from toolaxis.post.nc_reading import read_nc

@@ -107,7 +107,7 @@ def _drawn(plan: Plan) -> list[Operation]:
 
 def _feed(plan: Plan, op: Operation) -> "Curve | None":
     """Feed along the longest pass of an operation, mm and mm/min; None where the machine's limits are not known."""
-    from toolaxis.feed.schedule import longest_cut
+    from toolaxis.feed.fixed_axis_time import longest_cut
     from toolaxis.report.kinematics import speeds_along
 
     if plan.machine is None or op.path is None or op.time is None or not op.rotary:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Inputs
 from toolaxis.post.dialects.known import dialect_named
 from toolaxis.post.dialects.tip_control import tip_control_of

@@ -9,8 +9,8 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
-from toolaxis.feed.turning import following
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.setup import Mounting
 from toolaxis.post.locations import CutterLocations
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
@@ -20,7 +20,7 @@ from toolaxis.strategies.blade.reschedule import Rescheduled, reschedule_path
 from toolaxis.strategies.blade.schedule import CLEARANCE, Swing
 from toolaxis.strategies.common.path_check import kept, prove_moving, spans_of
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
-from toolaxis.machine.mounting import Mounting
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.constant_lead import LeadCut
 from toolaxis.plan.operation import Operation

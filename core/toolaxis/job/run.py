@@ -21,9 +21,9 @@ from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughn
 from toolaxis.job.targets import check_division, not_divided, read_division, smooth_pieces
 from toolaxis.job.timing import timed
 from toolaxis.job.toolfile import load_tool
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
-from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.regions import checked_count
 from toolaxis.plan.plan import STRATEGIES, Inputs, Plan
@@ -32,13 +32,13 @@ from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.search.fixed_axis import METHODS
 from toolaxis.search.machine_limits import combined
 from toolaxis.search.time_estimate import known_machine
-from toolaxis.shape.cells import cells
+from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
-from toolaxis.shape.joined import GREATEST_CORNER
+from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
 from toolaxis.strategies.two_point.rings import check_bottom
 from toolaxis.tolerances import Tolerance, ToleranceLike
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
 
 

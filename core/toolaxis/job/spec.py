@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.toolfile import load_holder, load_tool
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.machine import Machine
 from toolaxis.plan.plan import STRATEGIES, Inputs
 from toolaxis.shape.face import Face
-from toolaxis.shape.joined import GREATEST_CORNER
+from toolaxis.shape.joining.closed_rings import ring_around
+from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
+from toolaxis.shape.joining.smooth_skins import join, skins
 from toolaxis.shape.part import Part
-from toolaxis.shape.rings import ring_around
-from toolaxis.shape.skins import join, skins
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
 

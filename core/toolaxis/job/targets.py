@@ -22,7 +22,7 @@ from toolaxis.search.fixed_axis import Task
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

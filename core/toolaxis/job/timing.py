@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, about
-from toolaxis.feed.crawling import SLOW, Crawl
-from toolaxis.feed.five_axes import FiveAxisMotion, five_axis_motion
-from toolaxis.feed.profile import travel_time
-from toolaxis.feed.schedule import Feeds, index_time, machining_time
+from toolaxis.feed.feed_drop import SLOW, Crawl
+from toolaxis.feed.fixed_axis_time import Feeds, index_time, machining_time
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.moving_axis_time import FiveAxisMotion, five_axis_motion
 from toolaxis.job.order import arranged
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
 from toolaxis.plan.timing import CRAWLING, MOTION_WARNINGS, UNTIMED, MachiningTime

@@ -9,7 +9,7 @@ from typing import Any
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.resources import named_files
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 _KINDS = ("torus", "ball", "flat", "tapered")
 _SIZES = {"torus": ("diameter", "corner_radius"), "ball": ("diameter",), "flat": ("diameter",),

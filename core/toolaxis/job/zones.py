@@ -16,7 +16,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import corner_too_large, tight_fillet
 from toolaxis.search.messages import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.shape.measure import mean_width
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 #: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
 #: than this share of it: what it machines is not worth an operation.

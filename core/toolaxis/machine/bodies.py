@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.convex import Convex, boxes, hull, turned_body
+from toolaxis.numeric.support_functions import Convex, boxes, hull, turned_body
 
 Array = NDArray[np.float64]
 

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import RotaryAxis
-from toolaxis.machine.configurations import Machine
-from toolaxis.numeric.turning import one_turn, turned, two_turns
+from toolaxis.machine.axis import RotaryAxis
+from toolaxis.machine.machine import Machine
+from toolaxis.numeric.rotations import one_turn, turned, two_turns
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import inverse, placement, rotary_angles
-from toolaxis.numeric.turning import ON_AXIS, across, turn_between, turned
+from toolaxis.machine.machine import Machine
+from toolaxis.numeric.rotations import ON_AXIS, across, turn_between, turned
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import built_in, compiled, fused
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import built_in, compiled, fused
 
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 
 Array = NDArray[np.float64]
 

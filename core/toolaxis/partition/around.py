@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided
+from toolaxis.numeric.polygon_boolean import divided
 from toolaxis.partition.divider import Divider, Regions, Row, Solution, named_pieces
 from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.lattice import Lattice
@@ -18,7 +18,7 @@ from toolaxis.partition.prices import Prices
 from toolaxis.search.direction_grid import ring
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.numeric.ties import signed
+from toolaxis.numeric.rounding import signed
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.feasibility.surroundings import Obstacles, faces_of
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

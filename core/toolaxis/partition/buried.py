@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided
+from toolaxis.numeric.polygon_boolean import divided
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clipped, grouped
-from toolaxis.numeric.overlay import divided, united
+from toolaxis.numeric.polygon_boolean import divided, united
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-import toolaxis.numeric.compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+import toolaxis.numeric.jit as _compiled
+from toolaxis.numeric.jit import compiled
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.strip.second_order import compliance, contact_forms, screen_numpy
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.parametrization import IsoChart, rows
 from toolaxis.path.pass_count import panels
@@ -18,7 +18,7 @@ from toolaxis.path.sampling import Samples, sample_points
 from toolaxis.path.trim_intervals import row_points
 from toolaxis.path.width_correction import lean_ratio, lean_ratios, lean_table, screening_cutter
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from toolaxis.path.pass_layout import Layout, Reach, lay_out
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance, ToleranceLike
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 
 def layout(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "u", *, allowance: float = 0.0,

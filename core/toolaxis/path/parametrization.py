@@ -15,7 +15,7 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.trim_intervals import Intervals, intervals
 from toolaxis.path.width_correction import lean_ratios, lean_table, screening_cutter
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

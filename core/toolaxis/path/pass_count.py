@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.path.parametrization import Chart, Cut, IsoChart, columns, rows, tip_points
 from toolaxis.path.trim_intervals import Intervals, RowPoints, row_points, table
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -21,7 +21,7 @@ from toolaxis.path.width_correction import lean_ratios
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance, ToleranceLike
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

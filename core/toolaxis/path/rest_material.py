@@ -12,12 +12,12 @@ from toolaxis.contact.strip.swept_volume import distance_to_removed
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import grouped
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.overlay import divided, without
+from toolaxis.numeric.polygon_boolean import divided, without
 from toolaxis.path.rest_grid import sampled
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.numeric.bsp import partition
+from toolaxis.numeric.feature_partition import partition
 from toolaxis.shape.differential import curvatures, normals
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

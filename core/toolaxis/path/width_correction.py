@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.width import step_widths
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Fault, about
-from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
@@ -21,11 +21,11 @@ from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.plan.timing import MachiningTime, Order
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
+from toolaxis.shape.joining.smooth_skins import join
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
-from toolaxis.shape.skins import join
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Document = dict[str, Any]

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.machine.catalogue import machine_from_toml, machine_to_toml
 from toolaxis.machine.kinematics import placement
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.library import machine_from_toml, machine_to_toml
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 
 Array = NDArray[np.float64]

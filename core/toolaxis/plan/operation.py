@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.timing import MachiningTime
 from toolaxis.plan.zone import Zone

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import Fault, InvalidInput
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.timing import Order
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
 
 Array = NDArray[np.float64]

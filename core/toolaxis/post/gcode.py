@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.post.setting import Options, Program, Setting

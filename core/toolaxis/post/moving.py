@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import Following, following
+from toolaxis.feed.continuous_ik import Following, following
 from toolaxis.machine.kinematics import placement
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.gcode import Dialect, Lines, number, setting_of
 from toolaxis.post.setting import Options, Setting

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward, linear_coordinates, placement, tool_axes
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import unit
 from toolaxis.post.locations import CutterLocations, gathered
 

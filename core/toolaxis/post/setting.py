@@ -7,8 +7,8 @@ from math import isfinite
 from numpy.typing import ArrayLike
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.post.stations import Station
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import nearest_turn, placement, rotary_angles
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.machine import Machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan

@@ -14,13 +14,13 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.lambert import equal_area, from_equal_area
+from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap
 from toolaxis.report.plots import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from toolaxis.report.raster import tool_outlines
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.view import View
 
 Array = NDArray[np.float64]

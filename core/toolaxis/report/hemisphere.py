@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.lambert import equal_area, from_equal_area
+from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.plan.orientation import REASONS, AxisMap
 from toolaxis.report.plots import VERMILION, figure

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.feed.profile import profile
-from toolaxis.feed.ramps import Ramps
+from toolaxis.feed.jerk_profile import profile
+from toolaxis.feed.velocity_ramps import Ramps
+from toolaxis.machine.feed_polytopes import Level, best_along, box, pole_zone
 from toolaxis.machine.kinematics import part_from_machine
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level, best_along, box, pole_zone
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.polytopes import box_vertices
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.report.plots import BLUE, GREY, ORANGE, VERMILION, figure

@@ -11,9 +11,9 @@ from scipy.spatial import ConvexHull
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.machine.bodies import Body
+from toolaxis.machine.body_poses import bed_from_body, beside_part, carried_by, part_from_bed
 from toolaxis.machine.kinematics import linear_coordinates
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.standing import bed_from_body, beside_part, carried_by, part_from_bed
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan

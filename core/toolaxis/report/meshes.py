@@ -12,7 +12,7 @@ from trimesh.path import Path3D
 from trimesh.path.entities import Line
 from trimesh.visual import ColorVisuals
 
-from toolaxis.machine.setup import WorkCoordinates
+from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.charts import SCALE, SLACK

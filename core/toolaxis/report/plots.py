@@ -30,8 +30,8 @@ from toolaxis.report.raster import (
     visible_runs,
 )
 from toolaxis.shape.face import Face
-from toolaxis.shape.joined import joins
-from toolaxis.tools.assembly import Tool
+from toolaxis.shape.joining.joined_surface import joins
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.maps import SurfaceMap
 
 Array = NDArray[np.float64]

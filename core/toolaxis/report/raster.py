@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.numeric.thinning import thinned
+from toolaxis.numeric.simplify_polyline import thinned
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.polygons import inside, slabs, stations, walk
-from toolaxis.numeric.thinning import thinned_loop
+from toolaxis.numeric.simplify_polyline import thinned_loop
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]

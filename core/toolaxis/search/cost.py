@@ -13,7 +13,7 @@ from toolaxis.path.pass_count import measure
 from toolaxis.path.sampling import Samples
 from toolaxis.search.time_estimate import Pace
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

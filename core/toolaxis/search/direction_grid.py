@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.ties import signed
+from toolaxis.numeric.rounding import signed
 from toolaxis.numeric.vectors import perpendicular, unit
 
 Array = NDArray[np.float64]

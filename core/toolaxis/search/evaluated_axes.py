@@ -9,7 +9,7 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.refined_check import Closer
 from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, Verdicts, Witness
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.numeric.ties import settled, settled_prices
+from toolaxis.numeric.rounding import settled, settled_prices
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress

@@ -9,13 +9,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.feed.constraints import linear_bounds
-from toolaxis.feed.profile import travel_time
-from toolaxis.feed.ramps import bend_of, durations
-from toolaxis.feed.schedule import Feeds
+from toolaxis.feed.fixed_axis_time import Feeds
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.limits import linear_bounds
+from toolaxis.feed.velocity_ramps import bend_of, durations
+from toolaxis.machine.feed_polytopes import Level
 from toolaxis.machine.kinematics import part_from_machine
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.search.kinematic_setup import (
     Domain,

@@ -14,9 +14,9 @@ from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
 from toolaxis.feasibility.violations import BACK, CUTTER, Witness
-from toolaxis.feed.schedule import Feeds
+from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.machine.mounting import MachineLike
+from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.iso_parametric import layout
@@ -52,7 +52,7 @@ from toolaxis.search.time_estimate import pace_of
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance, ToleranceLike
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import OutOfWork, better_may_exist, up_to
 
 Array = NDArray[np.float64]
@@ -224,7 +224,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     scallop : float
         Scallop height, mm.
     machine : Machine, Mounting, AxisLimits or str, optional
-        A machine, its name or file, one with the part on its table (`toolaxis.machine.mounting`), or limits of the
+        A machine, its name or file, one with the part on its table (`toolaxis.machine.setup`), or limits of the
         axis and their short form.
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.

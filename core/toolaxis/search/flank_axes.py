@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.numeric.ties import signed
+from toolaxis.numeric.rounding import signed
 
 Array = NDArray[np.float64]
 

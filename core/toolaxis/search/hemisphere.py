@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.feasibility.violations import BACK, FREE, Witness
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.search.branch_and_bound import hunt
 from toolaxis.search.direction_grid import COVER, own_frame, ring, spiral

@@ -11,7 +11,7 @@ from toolaxis.feasibility.interference import FINE
 from toolaxis.feasibility.surroundings import SKIN
 from toolaxis.search.messages import place, told_apart
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 #: Share of a face that must be tighter than the cutter for all of it to be called so.
 _TIGHT = 0.9

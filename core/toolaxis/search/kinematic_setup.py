@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import frame_from_normal
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.machine.feed_polytopes import Level, along, best_angles
 from toolaxis.machine.kinematics import nearest_turn, placement, tool_axes
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.polytopes import Level, along, best_angles
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import as_rows, unit
 
 Array = NDArray[np.float64]

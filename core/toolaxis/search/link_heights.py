@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.contact.clearance.queries import judged
 from toolaxis.feasibility.surroundings import OTHER, Group
 from toolaxis.path.links import BESIDE, LIFTS, ROOFS
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

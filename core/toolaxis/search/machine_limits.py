@@ -11,12 +11,12 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import Group
 from toolaxis.feasibility.violations import FREE, LIMITS, Witness
 from toolaxis.machine.limits import ROUNDING, AllOf, AxisLimits
-from toolaxis.machine.mounting import MachineLike, Mounting, machine_limits
+from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.evaluated_axes import Ledger
 from toolaxis.search.local_search import Candidate, counted
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def combined(machine: MachineLike | None, limits: AxisLimits | str | None) -> Ax
     Parameters
     ----------
     machine : Machine, AxisLimits, str or None
-        Whatever `toolaxis.machine.mounting.machine_limits` takes.
+        Whatever `toolaxis.machine.setup.machine_limits` takes.
     limits : AxisLimits, str or None
 
     Raises

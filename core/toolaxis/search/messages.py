@@ -13,7 +13,7 @@ from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, TOUCHING
 from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 from toolaxis.numeric.vectors import angle_between, dot
 from toolaxis.plan.orientation import REASONS
 from toolaxis.plan.zone import Zone

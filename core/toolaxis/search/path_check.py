@@ -11,9 +11,9 @@ from toolaxis.contact.clearance.queries import bounded, judged, segment_motions
 from toolaxis.feasibility.interference import COARSE, FINE
 from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
-from toolaxis.numeric.ties import settled
+from toolaxis.numeric.rounding import settled
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.schedule import machining_time
+from toolaxis.feed.fixed_axis_time import machining_time
 from toolaxis.search.cost import FEEDS, Worth
 from toolaxis.search.local_search import Candidate
 

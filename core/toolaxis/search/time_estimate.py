@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import linear_bounds
+from toolaxis.feed.fixed_axis_time import Feeds, index_time
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
-from toolaxis.feed.profile import travel_time
-from toolaxis.feed.ramps import bends_of, durations, greatest_speeds
-from toolaxis.feed.schedule import Feeds, index_time
+from toolaxis.feed.velocity_ramps import bends_of, durations, greatest_speeds
 from toolaxis.machine.kinematics import part_from_machine, rotary_angles
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.path.links import Linking
 from toolaxis.plan.plan import INDEX_SECONDS
 from toolaxis.search.direction_grid import ring
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -234,7 +234,8 @@ def pace_of(face: Face, tool: Tool, mounting: Mounting | None, feeds: Feeds | No
     """
     known = known_machine(mounting)
     if feeds is None:
-        raise InvalidInput("objective 'time' needs feeds: give toolaxis.feed.schedule.Feeds with the programmed feed")
+        raise InvalidInput("objective 'time' needs feeds: give toolaxis.feed.fixed_axis_time.Feeds with the programmed "
+                           "feed")
     return Pace(face, tool, known, feeds)
 
 

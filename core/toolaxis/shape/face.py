@@ -60,7 +60,7 @@ class Face:
     kinks : pair of tuples of float
         Parameters u and v along which the surface is only C0.
     members : tuple of Member
-        The faces that were joined into this one, see `toolaxis.shape.skins`; empty for a face of a file.
+        The faces that were joined into this one, see `toolaxis.shape.joining.smooth_skins`; empty for a face of a file.
 
     Raises
     ------

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.golden_section import least_between
 from toolaxis.numeric.polygons import stations, walk
-from toolaxis.numeric.roots import least_between
 
 if TYPE_CHECKING:
     from toolaxis.shape.face import Face

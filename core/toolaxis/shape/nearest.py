@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.numeric.golden_section import least_between
 from toolaxis.numeric.polygons import stations, walk
-from toolaxis.numeric.roots import least_between
 from toolaxis.numeric.vectors import as_rows, dot
 from toolaxis.shape.face import Face
 

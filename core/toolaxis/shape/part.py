@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.adjacency import Edge, edges_from_borders
 from toolaxis.shape.face import Face
-from toolaxis.shape.matching import matched, sides_of
+from toolaxis.shape.joining.edge_matching import matched, sides_of
 from toolaxis.shape.seams import Seam, seam_warnings, seams
 
 Array = NDArray[np.float64]
@@ -60,7 +60,7 @@ class Part:
     selected : tuple of int
         Numbers of the faces that the caller picked; empty where nothing was picked.
     original : Part or None
-        The part as it came, where faces of it were joined, see `toolaxis.shape.skins.join`.
+        The part as it came, where faces of it were joined, see `toolaxis.shape.joining.smooth_skins.join`.
 
     Raises
     ------

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import built_in, compiled
-from toolaxis.numeric.convex import Convex
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.support_functions import Convex
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.tools.profile import Profile
 

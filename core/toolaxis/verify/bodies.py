@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.bodies import BED
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import inverse
+from toolaxis.machine.machine import Machine
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile

@@ -5,8 +5,8 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import forward, inverse
+from toolaxis.machine.machine import Machine
 
 Array = NDArray[np.float64]
 

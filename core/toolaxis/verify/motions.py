@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.compiled import compiled, inlined
+from toolaxis.numeric.jit import compiled, inlined
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.verify.solids import meridian
 

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled, inlined
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled, inlined
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile

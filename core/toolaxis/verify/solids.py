@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.compiled import inlined
+from toolaxis.numeric.jit import inlined
 from toolaxis.tools.profile import Profile
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import compiled, inlined
+from toolaxis.numeric.jit import compiled, inlined
 from toolaxis.verify.solids import meridian
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.machine import Machine
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile

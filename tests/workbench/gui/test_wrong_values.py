@@ -110,7 +110,7 @@ def test_inputs_edited_in_the_property_editor(desk, operation, wrong):
 
 def broken(path, how):
     """A machine file that is none, by what is wrong with it."""
-    from toolaxis.machine.catalogue import library
+    from toolaxis.machine.library import library
 
     text = library()["bc-table-table"].read_text()
     texts = {"empty": "", "letters": "this is no machine", "cut": text[:len(text) // 2],
@@ -431,7 +431,7 @@ def test_parts_that_are_none(desk, kind):
 
 def test_a_machine_edited_badly_after_it_was_chosen(desk, operation, tmp_path):
     """The file is good when it is picked, bad when OK is pressed, and gone when jobs are made of it later."""
-    from toolaxis.machine.catalogue import library
+    from toolaxis.machine.library import library
 
     document = operation.Document
     before = names(document)

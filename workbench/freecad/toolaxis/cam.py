@@ -13,7 +13,7 @@ def tool_from(thing):
 
     Returns
     -------
-    toolaxis.tools.assembly.Tool
+    toolaxis.tools.tool.Tool
         Its shank, where the bit tells one; no holder: FreeCAD knows none.
 
     Raises
@@ -24,7 +24,7 @@ def tool_from(thing):
         When it is a tool that cannot be planned with.
     """
     from toolaxis.errors import InvalidInput, UnsupportedGeometry
-    from toolaxis.tools.assembly import Tool
+    from toolaxis.tools.tool import Tool
 
     bit = thing if hasattr(thing, "Diameter") else getattr(thing, "Tool", None)
     if bit is None or not hasattr(bit, "Diameter"):

@@ -27,7 +27,7 @@ class Passes:
     ----------
     operation : App.DocumentObject
     inputs : freecad.toolaxis.bridge.Inputs
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     path : toolaxis.cldata.toolpath.ToolPath
         In the document's space.
     matrix : (4, 4) array

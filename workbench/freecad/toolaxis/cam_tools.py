@@ -15,7 +15,7 @@ def add_bit(document, tool, label):
     ----------
     document : App.Document
         The active one: FreeCAD's CAM makes its objects there.
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     label : str
 
     Returns

@@ -45,7 +45,7 @@ def defaults(document, faces):
 def _preferred(inputs):
     """What the user prefers in place of what the part suggests; a tool that is none is left out."""
     from toolaxis.errors import InvalidInput
-    from toolaxis.tools.assembly import Tool
+    from toolaxis.tools.tool import Tool
 
     found = preferred_inputs()
     if "tool" in found:

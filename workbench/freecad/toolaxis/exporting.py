@@ -272,7 +272,7 @@ def _program(plan, wish, name, verdict):
     """The files of a program."""
     from toolaxis.cad.machines import load_machine
     from toolaxis.job.posting import posted
-    from toolaxis.machine.mounting import Mounting
+    from toolaxis.machine.setup import Mounting
 
     mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None
     return posted(plan, wish.dialect, mounting, name=name, verdict=verdict)

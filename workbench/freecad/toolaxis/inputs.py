@@ -139,7 +139,7 @@ class Inputs:
         InvalidInput
             When the sizes make none.
         """
-        from toolaxis.tools.assembly import Tool
+        from toolaxis.tools.tool import Tool
 
         body = {name: [list(row) for row in getattr(self, name)] for name in ("shank", "holder") if getattr(self, name)}
         if self.flute_length:
@@ -213,9 +213,9 @@ def flute_of(tool):
 
     Parameters
     ----------
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     """
-    from toolaxis.tools.assembly import Tool
+    from toolaxis.tools.tool import Tool
 
     usual = Tool.parse(tool.name, stickout=tool.stickout).flute_length
     return 0.0 if abs(tool.flute_length - usual) < 1e-9 else float(tool.flute_length)

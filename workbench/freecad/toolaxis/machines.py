@@ -22,7 +22,7 @@ def available():
     dict of str to str
         What to load, a name of the library or a file, by what is shown.
     """
-    from toolaxis.machine.catalogue import library
+    from toolaxis.machine.library import library
 
     found = {name: name for name in library()}
     for folder in folders():
@@ -100,7 +100,7 @@ def mounting(text, tool):
     Parameters
     ----------
     text : str
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
 
     Raises
     ------
@@ -108,7 +108,7 @@ def mounting(text, tool):
         When there is no such machine, or its file does not describe one.
     """
     from toolaxis.cad.machines import load_machine
-    from toolaxis.machine.mounting import Mounting
+    from toolaxis.machine.setup import Mounting
 
     name, offset = read_text(text)
     return Mounting(load_machine(name), offset, tool.gauge_length)
@@ -121,7 +121,7 @@ def limits_from(text, tool):
     ----------
     text : str
         Short form, a machine's included.
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     """
     return mounting(text, tool) if text.startswith(PREFIX) else text or None
 
@@ -149,7 +149,7 @@ class Held:
 
         Parameters
         ----------
-        machine : toolaxis.machine.configurations.Machine
+        machine : toolaxis.machine.machine.Machine
         """
         import numpy as np
 
@@ -162,7 +162,7 @@ def ways_to_hold(mounted, axis, tips):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
     axis : (3,) array
         In the document's space.
     tips : (n, 3) array
@@ -192,9 +192,9 @@ def _against(mounted, rotary, within, tips):
     """What speaks against a solution, and the bodies that meet."""
     import numpy as np
 
+    from toolaxis.machine.body_poses import meeting_at
     from toolaxis.machine.kinematics import linear_coordinates
-    from toolaxis.machine.mounting import in_tenths
-    from toolaxis.machine.standing import meeting_at
+    from toolaxis.machine.setup import in_tenths
 
     machine = mounted.machine
     if not within:
@@ -223,7 +223,7 @@ def in_order(mounted, operations):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
     operations : sequence of (axis, tips) or (axis, tips, tool length)
         The length, mm, where it is not that of the mounting; None where it is not known.
 
@@ -251,7 +251,7 @@ def texts_of(machine, ways, taken):
 
     Parameters
     ----------
-    machine : toolaxis.machine.configurations.Machine
+    machine : toolaxis.machine.machine.Machine
     ways : sequence of Held
     taken : int
     """
@@ -264,7 +264,7 @@ def ranges_along(mounted, path):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
     path : toolaxis.cldata.toolpath.ToolPath
 
     Returns
@@ -275,7 +275,7 @@ def ranges_along(mounted, path):
     import numpy as np
 
     from toolaxis.errors import InvalidInput
-    from toolaxis.feed.turning import following
+    from toolaxis.feed.continuous_ik import following
 
     try:
         found = following(mounted.machine, path, mounted.table_from_part, float(mounted.tool_length or 0.0))

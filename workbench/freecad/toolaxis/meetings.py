@@ -57,7 +57,7 @@ class Around:
 
     Attributes
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
         Its tool's length does not count.
     surroundings : tuple of toolaxis.collision.machine_collision.Surroundings
         One for each operation, with its tool.
@@ -112,7 +112,7 @@ class Around:
         """
         from toolaxis.collision.machine_collision import meeting_on
         from toolaxis.machine.kinematics import forward
-        from toolaxis.numeric.convex import places
+        from toolaxis.numeric.support_functions import places
 
         held = self._holding(row)
         tips, _ = forward(held.machine, joints[None], held.tool_length, held.table_from_part)
@@ -157,7 +157,7 @@ def met_by_tool(tool, path, near, still):
 
     Parameters
     ----------
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     path : (tips, axes), each (n, 3) array
         mm; the axes are all the same unless `still`.
     near : toolaxis.contact.clearance.surroundings.Surroundings
@@ -220,7 +220,7 @@ def tool_of(operation):
 
     Returns
     -------
-    toolaxis.tools.assembly.Tool
+    toolaxis.tools.tool.Tool
     """
     from .inputs import inputs_of
 
@@ -258,9 +258,9 @@ def around(mounted, tools, found, progress):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
         With a place of the part on the table.
-    tools : sequence of toolaxis.tools.assembly.Tool
+    tools : sequence of toolaxis.tools.tool.Tool
         One for each operation.
     found : sequence of Copy
     progress : toolaxis.progress.Progress
@@ -274,7 +274,7 @@ def around(mounted, tools, found, progress):
     from toolaxis.collision.machine_collision import Surroundings
     from toolaxis.contact.clearance.surroundings import Surroundings as Near
     from toolaxis.progress import heard
-    from toolaxis.shape.cells import forest
+    from toolaxis.shape.bounding.bounding_tree import forest
 
     names, cells, every = {}, [], []
     for label, name, faces in read(found, progress):

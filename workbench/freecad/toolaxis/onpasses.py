@@ -51,7 +51,7 @@ def bumps(tool, path, found, progress):
 
     Parameters
     ----------
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     path : toolaxis.cldata.toolpath.ToolPath
         In the document's space.
     found : sequence of freecad.toolaxis.meetings.Copy

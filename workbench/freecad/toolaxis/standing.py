@@ -81,7 +81,7 @@ class Standing:
         ----------
         part : toolaxis.shape.part.Part
         bodies : sequence of Part
-        tool : toolaxis.tools.assembly.Tool
+        tool : toolaxis.tools.tool.Tool
         inputs : toolaxis.plan.plan.Inputs
         """
         from toolaxis.plan.operation import Operation
@@ -94,7 +94,7 @@ class Standing:
     @property
     def frame(self):
         """The frame of the plane as the library's work coordinate system, in the document's space."""
-        from toolaxis.machine.setup import WorkCoordinates
+        from toolaxis.machine.work_coordinates import WorkCoordinates
 
         m = self.matrix
         return WorkCoordinates(m[:3, 3], m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3])
@@ -108,7 +108,7 @@ class Standing:
         """
         from math import pi
 
-        from toolaxis.shape.skins import join
+        from toolaxis.shape.joining.smooth_skins import join
 
         members = self.details.get("members")
         return join(part, members, corner=pi) if members and not part.face(members[0]).members else part

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.local_frame import Bend, Frame, Piece, Triple, cross, dot, look, plus
-from toolaxis.numeric.compiled import built_in
+from toolaxis.numeric.jit import built_in
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from toolaxis.contact.clearance.local_frame import Bend, Triple, dot, look, row
 from toolaxis.contact.clearance.relief import Relief, relieved_bounds
 from toolaxis.contact.clearance.trimmed_cells import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
-from toolaxis.numeric.compiled import borrowed, built_in, compiled
-from toolaxis.shape.cells import ForestData
+from toolaxis.numeric.jit import borrowed, built_in, compiled
+from toolaxis.shape.bounding.bounding_tree import ForestData
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]

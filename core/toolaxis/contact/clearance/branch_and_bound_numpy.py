@@ -12,9 +12,9 @@ from toolaxis.contact.clearance.cell_bounds import BETTER
 from toolaxis.contact.clearance.relief import relief_over_numpy
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
-from toolaxis.shape.cells import Cells
+from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.shape.bounding.build import clipped, margin_of, reached, remainder, second_remainder
 from toolaxis.shape.face import Face
-from toolaxis.shape.subdivision import clipped, margin_of, reached, remainder, second_remainder
 from toolaxis.tools.solid import piece_distance_numpy
 
 Array = NDArray[np.float64]

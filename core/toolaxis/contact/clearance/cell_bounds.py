@@ -25,7 +25,7 @@ from toolaxis.contact.clearance.local_frame import (
     slopes_along,
     spread,
 )
-from toolaxis.numeric.compiled import built_in
+from toolaxis.numeric.jit import built_in
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]

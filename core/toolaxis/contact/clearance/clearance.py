@@ -14,8 +14,8 @@ from toolaxis.numeric.vectors import axis_rows
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.part import Part
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import COMPONENTS
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -10,9 +10,9 @@ from toolaxis.contact.clearance.queries import bounded, judged, motions, segment
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import axis_rows
-from toolaxis.shape.cells import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import Cells, forest
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import built_in
+from toolaxis.numeric.jit import built_in
 
 Array = NDArray[np.float64]
 Triple: TypeAlias = tuple[float, float, float]

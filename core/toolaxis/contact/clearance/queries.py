@@ -9,11 +9,11 @@ from toolaxis.contact.clearance.branch_and_bound import ToolData, descend_many, 
 from toolaxis.contact.clearance.branch_and_bound_numpy import descend_many_numpy
 from toolaxis.contact.clearance.relief import no_relief
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
-from toolaxis.shape.cells import Cells
-from toolaxis.tools.assembly import Tool
+from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.local_frame import Triple
-from toolaxis.numeric.compiled import built_in
+from toolaxis.numeric.jit import built_in
 from toolaxis.shape.seams import GREATEST, REACH
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.cells import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import Cells, forest
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 

@@ -5,7 +5,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 # centre u, v and half widths

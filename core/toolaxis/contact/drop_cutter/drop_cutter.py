@@ -22,10 +22,10 @@ from toolaxis.contact.drop_cutter.kernel import (
     drop_many,
 )
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.vectors import as_rows, perpendicular, unit
 from toolaxis.progress import breathe
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.jit import compiled
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]

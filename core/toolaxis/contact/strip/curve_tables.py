@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import Pair, tip_from
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 Floats3: TypeAlias = tuple[float, float, float]

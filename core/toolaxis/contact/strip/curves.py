@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

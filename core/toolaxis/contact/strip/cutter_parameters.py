@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

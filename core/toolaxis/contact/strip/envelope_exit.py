@@ -23,7 +23,7 @@ from toolaxis.contact.strip.swept_cutter import (
     scan_pass,
     signed_distance,
 )
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 Job: TypeAlias = tuple[Setting, Curve, Curve]

@@ -26,7 +26,7 @@ from toolaxis.contact.strip.second_order import Form, compliance, surface_form
 from toolaxis.contact.strip.swept_cutter import SIDE_NODES, lay_pass, new_memory
 from toolaxis.contact.strip.tabulated_exit import rapid_exit
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.jit import compiled
 
 Array = NDArray[np.float64]
 Geometry: TypeAlias = tuple[SurfaceData, float, Array]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import Pair, Vector, gap_rates
-from toolaxis.numeric.compiled import built_in
+from toolaxis.numeric.jit import built_in
 
 Array = NDArray[np.float64]
 Second: TypeAlias = tuple[float, float, float]

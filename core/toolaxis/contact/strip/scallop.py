@@ -8,10 +8,10 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.half_widths import Bench, Geometry, contact_widths, new_bench
 from toolaxis.contact.strip.width import contact_rows
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

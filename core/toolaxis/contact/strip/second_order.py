@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.frame import Feed, contact_frame
 from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import as_rows, dot, unit
 from toolaxis.shape.differential import curvature_form
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Numbers: TypeAlias = Array | tuple[float, float, float, float]

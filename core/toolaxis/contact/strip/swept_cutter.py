@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.curves import Curve, Scratch, curve_point
 from toolaxis.numeric.bspline import SurfaceData
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 Setting: TypeAlias = tuple[SurfaceData, float, Array, Array]

@@ -5,11 +5,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.swept_cutter import signed_distance
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.tools.assembly import Tool
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

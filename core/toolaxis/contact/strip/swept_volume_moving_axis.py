@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import meridian_distance
-from toolaxis.numeric import compiled as _compiled
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import built_in, compiled
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

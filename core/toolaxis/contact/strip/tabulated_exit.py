@@ -10,7 +10,7 @@ from toolaxis.contact.strip.curve_tables import SIDE, blend, interval, iso_state
 from toolaxis.contact.strip.newton import Second, disc_step, exit_step, side_step
 from toolaxis.contact.strip.swept_cutter import Pair, gap_rates, signed_distance, tip_from
 from toolaxis.numeric.bspline import SurfaceData
-from toolaxis.numeric.compiled import built_in, compiled
+from toolaxis.numeric.jit import built_in, compiled
 
 Array = NDArray[np.float64]
 ARC, FLANK, DISC = 0, 1, 2

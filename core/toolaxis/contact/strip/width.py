@@ -14,10 +14,10 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.half_widths import Geometry, Sizes, section_widths, step_half_widths
 from toolaxis.contact.strip.width_numpy import half_widths_numpy
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import compiled as _compiled
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from toolaxis.contact.clearance.queries import judged, motions
 from toolaxis.feasibility.surroundings import Group
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.strategies.blade.schedule import Plane, Swing
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.corners import RoundedLine, greatest_height
+from toolaxis.numeric.corner_rounding import RoundedLine, greatest_height
 from toolaxis.strategies.blade.angle_channel import Channel
 
 Array = NDArray[np.float64]

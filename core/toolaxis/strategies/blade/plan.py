@@ -24,7 +24,7 @@ from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
 from toolaxis.strategies.common.passes import beyond
 from toolaxis.strategies.common.path_check import MovingCrossing, prove_moving
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

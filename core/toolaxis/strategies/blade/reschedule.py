@@ -13,7 +13,7 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.strategies.blade.schedule import CLEARANCE, Layer, Scheduled, Swing, reschedule
 from toolaxis.strategies.blade.section import base_of, section
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

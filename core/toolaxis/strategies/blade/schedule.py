@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import placement
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import as_rows, perpendicular, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.strategies.blade.angle_channel import Channel, channel
 from toolaxis.strategies.blade.key_points import KeyCurve, KeyRule, best_rule, key_curve
 from toolaxis.strategies.blade.minimum_acceleration import LeastCurve, LeastProgramme, least_peak
 from toolaxis.strategies.blade.section import HOLLOW, Section, section
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

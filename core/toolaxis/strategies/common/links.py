@@ -25,7 +25,7 @@ from toolaxis.path.links import (
     kinds_of,
     near_end,
 )
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -24,9 +24,9 @@ from toolaxis.collision.machine_collision import (
     single,
     tree_over,
 )
-from toolaxis.machine.mounting import Mounting
-from toolaxis.machine.standing import standing
-from toolaxis.numeric.convex import Convex, segments
+from toolaxis.machine.body_poses import standing
+from toolaxis.machine.setup import Mounting
+from toolaxis.numeric.support_functions import Convex, segments
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces

@@ -11,9 +11,9 @@ from toolaxis.collision.machine_collision import Meeting, Surroundings, words
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN
 from toolaxis.feasibility.violations import BACK, LIMITS, Witness
-from toolaxis.feed.turning import Following, following
+from toolaxis.feed.continuous_ik import Following, following
 from toolaxis.machine.limits import ROUNDING
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.chord_tolerance import follow, rises
 from toolaxis.path.cl_points import climbing

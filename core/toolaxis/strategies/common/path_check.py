@@ -22,7 +22,7 @@ from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.link_heights import OVER
 from toolaxis.search.path_check import COMPONENTS, Proof, greatest_depth, worst_motion
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

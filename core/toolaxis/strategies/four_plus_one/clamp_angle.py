@@ -10,7 +10,7 @@ from toolaxis.contact.clearance.queries import judged, motions
 from toolaxis.contact.placement import place
 from toolaxis.contact.strip.second_order import screen_many
 from toolaxis.machine.kinematics import placement
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.kinematics import placement, tool_axes
-from toolaxis.numeric.turning import one_turn
+from toolaxis.numeric.rotations import one_turn
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.strategies.four_plus_one.passes import Clamp
 

@@ -14,8 +14,8 @@ from scipy.interpolate import RectBivariateSpline
 from toolaxis.contact.frame import Frame
 from toolaxis.contact.strip.second_order import contact_forms, second_order_each
 from toolaxis.contact.strip.width import step_widths
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import placement, tool_axes
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.parametrization import Cut

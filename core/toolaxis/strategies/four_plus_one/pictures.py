@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.feed.turning import following
+from toolaxis.feed.continuous_ik import following
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.plots import bare, figure, scale_bar

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
-from toolaxis.machine.axes import RotaryAxis
+from toolaxis.feed.continuous_ik import following
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import rotary_angles
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.path.pass_count import Count
 from toolaxis.plan.orientation import Orientation

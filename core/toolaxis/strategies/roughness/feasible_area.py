@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -16,13 +16,13 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.scallop import RA_SHARE
 from toolaxis.contact.strip.second_order import contact_forms, relative_forms
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.turning import following
-from toolaxis.machine.configurations import Machine
+from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.kinematics import tool_axes
+from toolaxis.machine.machine import Machine
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.rotary_spline import RotarySpline, basis, even_knots
 from toolaxis.strategies.roughness.section_width import Sections, sections
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from toolaxis.contact.frame import Frame, axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import tips
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import tool_axes
+from toolaxis.machine.machine import Machine
 from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.shape.face import Face

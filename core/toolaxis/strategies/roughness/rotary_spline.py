@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.constrained import constrained_least_squares
+from toolaxis.numeric.constrained_least_squares import constrained_least_squares
 
 Array = NDArray[np.float64]
 

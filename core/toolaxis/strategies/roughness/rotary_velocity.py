@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.machine import Machine
 from toolaxis.strategies.roughness.pass_constraints import Lane
 from toolaxis.strategies.roughness.rotary_spline import rates
 

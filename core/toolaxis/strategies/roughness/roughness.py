@@ -9,7 +9,7 @@ from toolaxis.contact.strip.swept_volume_moving_axis import least_distance_to_po
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from toolaxis.contact.placement import tips
 from toolaxis.contact.strip.second_order import contact_forms
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import placement
-from toolaxis.machine.mounting import Mounting
+from toolaxis.machine.setup import Mounting
 from toolaxis.path.constant_lead import LeadChart
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.search.fixed_axis import Task

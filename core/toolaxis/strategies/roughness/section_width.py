@@ -19,7 +19,7 @@ from toolaxis.numeric.vectors import axis_rows, dot
 from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.constrained import constrained_least_squares
+from toolaxis.numeric.constrained_least_squares import constrained_least_squares
 from toolaxis.strategies.roughness import rotary_velocity as pace
 from toolaxis.strategies.roughness.pass_constraints import CONDITIONS, Lane
 from toolaxis.strategies.roughness.rotary_spline import RotarySpline, rates

@@ -15,9 +15,9 @@ from toolaxis.contact.clearance.gouge import least_distance, skin_cells
 from toolaxis.contact.clearance.queries import judged
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
-from toolaxis.shape.cells import Cells
+from toolaxis.shape.bounding.bounding_tree import Cells
 from toolaxis.shape.face import Face
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -12,7 +12,7 @@ from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import STEEPEST
 from toolaxis.strategies.two_point.rings import Setting
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 
 if TYPE_CHECKING:
     from toolaxis.strategies.two_point.lean_field import Field

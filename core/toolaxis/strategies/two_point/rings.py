@@ -18,7 +18,7 @@ from toolaxis.numeric.vectors import as_rows, dot
 from toolaxis.shape.differential import curvature_form, normals
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.assembly import Tool
+from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

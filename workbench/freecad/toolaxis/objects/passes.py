@@ -17,7 +17,7 @@ def commands(path, frame, feedrate):
     Parameters
     ----------
     path : toolaxis.cldata.toolpath.ToolPath
-    frame : toolaxis.machine.setup.WorkCoordinates
+    frame : toolaxis.machine.work_coordinates.WorkCoordinates
     feedrate : float
         mm/min; FreeCAD's commands have mm/s.
 
@@ -86,7 +86,7 @@ def keep_axes(thing, path, frame):
     thing : App.DocumentObject
     path : toolaxis.cldata.toolpath.ToolPath or None
         None for an axis that stands still: nothing is kept.
-    frame : toolaxis.machine.setup.WorkCoordinates
+    frame : toolaxis.machine.work_coordinates.WorkCoordinates
     """
     if path is None and "ToolAxes" not in thing.PropertiesList:
         return

@@ -15,7 +15,7 @@ def tool_shape(tool):
 
     Parameters
     ----------
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     """
     import Part
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from toolaxis.numeric.lambert import equal_area, from_equal_area
+from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.plan.orientation import REASONS
 from toolaxis.report.raster import mean_direction

@@ -286,7 +286,7 @@ class MachinePanel(Panel):
         linear = "  ".join(f"{axis.name} {x:.1f}" for axis, x in zip(mounted.machine.linear, joints[:3], strict=True))
         text = f"{linear}  {at}"
         if red:
-            from toolaxis.machine.mounting import in_tenths
+            from toolaxis.machine.setup import in_tenths
 
             text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(", ".join(sorted(red)), in_tenths(depth))
         if near is not None:

@@ -16,7 +16,7 @@ class Journey:
 
     Attributes
     ----------
-    machine : toolaxis.machine.configurations.Machine
+    machine : toolaxis.machine.machine.Machine
     joints : (n, 3 + m) array
         Linear coordinates, mm, and rotary angles, rad, at each station.
     """
@@ -30,7 +30,7 @@ class Journey:
 
         Parameters
         ----------
-        mounted : toolaxis.machine.mounting.Mounting
+        mounted : toolaxis.machine.setup.Mounting
         stations : sequence of ((3,) array, (m,) array)
             Tips in the document's space, mm, and rotary angles, rad.
         lengths : sequence of float or None, optional
@@ -121,7 +121,7 @@ def places(mounted, joints):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
     joints : (3 + m,) array
 
     Returns
@@ -129,7 +129,7 @@ def places(mounted, joints):
     dict of str to (4, 4) array
         By what carries them; "bed" always among them.
     """
-    from toolaxis.machine.standing import bed_from_body, carried_by, part_from_bed
+    from toolaxis.machine.body_poses import bed_from_body, carried_by, part_from_bed
 
     machine, rotary = mounted.machine, joints[3:]
     part_from = part_from_bed(machine, rotary, mounted.table_from_part)
@@ -146,15 +146,15 @@ def meeting(mounted, joints):
 
     Parameters
     ----------
-    mounted : toolaxis.machine.mounting.Mounting
+    mounted : toolaxis.machine.setup.Mounting
     joints : (3 + m,) array
 
     Returns
     -------
     set of str, float
     """
+    from toolaxis.machine.body_poses import meeting_at
     from toolaxis.machine.kinematics import forward
-    from toolaxis.machine.standing import meeting_at
 
     if not mounted.judges_bodies:
         return set(), 0.0

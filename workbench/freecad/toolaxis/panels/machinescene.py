@@ -36,10 +36,10 @@ class MachineScene:
 
         Parameters
         ----------
-        mounted : toolaxis.machine.mounting.Mounting
-        tools : sequence of toolaxis.tools.assembly.Tool
+        mounted : toolaxis.machine.setup.Mounting
+        tools : sequence of toolaxis.tools.tool.Tool
         """
-        from toolaxis.machine.standing import beside_part
+        from toolaxis.machine.body_poses import beside_part
 
         self.clear()
         self.view, self.mounted = view_of(self.name), mounted

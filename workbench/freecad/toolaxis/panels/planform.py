@@ -129,7 +129,7 @@ class PlanForm:
 
         Parameters
         ----------
-        tool : toolaxis.tools.assembly.Tool
+        tool : toolaxis.tools.tool.Tool
         speeds : (float or None, float or None)
             Feed rate, mm/min, and spindle speed, rev/min.
         """
@@ -310,7 +310,7 @@ def _shown(inputs, fastest):
     """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
     from toolaxis.errors import InvalidInput
     from toolaxis.partition.regions import checked_count
-    from toolaxis.tools.assembly import Tool
+    from toolaxis.tools.tool import Tool
 
     from ..inputs import Inputs
 

@@ -159,7 +159,7 @@ def solids(tool):
 
     Parameters
     ----------
-    tool : toolaxis.tools.assembly.Tool
+    tool : toolaxis.tools.tool.Tool
     """
     from toolaxis.report.raster import tool_outlines
 

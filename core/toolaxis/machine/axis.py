@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.turning import ROUNDING
+from toolaxis.numeric.rotations import ROUNDING
 from toolaxis.numeric.vectors import as_rows, unit
 
 Array = NDArray[np.float64]

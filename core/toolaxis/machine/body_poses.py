@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.machine.axes import RotaryAxis
+from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.bodies import BED, Body
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, placement
-from toolaxis.numeric.convex import Convex, places, separation
+from toolaxis.machine.machine import Machine
+from toolaxis.numeric.support_functions import Convex, places, separation
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]

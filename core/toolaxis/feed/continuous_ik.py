@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
-from toolaxis.numeric.compiled import compiled
+from toolaxis.machine.machine import Machine
+from toolaxis.numeric.jit import compiled
 from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 
-from toolaxis.feed.constraints import AxisBounds, followed
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.limits import AxisBounds, followed
 from toolaxis.feed.polyline import look_ahead
-from toolaxis.feed.profile import travel_time
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import LinearAxis, RotaryAxis
+from toolaxis.machine.axis import LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import BED, Body
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.feed.constraints import linear_bounds
+from toolaxis.feed.jerk_profile import travel_time
+from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
-from toolaxis.feed.profile import travel_time
-from toolaxis.feed.ramps import Ramps, ramps
-from toolaxis.machine.configurations import Machine
+from toolaxis.feed.velocity_ramps import Ramps, ramps
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.plan.timing import MachiningTime
 

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 
-from toolaxis.feed.barrier import SpeedProblem, greatest_speeds
-from toolaxis.feed.constraints import AxisBounds, followed
-from toolaxis.feed.profile import profile
+from toolaxis.feed.interior_point import SpeedProblem, greatest_speeds
+from toolaxis.feed.jerk_profile import profile
+from toolaxis.feed.limits import AxisBounds, followed
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.knots import distinct_inner, elevated, refined, restricted
 from toolaxis.shape.face import Face
-from toolaxis.shape.layout import Cell, Grid
-from toolaxis.shape.meeting import GAP
+from toolaxis.shape.joining.patch_grid import Cell, Grid
+from toolaxis.shape.joining.shared_boundary import GAP
 from toolaxis.shape.nurbs import NurbsSurface
 
 Array = NDArray[np.float64]

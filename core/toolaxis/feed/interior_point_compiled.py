@@ -8,7 +8,7 @@ from math import inf, log, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.compiled import compiled
+from toolaxis.numeric.jit import compiled
 
 Array = NDArray[np.float64]
 

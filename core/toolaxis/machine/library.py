@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import body_from, body_lines
-from toolaxis.machine.configurations import Machine
-from toolaxis.machine.fcm import machine_from_fcm
+from toolaxis.machine.freecad_machine import machine_from_fcm
+from toolaxis.machine.machine import Machine
 from toolaxis.resources import named_files
 
 _MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head", "body"}

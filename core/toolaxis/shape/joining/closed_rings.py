@@ -3,7 +3,7 @@
 from contextlib import suppress
 
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.shape.meeting import Meeting, meeting_along
+from toolaxis.shape.joining.shared_boundary import Meeting, meeting_along
 from toolaxis.shape.part import Part
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.feed.curve import CurveSchedule
+from toolaxis.feed.time_optimal import CurveSchedule
 
 Array = NDArray[np.float64]
 

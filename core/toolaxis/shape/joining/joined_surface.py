@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.bezier import bezier_nets, bezier_rows
-from toolaxis.numeric.overlay import united
+from toolaxis.numeric.polygon_boolean import united
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face, Member
+from toolaxis.shape.joining.patch_grid import Cell, Grid, laid_out
+from toolaxis.shape.joining.patches import SAME, Pair, Patch, alike, knots_along, placed, range_of, surface_over
+from toolaxis.shape.joining.shared_boundary import GAP, Meeting
 from toolaxis.shape.kinks import beside, turn_at
-from toolaxis.shape.layout import Cell, Grid, laid_out
-from toolaxis.shape.meeting import GAP, Meeting
 from toolaxis.shape.nurbs import NurbsSurface
-from toolaxis.shape.patches import SAME, Pair, Patch, alike, knots_along, placed, range_of, surface_over
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
     faces : sequence of Face
         The first one's directions of u and v, sense and number are those of the result.
     meetings : sequence of Meeting
-        From `toolaxis.shape.meeting.meetings`.
+        From `toolaxis.shape.joining.shared_boundary.meetings`.
     tolerance : float
         By how much the surface may leave the faces at the joins, mm.
     corner : float

@@ -15,14 +15,14 @@ from scipy.interpolate import BSpline, make_lsq_spline
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.constraints import AxisBounds, linear_bounds
-from toolaxis.feed.crawling import Crawl, crawl
-from toolaxis.feed.curve import CurveSchedule, schedule_curve
+from toolaxis.feed.continuous_ik import following, levers
+from toolaxis.feed.feed_drop import Crawl, crawl
+from toolaxis.feed.fixed_axis_time import CORNER, NO_STEP, Feeds
+from toolaxis.feed.limits import AxisBounds, linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
-from toolaxis.feed.schedule import CORNER, NO_STEP, Feeds
-from toolaxis.feed.turning import following, levers
-from toolaxis.machine.configurations import Machine
+from toolaxis.feed.time_optimal import CurveSchedule, schedule_curve
 from toolaxis.machine.kinematics import linear_coordinates, tool_axes
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.plan.timing import MachiningTime
 

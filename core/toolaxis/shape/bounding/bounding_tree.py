@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.shape.bounding.build import subdivided
 from toolaxis.shape.face import Face
 from toolaxis.shape.seams import Mismatch
-from toolaxis.shape.subdivision import subdivided
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -117,7 +117,7 @@ def cells(face: Face, fineness: float = FINENESS) -> Cells:
     ----------
     face : Face
     fineness : float
-        As for `toolaxis.shape.subdivision.subdivided`, mm.
+        As for `toolaxis.shape.bounding.build.subdivided`, mm.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
     ----------
     faces : sequence of Face
     fineness : float
-        As for `toolaxis.shape.subdivision.subdivided`, mm.
+        As for `toolaxis.shape.bounding.build.subdivided`, mm.
 
     Raises
     ------

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solveh_banded
 
-from toolaxis.feed.barrier_compiled import barrier_system, barrier_value, solved
-from toolaxis.numeric import compiled
+from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solved
+from toolaxis.numeric import jit as compiled
 
 Array = NDArray[np.float64]
 

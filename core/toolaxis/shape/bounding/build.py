@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.progress import breathe
+from toolaxis.shape.bounding.base_cells import graded, grid_lines
 from toolaxis.shape.face import Face
-from toolaxis.shape.gridlines import graded, grid_lines
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -31,7 +31,7 @@ _REFERENCE = np.array([0.4876237, 0.5312345])
 
 
 class Tree(NamedTuple):
-    """The arrays of `toolaxis.shape.cells.Cells`, for one face."""
+    """The arrays of `toolaxis.shape.bounding.bounding_tree.Cells`, for one face."""
 
     shape: Array
     bend: Array

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.axes import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.configurations import Machine
+from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
+from toolaxis.machine.machine import Machine
 
 _LINEAR = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 _ROLES = ("table_linear", "table_rotary", "head_linear", "head_rotary")

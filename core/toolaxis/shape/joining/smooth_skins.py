@@ -13,9 +13,9 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import clipped, grouped
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.joined import GREATEST_CORNER, corner_at, joined, joins, name_of
-from toolaxis.shape.layout import laid_out_from
-from toolaxis.shape.meeting import GAP, Meeting, meeting_along, meetings
+from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, joined, joins, name_of
+from toolaxis.shape.joining.patch_grid import laid_out_from
+from toolaxis.shape.joining.shared_boundary import GAP, Meeting, meeting_along, meetings
 from toolaxis.shape.part import Part
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float
     InvalidInput
         When there are fewer than two faces, one of them is named twice, is not there, or is joined already.
     UnsupportedGeometry
-        When they cannot be joined: see `toolaxis.shape.joined.joined`.
+        When they cannot be joined: see `toolaxis.shape.joining.joined_surface.joined`.
 
     Notes
     -----

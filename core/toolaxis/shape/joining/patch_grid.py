@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.shape.face import Face
-from toolaxis.shape.meeting import Meeting
+from toolaxis.shape.joining.shared_boundary import Meeting
 
 Array = NDArray[np.float64]
 Cell = tuple[int, int]

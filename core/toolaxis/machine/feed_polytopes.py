@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.machine.configurations import Machine
 from toolaxis.machine.kinematics import part_from_machine
+from toolaxis.machine.machine import Machine
 from toolaxis.numeric.polytopes import box_vertices, reach
-from toolaxis.numeric.turning import two_turns
+from toolaxis.numeric.rotations import two_turns
 from toolaxis.numeric.vectors import as_rows, unit
 
 Array = NDArray[np.float64]

@@ -1,0 +1,1 @@
+"""Trees of cells around faces, with bounds that hold."""

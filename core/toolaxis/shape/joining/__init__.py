@@ -1,0 +1,1 @@
+"""Faces that continue each other smoothly, joined into one surface."""
