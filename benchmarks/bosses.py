@@ -8,10 +8,10 @@ import numpy as np
 from benchmarks._papers import GOUGE
 
 import toolaxis as ta
-from toolaxis.partition.around import Around, candidates
 from toolaxis.partition.bosses import distances
-from toolaxis.partition.cover import trade
-from toolaxis.partition.divider import Divider
+from toolaxis.partition.face_division import Divider
+from toolaxis.partition.ring_division import Around, candidates
+from toolaxis.partition.shared_axes import trade
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 

@@ -17,7 +17,7 @@ from benchmarks.examples import BODY, FOLDER
 import toolaxis as ta
 from toolaxis.job.axes import frame_of
 from toolaxis.job.baselines import baseline
-from toolaxis.partition.cover import cover
+from toolaxis.partition.shared_axes import cover
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan

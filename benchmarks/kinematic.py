@@ -18,7 +18,7 @@ from toolaxis.machine.feed_polytopes import Level, alignments, best_along, box, 
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
+from toolaxis.report.figures.kinematics import feed_figure, polytope_figure, reach_figure
 from toolaxis.search.fastest_setup import cutting_seconds, fastest
 from toolaxis.search.kinematic_setup import Setup, Stretch, setup, setups_by_pass
 

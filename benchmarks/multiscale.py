@@ -33,7 +33,7 @@ from toolaxis.strategies.roughness.roughness import arithmetic_roughness, step_o
 from toolaxis.strategies.roughness.search import NOMINAL, Multiscale
 from toolaxis.strategies.roughness.section_width import expected_widths, section_parameters, section_points
 from toolaxis.strategies.roughness.smoothing import smoothed
-from toolaxis.verify.removal import removal
+from toolaxis.verify.material_removal import removal
 
 EXAMPLES, OUT = (Path(__file__).parents[1] / name for name in ("examples", "out"))
 TOOL, H, FEED, TEETH = ta.Tool.torus(10, 3), 0.1, 800.0, 4 * 4800

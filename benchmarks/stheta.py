@@ -15,7 +15,7 @@ from benchmarks._blades import FAMILIES, sections
 from benchmarks._papers import GOUGE
 from numpy.typing import NDArray
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.feed.axis_motion import AxisMotion, axis_motion
 from toolaxis.feed.fixed_axis_time import Feeds

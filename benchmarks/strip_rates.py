@@ -12,13 +12,13 @@ from benchmarks import _section
 from benchmarks._count import operations
 from benchmarks._peak import peaks
 
+from toolaxis.contact.strip import second_order
 from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.half_widths import step_half_widths
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy, second_order_many_axes
 from toolaxis.contact.strip.width import (
     _checked,
     contact_rows,
-    second_order,
     step_widths,
     step_widths_many_axes,
     strip_width,

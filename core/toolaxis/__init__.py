@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from toolaxis.batch.run import batch as batch
-    from toolaxis.cad.loading import load as load
+    from toolaxis.cad.load import load as load
     from toolaxis.cad.machines import load_machine as load_machine
     from toolaxis.contact.clearance.clearance import clearance as clearance
     from toolaxis.contact.clearance.gouge import gouge as gouge
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from toolaxis.job.reading import read_cl as read_cl
     from toolaxis.job.run import plan as plan
     from toolaxis.machine.setup import Mounting as Mounting
-    from toolaxis.partition.regions import partition as partition
+    from toolaxis.partition.partition import partition as partition
     from toolaxis.path.estimate import estimate as estimate
     from toolaxis.path.iso_parametric import passes as passes
     from toolaxis.path.pass_count import count as count
@@ -45,11 +45,11 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
-    "Tool": "tools.tool", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances", "load": "cad.loading",
+    "Tool": "tools.tool", "Face": "shape.face", "Part": "shape.part", "Tolerance": "tolerances", "load": "cad.load",
     "place": "contact.placement", "strip_width": "contact.strip.width", "gouge": "contact.clearance.gouge",
     "clearance": "contact.clearance.clearance", "drop_cutter": "contact.drop_cutter.drop_cutter",
     "sample_points": "path.sampling", "estimate": "path.estimate", "count": "path.pass_count",
-    "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.regions",
+    "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.partition",
     "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors",
     "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
     "load_machine": "cad.machines", "Mounting": "machine.setup", "join": "shape.joining.smooth_skins",

@@ -11,8 +11,8 @@
 
 import build123d as bd
 
-from toolaxis.cad.outgoing import compound_of
-from toolaxis.cad.pieces import AXIS, LINES, PART, Piece, pieces, rest_of
+from toolaxis.cad.ocp.export import compound_of
+from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, Piece, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.plan.plan import Plan
 
@@ -66,7 +66,7 @@ def sub_surfaces(plan: Plan) -> dict[str, bd.Face]:
     ----------
     plan : Plan
     """
-    from toolaxis.report.colouring import colours_of
+    from toolaxis.report.figures.map_colouring import colours_of
 
     colours = colours_of(plan)
     return {piece.name: bd.Face(piece.face, label=piece.surface_name, color=bd.Color(*colours[piece.operation.number]))

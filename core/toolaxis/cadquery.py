@@ -15,7 +15,7 @@ from typing import Any
 
 import cadquery as cq
 
-from toolaxis.cad.pieces import AXIS, LINES, PART, Piece, piece_of, pieces, rest_of
+from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, Piece, piece_of, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.run import plan as planned
 from toolaxis.plan.plan import Plan
@@ -84,7 +84,7 @@ def assembly(plan: Plan, part: "cq.Workplane | cq.Shape | None" = None) -> cq.As
     part : cadquery.Workplane or Shape, optional
         What is drawn as the part; its faces that are not machined unless given.
     """
-    from toolaxis.report.colouring import colours_of
+    from toolaxis.report.figures.map_colouring import colours_of
 
     made = cq.Assembly(name="plan")
     made.add(cq.Compound(rest_of(plan)) if part is None else part, name="part", color=cq.Color(*PART))

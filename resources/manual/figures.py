@@ -11,7 +11,7 @@ from matplotlib.patches import Arc
 
 import toolaxis as ta
 from toolaxis.job.pictures import draw_plan
-from toolaxis.report.plots import BLUE, GREEN, GREY, ORANGE, VERMILION, figure
+from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, VERMILION, figure
 
 HERE = Path(__file__).parent / "figures"
 PART = Path(__file__).resolve().parents[2] / "examples" / "freeform.step"

@@ -68,7 +68,7 @@ def block_shape():
 @pytest.fixture(scope="module")
 def kernel_shape(shared_part):
     """The part as the kernel itself reads it."""
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     return read_shape(str(shared_part))[0]
 
@@ -76,14 +76,14 @@ def kernel_shape(shared_part):
 @pytest.fixture(scope="module")
 def kernel_record(kernel_shape):
     """The part as our plain records."""
-    from toolaxis.cad.ocp import shape_record
+    from toolaxis.cad.ocp.reader import shape_record
 
     return shape_record(kernel_shape)
 
 
 SERVER = """
 import json, os, signal, sys, time
-import toolaxis.cad.ocp, toolaxis.cad.transfer as transfer
+import toolaxis.cad.ocp.reader, toolaxis.cad.step.worker as transfer
 for line in sys.stdin:
     given = json.loads(line)
     child = os.fork()
@@ -124,4 +124,4 @@ def quick_kernel(kernel_server, monkeypatch):
         assert code != "hangs", f"{file} hangs the kernel"
         return subprocess.CompletedProcess(arguments, code, b"", b"")
 
-    monkeypatch.setattr("toolaxis.cad.step._run", run)
+    monkeypatch.setattr("toolaxis.cad.step.read._run", run)

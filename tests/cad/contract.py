@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from toolaxis.cad.assembling import face_from_record
+from toolaxis.cad.build_part import face_from_record
 
 SUBSET = 12
 POINTS = 8

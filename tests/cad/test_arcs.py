@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.cad.arcs import (
+from toolaxis.cad.rational_arcs import (
     ParameterMap,
     angle_breaks,
     angle_from_parameter,

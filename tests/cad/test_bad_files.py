@@ -9,8 +9,9 @@ import time
 import numpy as np
 import pytest
 
-from toolaxis.cad import load, transfer
-from toolaxis.cad.steptext import declared_unit, read_text
+from toolaxis.cad import load
+from toolaxis.cad.step import worker as transfer
+from toolaxis.cad.step.precheck import declared_unit, read_text
 from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError
 
 pytest.importorskip("OCP")
@@ -39,7 +40,7 @@ def same_process(monkeypatch):
     def run(arguments, file, limit):
         return subprocess.CompletedProcess(arguments, transfer.main(arguments), b"", b"")
 
-    monkeypatch.setattr("toolaxis.cad.step._run", run)
+    monkeypatch.setattr("toolaxis.cad.step.read._run", run)
 
 
 def refused(path, sentence, **options):
@@ -151,7 +152,8 @@ def test_a_kernel_that_takes_too_long_is_stopped(write, text):
 
 def test_a_kernel_that_crashes_is_survived(write, text, monkeypatch):
     """The child is killed as a crash would kill it."""
-    monkeypatch.setattr("toolaxis.cad.step.COMMAND", ("-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"))
+    crash = ("-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setattr("toolaxis.cad.step.read.COMMAND", crash)
     refused(write(text), r"crashed the CAD kernel \(signal 11\)")
 
 
@@ -205,6 +207,6 @@ def test_the_unit_is_told_by_the_text_too():
 
 
 def test_a_kernel_of_another_release_is_told_and_not_blamed_on_the_file(monkeypatch, tmp_path):
-    monkeypatch.setitem(sys.modules, "toolaxis.cad.ocp", None)
+    monkeypatch.setitem(sys.modules, "toolaxis.cad.ocp.reader", None)
     kind, which, said = transfer.convert(str(tmp_path / "part.step"))
     assert (kind, which) == ("failed", MissingBackend) and "is not one that toolaxis knows" in said

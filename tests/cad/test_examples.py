@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from toolaxis.cad import load
-from toolaxis.cad.transfer import read_shape
+from toolaxis.cad.step.worker import read_shape
 from toolaxis.shape.face import Face
 
 pytest.importorskip("OCP")

@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_SOLID, TopAbs_State
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from toolaxis.cad.ocp import face_map
+from toolaxis.cad.ocp.reader import face_map
 
 EVERYTHING = pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
 

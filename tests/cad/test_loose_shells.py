@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from toolaxis.cad import load
-from toolaxis.cad.records import ShapeRecord
-from toolaxis.cad.stepfaces import FaceOrder, numbered, transferred
-from toolaxis.cad.steplinks import plain
+from toolaxis.cad.shape_data import ShapeRecord
+from toolaxis.cad.step.faces import FaceOrder, numbered, transferred
+from toolaxis.cad.step.links import plain
 from toolaxis.errors import InvalidInput
 
 pytest.importorskip("OCP")
@@ -137,7 +137,7 @@ def write_assembly(path, prefix=None):
     from OCP.XCAFApp import XCAFApp_Application
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
@@ -283,7 +283,7 @@ def test_surfaces_that_nothing_uses_are_told(tmp_path):
 def test_a_mended_file_can_be_exported_with_its_part(tmp_path):
     from types import SimpleNamespace
 
-    from toolaxis.cad.ocp import face_map
+    from toolaxis.cad.ocp.reader import face_map
     from toolaxis.job.exporting import _part_shape
 
     path = tmp_path / "part.step"

@@ -18,8 +18,8 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from toolaxis.cad.outgoing import face_shape, polyline_edge
-from toolaxis.cad.transfer import read_shape
+from toolaxis.cad.ocp.export import face_shape, polyline_edge
+from toolaxis.cad.step.worker import read_shape
 
 
 def area(shape):

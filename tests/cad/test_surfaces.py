@@ -30,8 +30,8 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt, TColgp_HArray1OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
-from toolaxis.cad.assembling import face_from_record
-from toolaxis.cad.ocp import face_record, shape_record
+from toolaxis.cad.build_part import face_from_record
+from toolaxis.cad.ocp.reader import face_record, shape_record
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
 FRAME = gp_Ax3(gp_Pnt(3, -2, 5), gp_Dir(1, 2, 3), gp_Dir(2, -1, 0.5))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from toolaxis.cad.units import tool_warnings, unit_warnings
+from toolaxis.cad.unit_checks import tool_warnings, unit_warnings
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
@@ -76,7 +76,7 @@ def test_plan_says_it(tmp_path):
 def test_examples_are_not_warned_about(path):
     pytest.importorskip("OCP")
     from toolaxis.cad.shapes import part_from_shapes
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     found = part_from_shapes([read_shape(str(path))[0]], str(path))
     assert unit_warnings(found) == ()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from toolaxis.cad import load
-from toolaxis.cad.transfer import read_shape
+from toolaxis.cad.step.worker import read_shape
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.smooth_skins import join, skins
 from toolaxis.shape.nearest import nearest

@@ -7,7 +7,7 @@ from pathlib import Path
 import cadquery as cq
 import pytest
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cli.main import main
 from toolaxis.job.folder import read_plan
 from toolaxis.job.judge import verify_plan

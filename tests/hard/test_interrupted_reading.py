@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from toolaxis.cad import step
+from toolaxis.cad.step import read as step
 from toolaxis.errors import ToolAxisError
 
 pytest.importorskip("OCP")

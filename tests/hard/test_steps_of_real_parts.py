@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.clearance.queries import judged, segment_motions
 from toolaxis.contact.placement import tips

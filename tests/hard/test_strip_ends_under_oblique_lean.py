@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.verify.material_removal import removal
 from toolaxis.verify.rays import face_rays
-from toolaxis.verify.removal import removal
 
 
 @pytest.mark.parametrize("lean_deg, turn_deg", [(0.6, 30.0), (4.0, 28.0), (10.0, -60.0), (30.0, 100.0)])

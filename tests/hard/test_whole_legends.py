@@ -9,7 +9,7 @@ from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.report.plots import operation_picture, widths_picture
+from toolaxis.report.figures.plots import operation_picture, widths_picture
 from toolaxis.shape.part import Part
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from toolaxis.cad import transfer
+from toolaxis.cad.step import worker as transfer
 from toolaxis.errors import InvalidInput, ToolAxisError
 
 OCP = pytest.importorskip("OCP")

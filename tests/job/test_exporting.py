@@ -14,7 +14,7 @@ from toolaxis.job.folder import read_plan, write_json
 from toolaxis.job.judge import verdict_document, verify_plan
 from toolaxis.job.views import read_views, write_views
 from toolaxis.plan.plan import Plan
-from toolaxis.report.colouring import colours_of
+from toolaxis.report.figures.map_colouring import colours_of
 from toolaxis.verify.verdict import Verdict
 
 trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
@@ -110,7 +110,7 @@ def test_a_step_file_has_sub_surfaces_as_faces_and_work_coordinate_systems_as_na
     assert op.frame is not None and path is not None
     assert list(found) == ["plan", "part", op.name, f"{op.name}-surface", f"{op.name}-passes"]
     assert found[op.name][1] == pytest.approx(op.frame.part_from_work[:3], abs=1e-9)
-    from toolaxis.cad.loading import load
+    from toolaxis.cad.load import load
 
     (face,) = load(found[f"{op.name}-surface"][0]).faces
     assert face.area == pytest.approx(op.face.area, rel=1e-5)
@@ -171,7 +171,7 @@ def test_what_stands_in_the_way_of_a_file_is_told_and_nothing_is_written(folder:
     with pytest.raises(InvalidInput, match="is a folder"):
         (tmp_path / "a.glb").mkdir()
         export(folder, tmp_path / "a.glb")
-    monkeypatch.setitem(__import__("sys").modules, "toolaxis.report.meshes", None)
+    monkeypatch.setitem(__import__("sys").modules, "toolaxis.report.figures.mesh_scene", None)
     with pytest.raises(MissingBackend, match=r"pip install 'toolaxis\[mesh\]'"):
         export(folder, tmp_path / "out" / "plan.glb")
     assert not (tmp_path / "out").exists()

@@ -16,7 +16,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.passes import beyond
 from toolaxis.tolerances import Tolerance
-from toolaxis.verify.bodies import Rig
+from toolaxis.verify.machine_motion import Rig
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])
 PLACE = (-20.0, 10.0, 60.0)

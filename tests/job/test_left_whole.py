@@ -13,7 +13,7 @@ from toolaxis.job.zones import WHOLLY, told
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
-from toolaxis.report.overview import overview_picture
+from toolaxis.report.figures.plan_overview import overview_picture
 from toolaxis.search.messages import place
 from toolaxis.shape.measure import mean_width
 

@@ -19,7 +19,7 @@ from toolaxis.strategies.roughness.section_width import (
     section_points,
     section_width,
 )
-from toolaxis.verify.removal import removal
+from toolaxis.verify.material_removal import removal
 
 H, RA = 0.1, 1.6e-3
 

@@ -24,7 +24,7 @@ from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.post.setting import Options
+from toolaxis.post.context import Options
 from toolaxis.report.tables import plan_table
 from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.part import Part

@@ -18,8 +18,8 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
 from toolaxis.report.blades import blades_lines
-from toolaxis.report.hatching import COLOUR
-from toolaxis.report.overview import overview_picture
+from toolaxis.report.figures.hatch_fill import COLOUR
+from toolaxis.report.figures.plan_overview import overview_picture
 from toolaxis.report.tables import baselines_table
 from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.shape.analytic import Cylinder

@@ -257,8 +257,8 @@ def test_names_are_text_and_never_code(small_plan: Plan, tmp_path: Path) -> None
                    operations=(replace(op, face=face),))
     folder = tmp_path / wild
     folder.mkdir()
-    from toolaxis.report.html import Beside
-    from toolaxis.report.html import page as page_of
+    from toolaxis.report.html.page import Beside
+    from toolaxis.report.html.page import page as page_of
 
     text = page_of(plan, Beside(source=wild), wild)
     found = Page(text)
@@ -312,7 +312,7 @@ def test_the_page_goes_where_it_is_asked_for(folder: Path, tmp_path: Path, capsy
 def test_without_its_libraries_it_says_what_to_install(folder: Path, monkeypatch: pytest.MonkeyPatch,
                                                        library: str) -> None:
     for name in [name for name in sys.modules if name.split(".")[0] == library or name in (
-            "toolaxis.report.html", "toolaxis.report.scene", "toolaxis.report.charts")]:
+            "toolaxis.report.html.page", "toolaxis.report.html.scene_3d", "toolaxis.report.html.charts")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, library, None)
     with pytest.raises(MissingBackend, match=r"pip install 'toolaxis\[report\]'"):

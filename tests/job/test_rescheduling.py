@@ -13,7 +13,7 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.job.rescheduling import reschedule
 from toolaxis.post.apt import apt_text
-from toolaxis.post.apt_reading import read_apt
+from toolaxis.post.read_apt import read_apt
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ta.Tool.ball(6, stickout=90, holder=[(12.5, 0), (12.5, 60)])

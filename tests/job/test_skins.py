@@ -95,7 +95,7 @@ def test_a_gouge_into_a_member_is_found_on_that_member(joined_plan: Plan) -> Non
 
 
 def test_the_picture_shows_the_joins(joined_plan: Plan, small_plan: Plan) -> None:
-    from toolaxis.report.plots import operation_picture
+    from toolaxis.report.figures.plots import operation_picture
 
     for plan, shown in ((joined_plan, True), (small_plan, False)):
         legend = operation_picture(plan, plan.operations[0]).axes[0].get_legend()

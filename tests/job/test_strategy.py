@@ -13,7 +13,7 @@ from toolaxis.job.timing import timed
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan
-from toolaxis.report.plots import standing
+from toolaxis.report.figures.plots import standing
 from toolaxis.report.tables import plan_table
 from toolaxis.report.warnings import warnings_of
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks._blades import loft, sections
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.library import load_machine

@@ -7,7 +7,7 @@ from benchmarks._blades import sections
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.post.apt import apt_text
-from toolaxis.post.apt_reading import read_apt
+from toolaxis.post.read_apt import read_apt
 from toolaxis.strategies.blade.reschedule import reschedule_path, swing_of_path
 from toolaxis.strategies.blade.schedule import Swing
 from toolaxis.strategies.blade.section import section

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.partition.around import Around, candidates, parted
 from toolaxis.partition.bosses import distances
-from toolaxis.partition.divider import Divider
-from toolaxis.partition.regions import regions
+from toolaxis.partition.face_division import Divider
+from toolaxis.partition.partition import regions
+from toolaxis.partition.ring_division import Around, candidates, parted
 from toolaxis.search.cost import CLEAN_UP
 from toolaxis.search.fixed_axis import Task, task
 
@@ -100,7 +100,7 @@ def test_the_cheaper_division_is_taken(job: Task, divider: Divider, monkeypatch:
 
         curve = property(lambda self: self.best.division.curve + 1e5)
 
-    monkeypatch.setattr(sys.modules["toolaxis.partition.regions"], "Divider", Dearer)
+    monkeypatch.setattr(sys.modules["toolaxis.partition.partition"], "Divider", Dearer)
     forced = regions(job, 4, bosses=bosses)
     assert forced.radius > 0 and len(forced) == 4
     assert sum(forced.lengths) >= sum(both.lengths) - 1e-6

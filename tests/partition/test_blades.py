@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from toolaxis.bladed.find_blades import blades_of
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.partition.blades import blades_of
 from toolaxis.shape.part import Part
 
 pytest.importorskip("OCP")
@@ -17,7 +17,7 @@ SHARED = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "part
 
 def read(path):
     from toolaxis.cad import load
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     return load(read_shape(str(path))[0])
 

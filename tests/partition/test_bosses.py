@@ -14,7 +14,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 @pytest.fixture(scope="module")
 def parts():
     from toolaxis.cad import load
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     return {name: load(read_shape(str(EXAMPLES / f"{name}.step"))[0]) for name in ("boss", "bosses", "trimmed")}
 

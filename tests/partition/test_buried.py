@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from toolaxis.partition.buried import Solid, exposed, solids_of, uncovered
+from toolaxis.bladed.trim_buried import Solid, exposed, solids_of, uncovered
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Body, Part

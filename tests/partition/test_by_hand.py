@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.partition.by_hand import cut_along, cut_out, halves, merged
+from toolaxis.partition.manual_edit import cut_along, cut_out, halves, merged
 from toolaxis.shape.face import Face
 
 QUARTER = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.partition.cover import cover, knee, shared, trade
-from toolaxis.partition.divider import Divider
+from toolaxis.partition.face_division import Divider
+from toolaxis.partition.shared_axes import cover, knee, shared, trade
 from toolaxis.search.fixed_axis import task
 
 
@@ -44,7 +44,7 @@ def test_out_of_time_a_choice_is_still_made_and_its_bound_holds(monkeypatch: pyt
     costs[rng.random(costs.shape) < 0.5] = np.inf
     best = cover(costs, 5, 50.0)
     assert best.bound == pytest.approx(best.cost, rel=1e-6)
-    monkeypatch.setattr(import_module("toolaxis.partition.cover"), "_SECONDS", 1e-6)
+    monkeypatch.setattr(import_module("toolaxis.partition.shared_axes"), "_SECONDS", 1e-6)
     found = cover(costs, 5, 50.0)
     assert np.isfinite(found.cost) and len(np.unique(found.axis)) <= 5
     assert found.bound <= best.cost * (1 + 1e-9) <= found.cost * (1 + 1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.partition.gaps import ahead, nearness, reach_along_normal, widest
+from toolaxis.bladed.blade_gap import ahead, nearness, reach_along_normal, widest
 from toolaxis.shape.analytic import Sphere
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool

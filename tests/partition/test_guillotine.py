@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from toolaxis.partition.cuts import least_costs, least_costs_numpy
 from toolaxis.partition.guillotine import Corners, Division, each_axis, offers, proper
+from toolaxis.partition.guillotine_kernel import least_costs, least_costs_numpy
 
 
 def shapes(nu: int, nv: int) -> tuple[int, int, int, int]:

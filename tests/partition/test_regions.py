@@ -6,8 +6,8 @@ import pytest
 import toolaxis as ta
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
-from toolaxis.partition.divider import LINK, Divider
-from toolaxis.partition.regions import regions
+from toolaxis.partition.face_division import LINK, Divider
+from toolaxis.partition.partition import regions
 from toolaxis.search.fixed_axis import evaluate_axis, task
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1)
@@ -53,7 +53,7 @@ def test_reckoned_length_is_about_what_the_passes_take(divider: Divider) -> None
 def test_links_count_so_that_long_passes_are_kept(divider: Divider, monkeypatch: pytest.MonkeyPatch) -> None:
     from importlib import import_module
 
-    monkeypatch.setattr(import_module("toolaxis.partition.divider"), "LINK", 40.0)
+    monkeypatch.setattr(import_module("toolaxis.partition.face_division"), "LINK", 40.0)
     dear = Divider(divider.job, divider.lattice.cells, divider.most)
     passes = []
     for one in (divider, dear):

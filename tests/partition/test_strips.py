@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from toolaxis.bladed.strips import strips
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.normal_cone import smallest_cap
-from toolaxis.partition.strips import strips
 from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 

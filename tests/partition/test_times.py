@@ -10,9 +10,9 @@ from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.partition.cover import shared, trade
-from toolaxis.partition.divider import Divider
-from toolaxis.partition.regions import regions
+from toolaxis.partition.face_division import Divider
+from toolaxis.partition.partition import regions
+from toolaxis.partition.shared_axes import shared, trade
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import Task, task
 from toolaxis.search.time_estimate import Pace

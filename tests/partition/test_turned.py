@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.partition.turned import best_motion, counterpart, turn_about, turned_piece
+from toolaxis.bladed.counterparts import best_motion, counterpart, turn_about, turned_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 

@@ -9,9 +9,9 @@ from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
 import toolaxis as ta
-from toolaxis.partition.around import parted
 from toolaxis.partition.bosses import bosses_of, distances
-from toolaxis.partition.lattice import Lattice
+from toolaxis.partition.ring_division import parted
+from toolaxis.partition.uv_grid import Lattice
 from toolaxis.path.rest_material import left_over, machined
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
@@ -25,7 +25,7 @@ TOOL = ta.Tool.torus(10, 1, stickout=70, holder=[(16, 0), (16, 40), (25, 40), (2
 
 def read(name: str) -> tuple[ta.Part, ta.Face]:
     from toolaxis.cad import load
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.worker import read_shape
 
     part = load(read_shape(str(EXAMPLES / f"{name}.step"))[0])
     return part, max(part.sculptured, key=lambda face: face.area)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from toolaxis.cad.records import left_out
+from toolaxis.cad.shape_data import left_out
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.work_coordinates import work_coordinates

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.post.apt import apt_text, cutter_statement, locations_text
-from toolaxis.post.apt_reading import read_apt
+from toolaxis.post.read_apt import read_apt
 from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(diameter=12, corner_radius=1)

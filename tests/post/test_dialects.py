@@ -16,9 +16,9 @@ from toolaxis.machine.library import load_machine
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.post.dialects.known import DIALECTS
-from toolaxis.post.gcode import Dialect, program_of, program_text
-from toolaxis.post.setting import Options
+from toolaxis.post.context import Options
+from toolaxis.post.dialects.registry import DIALECTS
+from toolaxis.post.program import Dialect, program_of, program_text
 
 MACHINES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",
             "three-axes-fixture")

@@ -9,7 +9,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.posting import posted
 from toolaxis.job.reading import read_cl
 from toolaxis.machine.setup import Mounting
-from toolaxis.post.setting import Options
+from toolaxis.post.context import Options
 
 TOOL = ta.Tool.ball(8, stickout=90, holder=[(12.5, 0), (12.5, 60)])
 PLACE = np.array([10.0, -5.0, 20.0])

@@ -12,7 +12,7 @@ from toolaxis.job.posting import posted
 from toolaxis.machine.kinematics import inverse
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.post.nc_reading import read_nc
+from toolaxis.post.read_nc import read_nc
 
 MIKRON = load_machine("mikron-ucp-710")
 HEAD = "%\nO0001\n(A PROGRAM)\nG21 G90 G94 G54\nS8000 M3\nG0 A0. C0.\nG43.4 H1\n"

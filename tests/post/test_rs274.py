@@ -14,8 +14,8 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.post.dialects.known import DIALECTS
-from toolaxis.post.gcode import program_of, program_text
+from toolaxis.post.dialects.registry import DIALECTS
+from toolaxis.post.program import program_of, program_text
 
 HOME = Path(__file__).resolve().parents[2] / ".venv" / "rs274"
 MOVE = re.compile(r"STRAIGHT_(TRAVERSE|FEED)\(([^)]*)\)")

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from toolaxis.errors import InvalidInput
-from toolaxis.post.turns import ORDERS, matrix_from_turns, turns_from_matrix
+from toolaxis.post.plane_angles import ORDERS, matrix_from_turns, turns_from_matrix
 
 
 @pytest.mark.parametrize("order", ORDERS)

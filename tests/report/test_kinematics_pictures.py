@@ -9,7 +9,7 @@ from toolaxis.machine.feed_polytopes import Level, along
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.report.kinematics import feed_figure, polytope_figure, reach_figure
+from toolaxis.report.figures.kinematics import feed_figure, polytope_figure, reach_figure
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 

@@ -13,8 +13,8 @@ from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.report import machine
-from toolaxis.report.machine import body_splats, has_machine_picture, machine_picture, orientations_of
+from toolaxis.report.figures import machine
+from toolaxis.report.figures.machine import body_splats, has_machine_picture, machine_picture, orientations_of
 from toolaxis.shape.part import Part
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])

@@ -15,12 +15,12 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.zone import Zone
-from toolaxis.report.bars import baselines_picture, options_picture
-from toolaxis.report.colouring import coloured
-from toolaxis.report.hatching import COLOUR
-from toolaxis.report.hemisphere import equal_area, hemisphere_picture
-from toolaxis.report.overview import overview_picture
-from toolaxis.report.plots import (
+from toolaxis.report.figures.comparison_chart import baselines_picture, options_picture
+from toolaxis.report.figures.hatch_fill import COLOUR
+from toolaxis.report.figures.hemisphere import equal_area, hemisphere_picture
+from toolaxis.report.figures.map_colouring import coloured
+from toolaxis.report.figures.plan_overview import overview_picture
+from toolaxis.report.figures.plots import (
     WidthStudy,
     cutting_lines,
     map_picture,

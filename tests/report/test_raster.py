@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.report.raster import (
+from toolaxis.report.figures.splat_renderer import (
     Canvas,
     camera,
     face_splats,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.report.ruling import hatch_lines
+from toolaxis.report.figures.hatch_lines import hatch_lines
 from toolaxis.shape.face import Face
 
 LOOP = np.array([[0.1, 0.1], [0.9, 0.1], [0.9, 0.8], [0.5, 0.3], [0.1, 0.8]])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.report.triangles import triangles
+from toolaxis.report.figures.tessellation import triangles
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 

@@ -117,6 +117,6 @@ def test_seams_of_a_real_part(mousecover, pair, gap):
 
 @pytest.fixture(scope="module")
 def mousecover(shared_parts):
-    from toolaxis.cad.loading import load
+    from toolaxis.cad.load import load
 
     return load(shared_parts / "mousecover.step")

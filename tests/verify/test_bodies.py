@@ -16,8 +16,8 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.verify.bodies import Rig, least_room
-from toolaxis.verify.things import body_thing, cutter_line, turned_thing
+from toolaxis.verify.machine_motion import Rig, least_room
+from toolaxis.verify.rigid_bodies import body_thing, cutter_line, turned_thing
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])

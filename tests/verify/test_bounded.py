@@ -12,12 +12,17 @@ import pytest
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
-from toolaxis.verify import axes, edges, motions, rays, removal, verdict, walls
-from toolaxis.verify.axes import clearance
+from toolaxis.verify import component_clearance as axes
+from toolaxis.verify import convex_edges as edges
+from toolaxis.verify import linear_motions as motions
+from toolaxis.verify import material_removal as removal
+from toolaxis.verify import rays, verdict
+from toolaxis.verify import thin_walls as walls
+from toolaxis.verify.component_clearance import clearance
 from toolaxis.verify.kept import Kept
+from toolaxis.verify.material_removal import Removal
 from toolaxis.verify.rays import face_rays
-from toolaxis.verify.removal import Removal
-from toolaxis.verify.solids import frustum_solids
+from toolaxis.verify.revolved_solids import frustum_solids
 from toolaxis.verify.task import Task
 
 UP = np.array([0.0, 0.0, 1.0])

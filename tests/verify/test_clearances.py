@@ -10,9 +10,9 @@ from toolaxis.numeric import jit as compiled
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
-from toolaxis.verify import axes as room
-from toolaxis.verify.axes import FAR, clearance
-from toolaxis.verify.solids import cutter_solid, frustum_solids
+from toolaxis.verify import component_clearance as room
+from toolaxis.verify.component_clearance import FAR, clearance
+from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 
 UP = np.array([0.0, 0.0, 1.0])
 HOLDER = np.array([[10.0, 40.0], [10.0, 60.0], [25.0, 60.0], [25.0, 90.0]])

@@ -7,7 +7,7 @@ import pytest
 
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.machine import Machine
-from toolaxis.verify.machine import machine_faults
+from toolaxis.verify.axis_limits import machine_faults
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 

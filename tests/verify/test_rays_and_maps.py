@@ -6,8 +6,8 @@ import pytest
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.verify.maps import surface_map
+from toolaxis.verify.material_removal import Remains
 from toolaxis.verify.rays import border_points, default_spacing, face_rays
-from toolaxis.verify.removal import Remains
 
 
 def bump(trims=(), flip=False, height=12.0):

@@ -8,8 +8,8 @@ from toolaxis.numeric import jit as compiled
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.progress import Progress
 from toolaxis.tools.profile import Profile
-from toolaxis.verify import motions
-from toolaxis.verify.removal import removal
+from toolaxis.verify import linear_motions as motions
+from toolaxis.verify.material_removal import removal
 
 UP = np.array([0.0, 0.0, 1.0])
 

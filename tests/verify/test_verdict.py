@@ -10,7 +10,7 @@ from toolaxis.progress import Progress
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.axes import Clearance
+from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import NOT_CHECKED, judge, verify
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.verify.view import coarser, view_along
+from toolaxis.verify.axis_view import coarser, view_along
 
 X, Y = np.array([0.6, 0.8, 0.0]), np.array([-0.8, 0.6, 0.0])
 

@@ -72,8 +72,8 @@ def write(folder, everything):
     import OCP
     from OCP.BRepTools import BRepTools
 
-    from toolaxis.cad.ocp import shape_record
-    from toolaxis.cad.transfer import convert
+    from toolaxis.cad.ocp.reader import shape_record
+    from toolaxis.cad.step.worker import convert
 
     (folder / "kernel.txt").write_text(OCP.__version__)
     shared = Path(os.environ.get("TOOLAXIS_SHARED", ROOT.parent / "shared")) / "parts"

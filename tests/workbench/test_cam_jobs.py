@@ -17,7 +17,7 @@ from freecad.toolaxis.objects.belongings import frame_of
 from freecad.toolaxis.objects.frames import kind_of_frame
 from freecad.toolaxis.places import matrix_of
 
-from toolaxis.cad.freecad import shape_of
+from toolaxis.cad.freecad.documents import shape_of
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.progress import Progress
 from toolaxis.tools.tool import Tool

@@ -8,7 +8,7 @@ import pytest
 from FreeCAD import Placement, Rotation, Vector
 
 import toolaxis as ta
-from toolaxis.cad.freecad import part_from
+from toolaxis.cad.freecad.documents import part_from
 
 TURNED = Placement(Vector(100, 0, 0), Rotation(Vector(0, 0, 1), 90))
 

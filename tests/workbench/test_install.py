@@ -12,7 +12,7 @@ import pytest
 import toolaxis
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAVY = ("numpy", "scipy", "numba", "matplotlib", "toolaxis.shape", "toolaxis.cad.loading", "OCP", "pytest")
+HEAVY = ("numpy", "scipy", "numba", "matplotlib", "toolaxis.shape", "toolaxis.cad.load", "OCP", "pytest")
 
 
 def started(code, *arguments, **environment):

@@ -18,7 +18,7 @@ from freecad.toolaxis.panels.outcome import touched_once
 from freecad.toolaxis.standing import Standing
 
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.post.apt_reading import read_apt
+from toolaxis.post.read_apt import read_apt
 from toolaxis.progress import NO_PROGRESS
 
 ROOT = Path(__file__).resolve().parents[2]

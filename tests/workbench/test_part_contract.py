@@ -9,9 +9,9 @@ import numpy as np
 import Part as FreecadPart
 import pytest
 
-from toolaxis.cad.assembling import face_from_record, part_from_record
-from toolaxis.cad.freecad_shapes import shape_record
-from toolaxis.cad.loading import load
+from toolaxis.cad.build_part import face_from_record, part_from_record
+from toolaxis.cad.freecad.shapes import shape_record
+from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
 ROOT = Path(__file__).resolve().parents[2]

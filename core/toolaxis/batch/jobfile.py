@@ -13,13 +13,13 @@ from typing import Any
 
 from toolaxis import __version__
 from toolaxis.batch.task import Source, Task
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
-from toolaxis.partition.regions import checked_count
+from toolaxis.partition.partition import checked_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
 from toolaxis.plan.plan import Inputs

@@ -143,7 +143,7 @@ def _part(source: Source, scratch: Path, known: dict[str, Part]) -> Part:
 
         part = part_from(json.loads(source.content))
     else:
-        from toolaxis.cad.loading import load
+        from toolaxis.cad.load import load
 
         path = _place(source, scratch)
         path.parent.mkdir(exist_ok=True)

@@ -57,7 +57,7 @@ def report_batch(folder: Path, file: Path | None = None, progress: Progress = NO
         When the progress object asks to stop; pages of jobs that are finished stay.
     """
     try:
-        from toolaxis.report.batch_html import Leaf, batch_page
+        from toolaxis.report.html.batch_page import Leaf, batch_page
     except ImportError as reason:
         raise MissingBackend(f"the page needs {reason.name}: pip install 'toolaxis[report]'") from reason
     target = folder / PAGE if file is None else file

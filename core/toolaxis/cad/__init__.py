@@ -1,5 +1,5 @@
 """CAD kernels in: STEP files, Open CASCADE, CadQuery and build123d objects become parts."""
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 
 __all__ = ["load"]

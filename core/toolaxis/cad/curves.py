@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cad.arcs import angle_breaks, arc_knots, arc_rows
+from toolaxis.cad.rational_arcs import angle_breaks, arc_knots, arc_rows
 from toolaxis.numeric.knots import restricted, unrolled
 
 Array = NDArray[np.float64]

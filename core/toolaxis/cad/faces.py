@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cad.borders import borders_of
-from toolaxis.cad.kernel import Box, KernelBody, KernelFace, KernelSurface
-from toolaxis.cad.records import FaceRecord, ShapeRecord, left_out
+from toolaxis.cad.kernel_protocol import Box, KernelBody, KernelFace, KernelSurface
+from toolaxis.cad.shape_data import FaceRecord, ShapeRecord, left_out
+from toolaxis.cad.shared_edges import borders_of
 from toolaxis.cad.surfaces import PlainSurface, convert, grid, map_of
 from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised
 from toolaxis.errors import InvalidInput, UnsupportedGeometry

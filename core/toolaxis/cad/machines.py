@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.collision.index_moves import hull_of
 from toolaxis.errors import InvalidInput
 from toolaxis.machine import library as catalogue

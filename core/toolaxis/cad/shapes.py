@@ -6,8 +6,8 @@ from typing import Any
 from OCP.BRep import BRep_Builder
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
-from toolaxis.cad.assembling import part_from_record
-from toolaxis.cad.ocp import shape_record
+from toolaxis.cad.build_part import part_from_record
+from toolaxis.cad.ocp.reader import shape_record
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.part import Part
 

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cad.arcs import ParameterMap, angle_breaks, arc_knots
 from toolaxis.cad.curves import Spline, arc, extruded, line, revolved
-from toolaxis.cad.kernel import (
+from toolaxis.cad.kernel_protocol import (
     Box,
     ExtrusionForm,
     KernelSurface,
@@ -16,6 +15,7 @@ from toolaxis.cad.kernel import (
     RevolutionForm,
     SplineForm,
 )
+from toolaxis.cad.rational_arcs import ParameterMap, angle_breaks, arc_knots
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.knots import restricted, unrolled

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cad.kernel import Box, KernelEdge
+from toolaxis.cad.kernel_protocol import Box, KernelEdge
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.polygons import signed_area
 

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from math import degrees
 from typing import Any
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.job.survey import FaceSummary, survey
 from toolaxis.report.tables import number, table

@@ -15,8 +15,8 @@ from toolaxis.job.spec import offset_from
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text
-from toolaxis.post.dialects.known import APT
-from toolaxis.post.setting import Options
+from toolaxis.post.context import Options
+from toolaxis.post.dialects.registry import APT
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:

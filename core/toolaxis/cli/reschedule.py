@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say

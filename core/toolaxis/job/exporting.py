@@ -15,8 +15,8 @@ from toolaxis.plan.plan import Plan
 if TYPE_CHECKING:
     import trimesh
 
+    from toolaxis.verify.axis_view import View
     from toolaxis.verify.verdict import Verdict
-    from toolaxis.verify.view import View
 
 STEP, GLTF = (".step", ".stp"), (".glb",)
 COLOURINGS = ("sub-surface", "scallop", "gouge")
@@ -106,7 +106,7 @@ def to_trimesh(plan: Plan, *, colour: str = "sub-surface", verdict: "Verdict | N
 
 
 def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, View]":
-    from toolaxis.verify.view import view_along
+    from toolaxis.verify.axis_view import view_along
 
     frames = {op.name: op.frame for op in plan.operations if op.frame is not None}
     return {found.name: view_along(found.maps[:len(found.faces)], frame.x, frame.y, frame.origin)
@@ -120,7 +120,7 @@ def _scene(plan: Plan, colour: str, views: "dict[str, View]") -> Any:
     if colour != COLOURINGS[0] and not views:
         raise InvalidInput(f"colour {colour!r} needs the judge's maps: verify the plan first")
     try:
-        from toolaxis.report.meshes import plan_scene
+        from toolaxis.report.figures.mesh_scene import plan_scene
     except ImportError as reason:
         raise MissingBackend(f"meshes need {reason.name}: pip install 'toolaxis[mesh]'") from reason
     return plan_scene(plan, colour, views)
@@ -140,10 +140,10 @@ def _gltf(plan: Plan, colour: str, views: "dict[str, View]", name: str) -> bytes
 
 
 def _write_step(plan: Plan, path: Path, name: str) -> None:
-    from toolaxis.report.colouring import colours_of
+    from toolaxis.report.figures.map_colouring import colours_of
 
     try:
-        from toolaxis.cad.step_writing import write_step
+        from toolaxis.cad.ocp.write_step import write_step
     except ImportError as reason:
         raise MissingBackend(f"STEP files need {reason.name}: pip install 'toolaxis[cadquery]'") from reason
     write_step(plan, path, colours_of(plan), name, _part_shape(plan))
@@ -151,9 +151,9 @@ def _write_step(plan: Plan, path: Path, name: str) -> None:
 
 def _part_shape(plan: Plan) -> Any:
     """The part as the kernel reads it, where its file is still the one that was planned with; else None."""
-    from toolaxis.cad.step import readable
-    from toolaxis.cad.steptext import read_text
-    from toolaxis.cad.transfer import read_shape
+    from toolaxis.cad.step.precheck import read_text
+    from toolaxis.cad.step.read import readable
+    from toolaxis.cad.step.worker import read_shape
 
     part = plan.part.original or plan.part
     source = Path(part.source) if part.source and part.sha256 else None

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, about, fault, piece_of
 from toolaxis.job.failures import failed_after, failure_text, fault_text
 from toolaxis.plan.document import plan_document, plan_from
@@ -19,7 +19,7 @@ from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
 from toolaxis.post.apt import apt_text
-from toolaxis.post.apt_reading import read_apt
+from toolaxis.post.read_apt import read_apt
 from toolaxis.shape.part import Part
 
 PLAN = "plan.json"

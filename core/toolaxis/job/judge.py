@@ -17,7 +17,7 @@ from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.smooth_skins import own_pieces
-from toolaxis.verify.axes import Clearance
+from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.task import Task
 from toolaxis.verify.verdict import OperationVerdict, Verdict, judge, not_measured

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.bladed.blade_gap import Nearness, ahead, nearness, reach_along_normal, widest
+from toolaxis.bladed.counterparts import Counterpart, best_motion, counterpart, off, turn_about
+from toolaxis.bladed.find_blades import Bladed, NoPattern, blades_of
+from toolaxis.bladed.strips import strips
+from toolaxis.bladed.trim_buried import uncovered
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.job.targets import faceted
-from toolaxis.partition.blades import Bladed, NoPattern, blades_of
-from toolaxis.partition.buried import uncovered
-from toolaxis.partition.gaps import Nearness, ahead, nearness, reach_along_normal, widest
-from toolaxis.partition.strips import strips
-from toolaxis.partition.turned import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import tight_fillet
@@ -125,7 +125,7 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
     ----------
     part : Part
     rotor : Bladed
-        From `toolaxis.partition.blades.blades_of`.
+        From `toolaxis.bladed.find_blades.blades_of`.
     """
     count = len(rotor.blades)
     own = [{**_named(blade), "hub": ()} for blade in rotor.blades]

@@ -21,19 +21,19 @@ from toolaxis.path.pass_count import count
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.report.bars import baselines_picture, options_picture
-from toolaxis.report.hemisphere import hemisphere_picture
-from toolaxis.report.machine import has_machine_picture, machine_picture
-from toolaxis.report.overview import overview_picture
-from toolaxis.report.plots import (
+from toolaxis.report.figures.closest_approach import tightest_picture
+from toolaxis.report.figures.comparison_chart import baselines_picture, options_picture
+from toolaxis.report.figures.hemisphere import hemisphere_picture
+from toolaxis.report.figures.machine import has_machine_picture, machine_picture
+from toolaxis.report.figures.plan_overview import overview_picture
+from toolaxis.report.figures.plots import (
     WidthStudy,
     map_picture,
     operation_picture,
     study_picture,
     widths_picture,
 )
-from toolaxis.report.raster import mean_direction
-from toolaxis.report.tightest import tightest_picture
+from toolaxis.report.figures.splat_renderer import mean_direction
 from toolaxis.search.evaluated_axes import Ledger
 from toolaxis.search.fixed_axis import Task
 from toolaxis.search.sectors import roman_axis, sectors

@@ -23,10 +23,10 @@ from toolaxis.job.zones import zoned
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances
-from toolaxis.partition.cover import shared, trade
-from toolaxis.partition.divider import MOST, Divider, Regions
-from toolaxis.partition.regions import checked_count
-from toolaxis.partition.regions import regions as regions_of
+from toolaxis.partition.face_division import MOST, Divider, Regions
+from toolaxis.partition.partition import checked_count
+from toolaxis.partition.partition import regions as regions_of
+from toolaxis.partition.shared_axes import shared, trade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Inputs, Option, Plan

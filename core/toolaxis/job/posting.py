@@ -13,12 +13,12 @@ from toolaxis.machine.library import machine_to_toml
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import apt_text
-from toolaxis.post.dialects.known import APT, dialect_named
-from toolaxis.post.dialects.tip_control import tip_control_of
-from toolaxis.post.gcode import bare_program, program_of, program_text
-from toolaxis.post.moving import moves, moving_text
-from toolaxis.post.setting import Options
-from toolaxis.post.sheet import moving_sheet_text, sheet_text
+from toolaxis.post.context import Options
+from toolaxis.post.dialects.registry import APT, dialect_named
+from toolaxis.post.program import bare_program, program_of, program_text
+from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
+from toolaxis.post.tcp_controls import tip_control_of
+from toolaxis.post.tcp_program import moves, moving_text
 
 
 def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike
 from toolaxis.cad.machines import load_machine
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.machine import Machine
-from toolaxis.post.apt_reading import read_apt
-from toolaxis.post.locations import CutterLocations
-from toolaxis.post.nc_reading import read_nc
+from toolaxis.post.cl_points import CutterLocations
+from toolaxis.post.read_apt import read_apt
+from toolaxis.post.read_nc import read_nc
 
 #: What moves an axis in a program.
 _NC = re.compile(r"(^|[\s\d])(G0?[01]\b|L[NP]?\s).*[XYZ]\s*=?[-+.\d]", re.IGNORECASE | re.MULTILINE)

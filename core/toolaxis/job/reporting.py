@@ -18,7 +18,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 
 if TYPE_CHECKING:
-    from toolaxis.report.html import Curve
+    from toolaxis.report.html.page import Curve
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
         When the progress object asks to stop; then nothing is written.
     """
     try:
-        from toolaxis.report.html import page
+        from toolaxis.report.html.page import page
     except ImportError as reason:
         raise MissingBackend(f"the page needs {reason.name}: pip install 'toolaxis[report]'") from reason
     target = folder / PAGE if file is None else file
@@ -77,7 +77,7 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
 
 def _beside(plan: Plan, folder: Path, progress: Progress) -> Any:
     """Everything that the page shows besides the plan."""
-    from toolaxis.report.html import Beside
+    from toolaxis.report.html.page import Beside
 
     verdict = read_verdict(folder)
     names = {op.name for op in plan.operations}
@@ -108,7 +108,7 @@ def _drawn(plan: Plan) -> list[Operation]:
 def _feed(plan: Plan, op: Operation) -> "Curve | None":
     """Feed along the longest pass of an operation, mm and mm/min; None where the machine's limits are not known."""
     from toolaxis.feed.fixed_axis_time import longest_cut
-    from toolaxis.report.kinematics import speeds_along
+    from toolaxis.report.figures.kinematics import speeds_along
 
     if plan.machine is None or op.path is None or op.time is None or not op.rotary:
         return None
@@ -153,8 +153,8 @@ def _still(plan: Plan) -> bytes:
     from io import BytesIO
 
     from toolaxis.job.pictures import DPI
-    from toolaxis.report.overview import overview_picture
-    from toolaxis.report.plots import operation_picture
+    from toolaxis.report.figures.plan_overview import overview_picture
+    from toolaxis.report.figures.plots import operation_picture
 
     if not plan.operations:
         return b""

@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Inputs
-from toolaxis.post.dialects.known import dialect_named
-from toolaxis.post.dialects.tip_control import tip_control_of
-from toolaxis.post.gcode import setting_of
-from toolaxis.post.locations import CutterLocations
-from toolaxis.post.moving import course_of, courses_text
-from toolaxis.post.setting import Options
-from toolaxis.post.sheet import course_sheet_text
+from toolaxis.post.cl_points import CutterLocations
+from toolaxis.post.context import Options
+from toolaxis.post.dialects.registry import dialect_named
+from toolaxis.post.program import setting_of
+from toolaxis.post.setup_sheet import course_sheet_text
+from toolaxis.post.tcp_controls import tip_control_of
+from toolaxis.post.tcp_program import course_of, courses_text
 
 #: Scallop height that stands where none was asked for, mm; nothing that is written depends on it.
 _ANY = 0.01
@@ -47,7 +47,7 @@ def reposted(found: CutterLocations, dialect: str, mounting: Mounting, options: 
 
     Notes
     -----
-    **Property**: `toolaxis.post.nc_reading.read_nc` of the program is what was given, to the digits that are written;
+    **Property**: `toolaxis.post.read_nc.read_nc` of the program is what was given, to the digits that are written;
     points stand between where rotary axes would leave the way of the tool axis.
     """
     control = tip_control_of(dialect_named(dialect))

@@ -11,7 +11,7 @@ from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.setup import Mounting
-from toolaxis.post.locations import CutterLocations
+from toolaxis.post.cl_points import CutterLocations
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
 from toolaxis.search.path_check import COMPONENTS

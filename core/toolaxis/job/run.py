@@ -8,9 +8,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from toolaxis.cad.loading import load
+from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine, with_hulls
-from toolaxis.cad.units import tool_warnings
+from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.abreast import checked_workers
 from toolaxis.job.baselines import compared
@@ -25,7 +25,7 @@ from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.partition.regions import checked_count
+from toolaxis.partition.partition import checked_count
 from toolaxis.plan.plan import STRATEGIES, Inputs, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, heard

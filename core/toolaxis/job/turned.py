@@ -7,6 +7,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.bladed.counterparts import moved, turned_piece
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
 from toolaxis.contact.clearance.queries import judged as decided
@@ -18,7 +19,6 @@ from toolaxis.job.axes import frame_of, judged
 from toolaxis.job.failures import failed, failed_after
 from toolaxis.job.pattern import Pattern, Share
 from toolaxis.job.zones import with_zones
-from toolaxis.partition.turned import moved, turned_piece
 from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation

@@ -9,8 +9,8 @@ import numpy as np
 
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.plan import Plan
+from toolaxis.verify.axis_view import View, view_along
 from toolaxis.verify.verdict import Verdict
-from toolaxis.verify.view import View, view_along
 
 NAME = "verdict-maps.npz"
 #: Cells of all operations together.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.partition.cuts import least_costs
+from toolaxis.partition.guillotine_kernel import least_costs
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -1,4 +1,4 @@
-"""APT cutter location files, written one per operation; `toolaxis.post.apt_reading` reads them back.
+"""APT cutter location files, written one per operation; `toolaxis.post.read_apt` reads them back.
 
 The words written are those of ISO 4343 that post-processors agree on: PARTNO, UNITS, MULTAX, CUTTER, LOADTL, SPINDL,
 FEDRAT, RAPID, GOTO, PPRINT and FINI.  ``RAPID`` holds for the next GOTO only, ``FEDRAT`` until the next one.
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.post.locations import CutterLocations
+from toolaxis.post.cl_points import CutterLocations
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ def locations_text(found: CutterLocations, name: str, tool: Tool | None = None) 
 
     Notes
     -----
-    Property: `toolaxis.post.apt_reading.read_apt` of the result is what was given: tips to 1e-6 mm, axes to 1e-9, feed
+    Property: `toolaxis.post.read_apt.read_apt` of the result is what was given: tips to 1e-6 mm, axes to 1e-9, feed
     rates to 6 digits.
     """
     cutter = "" if tool is None else cutter_statement(tool)

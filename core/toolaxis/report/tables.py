@@ -11,7 +11,7 @@ from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan, outcome_of
-from toolaxis.verify.axes import Clearance
+from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
 Column: TypeAlias = tuple[str, str]

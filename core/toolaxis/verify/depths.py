@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
-from toolaxis.verify.edges import depth_at_edges
-from toolaxis.verify.removal import Remains
+from toolaxis.verify.convex_edges import depth_at_edges
+from toolaxis.verify.material_removal import Remains
 from toolaxis.verify.seams import Steps, steps_of, taken_off
 from toolaxis.verify.task import Task
-from toolaxis.verify.walls import wall_depth
+from toolaxis.verify.thin_walls import wall_depth
 
 Array = NDArray[np.float64]
 

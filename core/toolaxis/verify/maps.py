@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
+from toolaxis.verify.material_removal import Remains
 from toolaxis.verify.rays import Rays, face_rays, patch_around
-from toolaxis.verify.removal import Remains
 
 Array = NDArray[np.float64]
 Declared = Callable[[Array, Array], NDArray[np.bool_]]

@@ -11,15 +11,15 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
-from toolaxis.verify.axes import FAR, Clearance, clearance
+from toolaxis.verify.axis_limits import machine_faults
+from toolaxis.verify.component_clearance import FAR, Clearance, clearance
 from toolaxis.verify.declared import STRIP, Declared
 from toolaxis.verify.depths import Depths
-from toolaxis.verify.machine import machine_faults
+from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
-from toolaxis.verify.meetings import KINDS, machine_rooms, meeting_reasons
-from toolaxis.verify.removal import Remains, Removal
+from toolaxis.verify.material_removal import Remains, Removal
+from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
-from toolaxis.verify.solids import cutter_solid, frustum_solids
 from toolaxis.verify.task import Task, motion_of, spot
 
 Array = NDArray[np.float64]

@@ -265,7 +265,7 @@ def _outline(name, value):
 
 
 def _count(name, value):
-    from toolaxis.partition.regions import checked_count
+    from toolaxis.partition.partition import checked_count
 
     checked_count(value, "orientations" if name == "orientations" else "sub-surfaces")
     return value

@@ -127,7 +127,7 @@ def merged(operations):
     InvalidInput
         When they do not touch, or are not of one face.
     """
-    from toolaxis.partition.by_hand import merged as together
+    from toolaxis.partition.manual_edit import merged as together
 
     division = Division(operations)
     loops = together([division.surface(one) for one in operations])
@@ -156,7 +156,7 @@ def split(operation, line=None, parameter="", at=None):
     InvalidInput
         When the line does not cut it.
     """
-    from toolaxis.partition.by_hand import cut_along, cut_out, halves
+    from toolaxis.partition.manual_edit import cut_along, cut_out, halves
 
     division = Division([operation])
     if line is None:
@@ -195,7 +195,7 @@ def drawn(line, face):
     import numpy as np
     import Part
 
-    from toolaxis.cad.freecad import container_placement
+    from toolaxis.cad.freecad.documents import container_placement
     from toolaxis.shape.nearest import nearest
 
     shape = Part.getShape(line)

@@ -122,7 +122,7 @@ def tool_of(one):
 
 def _base(document, thing):
     """What a job can clone: the part itself where it has a shape of its own, else a copy of it as it is now."""
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     if thing.isDerivedFrom("Part::Feature"):
         return thing
@@ -138,7 +138,7 @@ def _turn_model(model, thing, frame):
     """Put a job's model where its part stands in a frame; a clone that shows something else is refused."""
     import numpy as np
 
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
     from toolaxis.errors import InvalidInput
 
     shape = shape_of(thing)
@@ -184,7 +184,7 @@ def safe_height(job, group, plane, frame):
     plane, frame : FreeCAD.Placement
         Of the plane, and of the job's own space.
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     back = plane.inverse()
     bodies = {thing.Name: thing for one in group for thing in (*one.inputs.things, *one.inputs.obstacles)}

@@ -60,7 +60,7 @@ def _preferred(inputs):
 
 def _faces(faces):
     """The faces that can be read, in the document's space."""
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     from .reading import number_in
 

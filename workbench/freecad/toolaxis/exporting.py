@@ -177,7 +177,7 @@ def _together(operations, inputs):
 
 def _offsets(together):
     """How many faces come before those of each part, by the parts' names."""
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     found, before = {}, 0
     for thing in together.things:

@@ -29,7 +29,7 @@ def facts_of(thing, name):
     InvalidInput
         When there is no such face.
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     from .reading import number_in
 
@@ -111,7 +111,7 @@ def _alike(one, other):
 
 def _again(thing, then):
     """The name that a planned face has now; None where it is not found."""
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
     from toolaxis.errors import ToolAxisError
 
     try:

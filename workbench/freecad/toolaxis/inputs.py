@@ -172,7 +172,7 @@ class Inputs:
             When one is out of range, or does not go with method, tool or machine.
         """
         from toolaxis.errors import InvalidInput
-        from toolaxis.partition.regions import checked_count
+        from toolaxis.partition.partition import checked_count
 
         checked_count(self.regions)
         checked_count(self.orientations, "orientations")

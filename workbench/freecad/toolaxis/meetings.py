@@ -198,7 +198,7 @@ def copies(operations):
     -------
     list of Copy
     """
-    from toolaxis.cad.freecad import name_of, shape_of
+    from toolaxis.cad.freecad.documents import name_of, shape_of
 
     from .bodies import bodies_in
     from .inputs import inputs_of
@@ -240,7 +240,7 @@ def read(found, progress):
     (str, str, tuple of toolaxis.shape.face.Face)
         What it is called, each otherwise; the object's name; and its faces.
     """
-    from toolaxis.cad.freecad import part_from
+    from toolaxis.cad.freecad.documents import part_from
     from toolaxis.progress import heard
 
     called = set()

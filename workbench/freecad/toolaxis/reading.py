@@ -40,7 +40,7 @@ class Source:
         InvalidInput
             When nothing is selected, or a face is not there.
         """
-        from toolaxis.cad.freecad import name_of, shape_of
+        from toolaxis.cad.freecad.documents import name_of, shape_of
         from toolaxis.errors import InvalidInput
 
         things = inputs.things
@@ -85,7 +85,7 @@ class Source:
         ----------
         progress : toolaxis.progress.Progress
         """
-        from toolaxis.cad.freecad import part_from
+        from toolaxis.cad.freecad.documents import part_from
         from toolaxis.progress import heard
 
         progress.report("reading the part", 0, 1)
@@ -135,7 +135,7 @@ def titles_of(inputs):
     dict of int to str
         "Face 7"; with the part before it where there are several.
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     found = numbered(inputs, [shape_of(thing) for thing in inputs.things])
     several = len(inputs.things) > 1
@@ -161,7 +161,7 @@ def number_in(thing, shape, name):
     """
     import Part
 
-    from toolaxis.cad.freecad import container_placement
+    from toolaxis.cad.freecad.documents import container_placement
     from toolaxis.errors import InvalidInput
 
     digits = name.removeprefix("Face")
@@ -192,7 +192,7 @@ def sculptured(thing):
     InvalidInput
         When it has no faces, or none of that kind.
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
     from toolaxis.errors import InvalidInput
 
     faces = enumerate(shape_of(thing).Faces, 1)

@@ -85,7 +85,7 @@ def owners_of(inputs, plan):
     inputs : freecad.toolaxis.bridge.Inputs
     plan : toolaxis.plan.plan.Plan
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
     from toolaxis.errors import InvalidInput
 
     from .reading import numbered
@@ -159,7 +159,7 @@ def _new_plan(document):
 
 def _colours(plan, standing):
     """Colours of sub-surfaces by number, where there are several; one that is planned again alone keeps its own."""
-    from toolaxis.report.colouring import colours_of
+    from toolaxis.report.figures.map_colouring import colours_of
 
     if len(plan.operations) > 1:
         return colours_of(plan)

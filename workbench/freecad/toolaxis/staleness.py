@@ -33,7 +33,7 @@ def signature(things, obstacles=(), turned=False):
     InvalidInput
         When one of them has no shape any more.
     """
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     shapes = [shape_of(thing) for thing in (*things, *obstacles)]
     own = shapes[0].Placement.inverse().toMatrix()

@@ -7,9 +7,9 @@ cancelled after G69 and G28, is common practice and not from a manual that was a
 
 from typing import ClassVar
 
-from toolaxis.post.gcode import Dialect, Lines
-from toolaxis.post.setting import Program, Setting
-from toolaxis.post.stations import Station
+from toolaxis.post.context import Program, Setting
+from toolaxis.post.indexed_positions import Station
+from toolaxis.post.program import Dialect, Lines
 
 
 class Fanuc(Dialect):

@@ -7,10 +7,10 @@ it was not possible to read that page again, so that the meaning of Q321 (Z firs
 the work coordinate system) is not verified: `notes` says so on every setup sheet.
 """
 
+from toolaxis.post.context import Program, Setting
 from toolaxis.post.dialects.fanuc import Fanuc
-from toolaxis.post.gcode import Lines
-from toolaxis.post.setting import Program, Setting
-from toolaxis.post.stations import Station
+from toolaxis.post.indexed_positions import Station
+from toolaxis.post.program import Lines
 
 
 class HaasPlane(Fanuc):

@@ -9,9 +9,9 @@ retracts along the tool axis, is common practice and not from a manual that was 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.post.gcode import Dialect, Lines, number
-from toolaxis.post.setting import Program, Setting
-from toolaxis.post.stations import Station
+from toolaxis.post.context import Program, Setting
+from toolaxis.post.indexed_positions import Station
+from toolaxis.post.program import Dialect, Lines, number
 
 
 class Heidenhain(Dialect):

@@ -8,10 +8,10 @@ in G54 and for spindles that turn about C and then A or B, G53.1 turns them, G69
 from typing import ClassVar
 
 from toolaxis.errors import InvalidInput
+from toolaxis.post.context import Program, Setting
 from toolaxis.post.dialects.fanuc import Iso
-from toolaxis.post.gcode import Dialect, Lines
-from toolaxis.post.setting import Program, Setting
-from toolaxis.post.stations import Station
+from toolaxis.post.indexed_positions import Station
+from toolaxis.post.program import Dialect, Lines
 
 
 class LinuxCnc(Iso):

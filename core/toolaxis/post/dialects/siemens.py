@@ -12,9 +12,9 @@ from math import degrees
 
 import numpy as np
 
-from toolaxis.post.gcode import Dialect, Lines, number
-from toolaxis.post.setting import Program, Setting
-from toolaxis.post.stations import Station
+from toolaxis.post.context import Program, Setting
+from toolaxis.post.indexed_positions import Station
+from toolaxis.post.program import Dialect, Lines, number
 
 
 class Siemens(Dialect):

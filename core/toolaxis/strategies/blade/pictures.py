@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from toolaxis.feed.axis_motion import AxisMotion
-from toolaxis.report.plots import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, figure
+from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, figure
 from toolaxis.strategies.blade.schedule import Scheduled
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.feed.continuous_ik import following
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.report.plots import bare, figure, scale_bar
-from toolaxis.report.raster import camera, mean_direction
+from toolaxis.report.figures.plots import bare, figure, scale_bar
+from toolaxis.report.figures.splat_renderer import camera, mean_direction
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from toolaxis.report.plots import BLUE, GREY, ORANGE, VERMILION, figure
+from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from toolaxis.report.plots import BLUE, GREY, ORANGE, VERMILION, figure
+from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
 from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, Rings, Setting
 
 Array = NDArray[np.float64]

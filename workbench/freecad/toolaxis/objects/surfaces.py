@@ -119,7 +119,7 @@ def _mesh(face, back, height):
     import Mesh
     import numpy as np
 
-    from toolaxis.report.triangles import triangles
+    from toolaxis.report.figures.tessellation import triangles
 
     found = triangles(face, _OFF * face.diagonal)
     corners = found.points[found.corners]
@@ -137,7 +137,7 @@ def _hatched(op, back, height):
     """Hatch lines over the clean-up zones of an operation, a little above its mesh, as a compound of wires."""
     import Part
 
-    from toolaxis.report.ruling import hatch_lines
+    from toolaxis.report.figures.hatch_lines import hatch_lines
 
     diagonal = op.face.diagonal
     wires = []

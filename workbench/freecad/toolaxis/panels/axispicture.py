@@ -7,7 +7,7 @@ import numpy as np
 from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.plan.orientation import REASONS
-from toolaxis.report.raster import mean_direction
+from toolaxis.report.figures.splat_renderer import mean_direction
 
 #: Pixels along the side of the picture that is computed once.
 SIDE = 420

@@ -51,7 +51,7 @@ class ExportPanel(Panel):
         return self.form.offsetX, self.form.offsetY, self.form.offsetZ
 
     def _fill(self):
-        from toolaxis.post.dialects.known import DIALECTS
+        from toolaxis.post.dialects.registry import DIALECTS
 
         form = self.form
         file = Path(self.document.FileName) if self.document.FileName else Path.home() / self.document.Label

@@ -309,7 +309,7 @@ class PlanForm:
 def _shown(inputs, fastest):
     """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
     from toolaxis.errors import InvalidInput
-    from toolaxis.partition.regions import checked_count
+    from toolaxis.partition.partition import checked_count
     from toolaxis.tools.tool import Tool
 
     from ..inputs import Inputs

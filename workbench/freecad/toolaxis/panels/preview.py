@@ -161,7 +161,7 @@ def solids(tool):
     ----------
     tool : toolaxis.tools.tool.Tool
     """
-    from toolaxis.report.raster import tool_outlines
+    from toolaxis.report.figures.splat_renderer import tool_outlines
 
     return [(name.split(" ")[0], line) for name, line in tool_outlines(tool, 6 * tool.radius).items()]
 

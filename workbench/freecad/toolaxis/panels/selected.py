@@ -35,7 +35,7 @@ def selected_faces(document):
 
 def _faces(thing, name):
     """The face of a name, or the sculptured faces of the whole object."""
-    from toolaxis.cad.freecad import shape_of
+    from toolaxis.cad.freecad.documents import shape_of
 
     from ..reading import number_in, sculptured
 

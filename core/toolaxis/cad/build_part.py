@@ -1,0 +1,73 @@
+"""From plain records to a part: faces with their kinks, edges with their kinds."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from toolaxis.cad.shape_data import FaceRecord, ShapeRecord
+from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gaps
+from toolaxis.shape.face import Face
+from toolaxis.shape.joining.edge_matching import matched
+from toolaxis.shape.kinks import with_kinks
+from toolaxis.shape.part import Part
+from toolaxis.shape.seams import seam_warnings
+
+WIDE_GAP = 1e-3
+
+
+def face_from_record(record: FaceRecord) -> Face:
+    """The face that a record describes.
+
+    Parameters
+    ----------
+    record : FaceRecord
+    """
+    face = Face(record.surface, record.loops, record.flip, record.number, kind=record.kind, tolerance=record.tolerance)
+    return with_kinks(face)
+
+
+def part_from_record(record: ShapeRecord, source: str = "", sha256: str = "") -> Part:
+    """The part that a record describes.
+
+    Parameters
+    ----------
+    record : ShapeRecord
+    source : str
+        What it was made from.
+    sha256 : str
+        Of the file, if it came from one.
+    """
+    faces = tuple(face_from_record(item) for item in record.faces)
+    part = Part(faces, (), tuple(record.bodies), source, sha256, record.unit)
+    found = matched(record.free, part.diagonal) if len(record.free) > 1 else []
+    numbers = {face.number for face in faces}
+    warnings = [*record.warnings, *_gap_warning(part, record), *_sense_warning(part, [*record.borders, *found])]
+    if found:
+        warnings.append(f"{len(found)} edges were found by position: faces touch there but share no edge in the file")
+    edges = edges_from_borders(faces, [*record.borders, *found])
+    warnings += seam_warnings(edges)
+    selected = tuple(number for number in record.selected if number in numbers)
+    return replace(part, edges=edges, warnings=tuple(warnings), selected=selected)
+
+
+def _gap_warning(part: Part, record: ShapeRecord) -> list[str]:
+    """One sentence about the widest gap, where an edge lies off its faces by more than a thousandth of the part."""
+    widths = gaps(part.faces, record.borders)
+    wide = np.flatnonzero(widths > WIDE_GAP * part.diagonal)
+    if not wide.size:
+        return []
+    worst = int(np.argmax(widths))
+    a, b = record.borders[worst].faces
+    return [f"{len(wide)} edges lie off their faces, worst between faces {a} and {b} by {widths[worst]:.3g} mm: "
+            "the geometry is damaged or very inaccurate there"]
+
+
+def _sense_warning(part: Part, borders: list[Border]) -> list[str]:
+    """One sentence where faces that meet have their material on opposite sides."""
+    mixed = sorted({tuple(sorted(border.faces)) for border in borders if border.faces[0] != border.faces[1]
+                    and not consistent(border, *(part.face(number) for number in border.faces))})
+    if not mixed:
+        return []
+    a, b = mixed[0]
+    return [f"faces {a} and {b}{' and others' if len(mixed) > 1 else ''} meet with their material on opposite sides: "
+            "turn one of them over in the CAD system"]

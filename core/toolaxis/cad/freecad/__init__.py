@@ -1,0 +1,1 @@
+"""FreeCAD's own Open CASCADE: documents and shapes in."""

@@ -1,0 +1,1 @@
+"""Open CASCADE through OCP: shapes in, plans out."""

@@ -1,0 +1,138 @@
+"""The whole plan in one picture: the part coloured by sub-surface, its passes, and an arrow for each axis."""
+
+import numpy as np
+from matplotlib import patheffects
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from toolaxis.numeric.vectors import unit
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.report.figures.hatch_fill import hatch, hatch_patch, zone_faces
+from toolaxis.report.figures.map_colouring import COLOURS, coloured
+from toolaxis.report.figures.plots import bare, cutting_lines, figure, scale_bar
+from toolaxis.report.figures.splat_renderer import Canvas, camera, face_splats, mean_direction, visible_runs
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+
+#: With more sub-surfaces than this, arrows are shorter.
+_MANY = 8
+_PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
+
+
+def overview_picture(plan: Plan) -> Figure:
+    """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
+
+    Neighbours have different colours; a sub-surface without an axis is grey and says so, or is hatched where it is left
+    to clean-up.  Turned copies have the colour of their original, and neither arrow nor passes.
+
+    Parameters
+    ----------
+    plan : Plan
+        With at least one operation.
+    """
+    copies = {} if plan.blades is None else plan.blades.copies
+    operations = tuple(op for op in plan.operations if op.number not in copies)
+    normals = np.array([mean_direction(op.face.normal(op.face.grid(12, 12))) for op in operations])
+    middle = mean_direction(normals)
+    corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
+    arrow = (0.22 if len(operations) <= _MANY else 0.16) * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    roots = np.array([root_of(op) for op in operations])
+    heads = np.array([root + (op.orientation.axis if op.orientation.axis is not None else 0 * root) * arrow
+                      for op, root in zip(operations, roots, strict=True)])
+    seen = camera(*view_onto(middle), np.concatenate([corners, roots, heads]), pixels=1100)
+    canvas = Canvas(seen)
+    whole = {op.face.number for op in plan.operations}
+    for face in plan.part.faces:
+        if face.number not in whole:
+            canvas.splat(*face_splats(face, seen), _PART)
+    colours = {op.number: COLOURS[k] for op, k in zip(operations, coloured(operations), strict=True)}
+    for op in plan.operations:
+        canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
+    canvas.close()
+    for faces, size in _left(plan):
+        hatch(canvas, faces, 0.01 * size)
+    made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
+    ax = made.subplots()
+    ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
+    feet, tips = seen.project(roots)[:, :2], seen.project(heads)[:, :2]
+    at_feet = _apart(feet) > _apart(tips)
+    for op, foot, tip in zip(operations, feet, tips, strict=True):
+        _passes(ax, canvas, op)
+        if op.done or outcome_of([op], plan.blades) == "incomplete":
+            _arrow(ax, op, (foot, tip), at_feet)
+    done = sum(op.done for op in plan.operations)
+    ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
+                 f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
+    if any(op.zones or not op.done for op in operations):
+        ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
+    scale_bar(ax, seen)
+    bare(ax)
+    return made
+
+
+def _left(plan: Plan) -> list[tuple[list[Face], float]]:
+    """What is left to clean-up of an operation and its turned copies together, and the size of its sub-surface, mm."""
+    copies = {} if plan.blades is None else plan.blades.copies
+    found: dict[int, tuple[list[Face], float]] = {}
+    for op in plan.operations:
+        left = not op.done and outcome_of([op], plan.blades) == "complete"
+        together, _ = found.setdefault(copies.get(op.number, op.number), ([], op.face.diagonal))
+        together.extend((op.face,) if left else zone_faces(op))
+    return list(found.values())
+
+
+def view_onto(middle: Array) -> tuple[Array, Array]:
+    """Towards the viewer and upright: obliquely onto the mean normal.
+
+    Parameters
+    ----------
+    middle : (3,) array
+        Mean normal.
+    """
+    up = np.array([0.0, 0.0, 1.0]) if abs(middle[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    side = unit(np.cross(up, middle))
+    return middle + 0.45 * side - 0.65 * np.cross(middle, side), middle if abs(middle[2]) >= 0.9 else up
+
+
+def root_of(op: Operation) -> Array:
+    """The point of a sub-surface nearest to its middle, (3,) mm.
+
+    Parameters
+    ----------
+    op : Operation
+    """
+    points = op.face.evaluate(op.face.grid(16, 16)).point
+    if not len(points):
+        points = op.face.evaluate(op.face.outline[0]).point
+    return np.asarray(points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))])
+
+
+def _passes(ax: Axes, canvas: Canvas, op: Operation) -> None:
+    if op.path is not None:
+        slack = 0.01 * op.face.diagonal + 4 * canvas.camera.pixel
+        runs = [run for line in cutting_lines(op.path) for run in visible_runs(canvas, line, slack)]
+        ax.add_collection(LineCollection(runs, colors="#333333", linewidths=0.25))
+
+
+def _apart(places: Array) -> float:
+    """How near the two nearest of (n, 2) places are."""
+    return float(cKDTree(places).query(places, k=2)[0][:, 1].min()) if len(places) > 1 else 0.0
+
+
+def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool) -> None:
+    """The axis as an arrow, its number behind the foot or before the tip."""
+    foot, tip = ((float(end[0]), float(end[1])) for end in ends)
+    if op.done:
+        ax.plot(*foot, "o", color="black", markersize=3.5)
+        ax.annotate("", tip, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
+    length = float(np.linalg.norm(ends[1] - ends[0]))
+    way = (ends[1] - ends[0]) / length if op.done and length > 0 else np.array([0.5, 0.5])
+    ax.annotate(f"{op.number}" if op.done else f"{op.number}: no axis", foot if at_foot else tip,
+                textcoords="offset points", xytext=tuple((-10 if at_foot and op.done else 9) * way), fontsize=11,
+                weight="bold", path_effects=[patheffects.withStroke(linewidth=3, foreground="white")], ha="center",
+                va="center", zorder=5)

@@ -1,0 +1,1 @@
+"""The page of a plan, and that of a batch."""

@@ -1,0 +1,210 @@
+"""Faces as cells: points with the radius of what they stand for, split where a closer look is wanted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.shape.face import Face
+from toolaxis.verify.kept import Kept
+from toolaxis.verify.spatial_blocks import Blocks, blocks_of
+
+Array = NDArray[np.float64]
+
+#: Cells along one parameter of a face at most, at the start; they are split later where it matters.
+MOST = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of faces.
+
+    Attributes
+    ----------
+    owner : (m,) array of int
+        Index of the face.
+    uv, half : (m, 2) array
+        Centre and half the sides (the half way, signed, where the cell is a piece of a trim loop).
+    edge : (m,) array of bool
+        Whether the cell is a piece of a trim loop.
+    point : (m, 3) array
+        Centre, mm.
+    radius : (m,) array
+        Distance within which the cell's part of the face lies, by the derivatives at the centre, mm.
+    on_face : (m,) array of bool
+        Whether the centre lies on the face.
+    value : (m,) array
+        Distance of the centre from what is looked for, mm; inf where it was not measured.
+    """
+
+    owner: NDArray[np.int64]
+    uv: Array
+    half: Array
+    edge: NDArray[np.bool_]
+    point: Array
+    radius: Array
+    on_face: NDArray[np.bool_]
+    value: Array
+
+    def __len__(self) -> int:
+        return len(self.owner)
+
+    def rows(self, which: NDArray[np.int64]) -> "Cells":
+        """Some of the cells.
+
+        Parameters
+        ----------
+        which : array of int
+        """
+        return Cells(*(getattr(self, one.name)[which] for one in fields(self)))
+
+
+class FaceCells(NamedTuple):
+    """Cells over one face and its borders.
+
+    Attributes
+    ----------
+    cells : Cells
+        All of owner 0.
+    blocks : Blocks
+        Their centres in blocks of neighbours.
+    """
+
+    cells: Cells
+    blocks: Blocks
+
+
+_KEPT: Kept[FaceCells] = Kept(100_000_000, lambda one: 150 * len(one.cells))
+_AROUND: WeakKeyDictionary[Face, dict[float, Array]] = WeakKeyDictionary()
+
+
+def face_cells(face: Face, size: float) -> FaceCells:
+    """Cells over a face and its borders; those of the faces used last are kept.
+
+    Parameters
+    ----------
+    face : Face
+    size : float
+        Side of a cell aimed at, mm; larger on faces with more than `MOST` of them along a parameter.
+    """
+    return _KEPT.get((face, size), lambda: _made(face, size))
+
+
+def ball_around(face: Face, size: float) -> Array:
+    """Ball (x, y, z, radius) around all that the cells of a face stand for, (4,) mm.
+
+    Parameters
+    ----------
+    face : Face
+    size : float
+        As for `face_cells`.
+    """
+    known = _AROUND.setdefault(face, {})
+    if size not in known:
+        cells = face_cells(face, size).cells
+        low, high = (f(cells.point, axis=0) for f in (np.min, np.max))
+        centre = 0.5 * (low + high)
+        far = float((np.linalg.norm(cells.point - centre, axis=1) + cells.radius).max())
+        known[size] = np.append(centre, far)
+    return known[size]
+
+
+def _made(face: Face, size: float) -> FaceCells:
+    u0, u1, v0, v1 = face.bounds
+    d = face.evaluate(face.grid(16, 16))
+    wide, tall = (float(np.linalg.norm(x, axis=1).max()) if len(x) else 1.0 for x in (d.su, d.sv))
+    nu = int(np.clip(np.ceil((u1 - u0) * wide / size), 4, MOST))
+    nv = int(np.clip(np.ceil((v1 - v0) * tall / size), 4, MOST))
+    u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
+    v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
+    inner = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = np.tile([0.5 * (u1 - u0) / nu, 0.5 * (v1 - v0) / nv], (len(inner), 1))
+    line, way = _loop_pieces(face, size)
+    count = len(inner) + len(line)
+    cells = _cells((face,), np.zeros(count, dtype=np.int64), np.vstack([inner, line]), np.vstack([half, way]),
+                   np.arange(count) >= len(inner))
+    return FaceCells(cells, blocks_of(cells.point))
+
+
+def _loop_pieces(face: Face, size: float) -> tuple[Array, Array]:
+    """Middles and half ways of the pieces of a face's trim loops."""
+    middles, ways = [], []
+    for loop in face.outline:
+        way = np.roll(loop, -1, axis=0) - loop
+        d = face.evaluate(loop + 0.5 * way)
+        length = np.linalg.norm(d.su * way[:, :1] + d.sv * way[:, 1:], axis=1)
+        least = 32 if len(loop) <= 8 else 1
+        parts = np.clip(np.ceil(length / size), least, 4 * MOST).astype(np.int64)
+        owner = np.repeat(np.arange(len(loop)), parts)
+        step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / parts[owner]
+        middles.append(loop[owner] + step[:, None] * way[owner])
+        ways.append(0.5 * way[owner] / parts[owner][:, None])
+    return np.concatenate(middles), np.concatenate(ways)
+
+
+def _cells(faces: tuple[Face, ...], owner: NDArray[np.int64], uv: Array, half: Array,
+           edge: NDArray[np.bool_]) -> Cells:
+    """Evaluate centres and drop cells that do not touch their face."""
+    point, radius = np.zeros((len(uv), 3)), np.zeros(len(uv))
+    on_face, keep = edge.copy(), edge.copy()
+    corner = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])
+    for index in np.unique(owner):
+        rows = np.flatnonzero(owner == index)
+        d = faces[index].evaluate(uv[rows])
+        point[rows] = d.point
+        h, e = half[rows], edge[rows]
+        along = np.linalg.norm(d.su * h[:, :1] + d.sv * h[:, 1:], axis=1)
+        other = np.linalg.norm(d.su * h[:, :1] - d.sv * h[:, 1:], axis=1)
+        bend = 0.5 * np.linalg.norm(d.suu, axis=1) * h[:, 0] ** 2 + 0.5 * np.linalg.norm(d.svv, axis=1) * h[:, 1] ** 2
+        bend += np.linalg.norm(d.suv, axis=1) * np.abs(h[:, 0] * h[:, 1])
+        radius[rows] = 1.1 * (np.where(e, along, np.maximum(along, other)) + bend)
+        inner = rows[~e]
+        centre = faces[index].contains(uv[inner])
+        around = (uv[inner][:, None] + corner * half[inner][:, None]).reshape(-1, 2)
+        on_face[inner] = centre
+        keep[inner] = centre | faces[index].contains(around).reshape(-1, 4).any(axis=1)
+    return Cells(owner, uv, half, edge, point, radius, on_face, np.full(len(uv), np.inf)).rows(np.flatnonzero(keep))
+
+
+def owned(cells: Cells, owner: int) -> Cells:
+    """The same cells as those of another face.
+
+    Parameters
+    ----------
+    cells : Cells
+    owner : int
+        Index of the face.
+    """
+    return replace(cells, owner=np.full(len(cells), owner))
+
+
+def split(faces: tuple[Face, ...], cells: Cells) -> Cells:
+    """Each cell cut into nine, each piece of a loop into three.
+
+    Parameters
+    ----------
+    faces : tuple of Face
+    cells : Cells
+    """
+    third = np.array([-2.0, 0.0, 2.0]) / 3
+    inner, line = np.flatnonzero(~cells.edge), np.flatnonzero(cells.edge)
+    offset = np.stack(np.meshgrid(third, third, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = (cells.uv[inner][:, None] + offset * cells.half[inner][:, None]).reshape(-1, 2)
+    loop = (cells.uv[line][:, None] + third[:, None] * cells.half[line][:, None]).reshape(-1, 2)
+    half = np.vstack([np.repeat(cells.half[inner], 9, axis=0), np.repeat(cells.half[line], 3, axis=0)]) / 3
+    owner = np.append(np.repeat(cells.owner[inner], 9), np.repeat(cells.owner[line], 3))
+    return _cells(faces, owner, np.vstack([uv, loop]), half, np.arange(len(owner)) >= len(uv))
+
+
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Cells of several as one.
+
+    Parameters
+    ----------
+    parts : sequence of Cells
+        One at least.
+    """
+    return Cells(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Cells)))
