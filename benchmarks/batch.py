@@ -16,7 +16,7 @@ from benchmarks.growth import processor
 
 import toolaxis as ta
 from toolaxis.batch.run import batch
-from toolaxis.job.folder import write_plan
+from toolaxis.job.files.plan_folder import write_plan
 
 COUNT, SHORT = 200, 30
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from benchmarks._papers import GOUGE
 
 import toolaxis as ta
-from toolaxis.job.pattern import Pattern, recognised
-from toolaxis.job.toolfile import load_tool
-from toolaxis.job.turned import spread_out
+from toolaxis.job.inputs.tool_file import load_tool
+from toolaxis.job.planning.blade_copies import spread_out
+from toolaxis.job.planning.blade_pattern import Pattern, recognised
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan

@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.examples import BODY, FOLDER
 
 import toolaxis as ta
-from toolaxis.job.folder import write_plan
+from toolaxis.job.files.plan_folder import write_plan
 from toolaxis.plan.plan import Plan
 from toolaxis.tolerances import MACHINING_SHARE, SCALLOP_SHARE
 from toolaxis.verify.verdict import Verdict

@@ -15,8 +15,8 @@ from benchmarks.bosses import judged
 from benchmarks.examples import BODY, FOLDER
 
 import toolaxis as ta
-from toolaxis.job.axes import frame_of
-from toolaxis.job.baselines import baseline
+from toolaxis.job.planning.comparison import baseline
+from toolaxis.job.planning.edit_axis import frame_of
 from toolaxis.partition.shared_axes import cover
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.operation import Operation

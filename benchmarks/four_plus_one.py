@@ -18,7 +18,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.feed.moving_axis_time import FiveAxisSchedule
-from toolaxis.job.timing import feeds_of
+from toolaxis.job.planning.timing import feeds_of
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from toolaxis.job.axes import try_axis
-from toolaxis.job.run import plan
-from toolaxis.job.timing import feeds_of, timed
+from toolaxis.job.planning.edit_axis import try_axis
+from toolaxis.job.planning.pipeline import plan
+from toolaxis.job.planning.timing import feeds_of, timed
 from toolaxis.machine.feed_polytopes import Level
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan

@@ -47,7 +47,7 @@ def test_the_tool_library_works_from_where_a_wheel_puts_it(wheel: Path, tmp_path
             f"sys.prefix = {str(data)!r}\n"
             "import toolaxis\n"
             f"assert toolaxis.__file__.startswith({str(tmp_path)!r}), toolaxis.__file__\n"
-            "from toolaxis.job.toolfile import library, load_tool\n"
+            "from toolaxis.job.inputs.tool_file import library, load_tool\n"
             "assert len(library()) >= 6 and load_tool('torus-12x1').stickout == 60\n"
             "from toolaxis.machine import catalogue\n"
             "assert len(catalogue.library()) >= 7 and catalogue.load_machine('mikron-ucp-710').kind == 'table-table'\n"

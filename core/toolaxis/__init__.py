@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from toolaxis.errors import MissingBackend as MissingBackend
     from toolaxis.errors import ToolAxisError as ToolAxisError
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
-    from toolaxis.job.exporting import export as export
-    from toolaxis.job.exporting import to_trimesh as to_trimesh
-    from toolaxis.job.judge import verify as verify
-    from toolaxis.job.reading import read_cl as read_cl
-    from toolaxis.job.run import plan as plan
+    from toolaxis.job.files.read_cl import read_cl as read_cl
+    from toolaxis.job.output.export import export as export
+    from toolaxis.job.output.export import to_trimesh as to_trimesh
+    from toolaxis.job.output.verify import verify as verify
+    from toolaxis.job.planning.pipeline import plan as plan
     from toolaxis.machine.setup import Mounting as Mounting
     from toolaxis.partition.partition import partition as partition
     from toolaxis.path.estimate import estimate as estimate
@@ -50,11 +50,11 @@ _HOME = {
     "clearance": "contact.clearance.clearance", "drop_cutter": "contact.drop_cutter.drop_cutter",
     "sample_points": "path.sampling", "estimate": "path.estimate", "count": "path.pass_count",
     "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.partition",
-    "plan": "job.run", "verify": "job.judge", "ToolAxisError": "errors", "InvalidInput": "errors",
+    "plan": "job.planning.pipeline", "verify": "job.output.verify", "ToolAxisError": "errors", "InvalidInput": "errors",
     "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
     "load_machine": "cad.machines", "Mounting": "machine.setup", "join": "shape.joining.smooth_skins",
-    "batch": "batch.run", "read_cl": "job.reading", "SubSurface": "plan.sub_surface", "export": "job.exporting",
-    "to_trimesh": "job.exporting",
+    "batch": "batch.run", "read_cl": "job.files.read_cl", "SubSurface": "plan.sub_surface",
+    "export": "job.output.export", "to_trimesh": "job.output.export",
 }
 
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605

@@ -17,7 +17,7 @@ import cadquery as cq
 
 from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, Piece, piece_of, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.job.run import plan as planned
+from toolaxis.job.planning.pipeline import plan as planned
 from toolaxis.plan.plan import Plan
 from toolaxis.tools.tool import Tool
 

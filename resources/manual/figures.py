@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Arc
 
 import toolaxis as ta
-from toolaxis.job.pictures import draw_plan
+from toolaxis.job.output.pictures import draw_plan
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, VERMILION, figure
 
 HERE = Path(__file__).parent / "figures"

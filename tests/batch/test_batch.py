@@ -17,7 +17,7 @@ from toolaxis.batch.folder import BatchFolder
 from toolaxis.batch.journal import Journal
 from toolaxis.batch.run import Batch, batch
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import write_plan
+from toolaxis.job.files.plan_folder import write_plan
 
 Jobs = list[dict[str, Any]]
 Made = Callable[[int], Jobs]

@@ -10,7 +10,7 @@ import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
 from toolaxis.batch.labour import carried_out
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.job import judge
+from toolaxis.job.output import verify as judge
 from toolaxis.shape.part import Part
 
 

@@ -284,7 +284,7 @@ def test_a_mended_file_can_be_exported_with_its_part(tmp_path):
     from types import SimpleNamespace
 
     from toolaxis.cad.ocp.reader import face_map
-    from toolaxis.job.exporting import _part_shape
+    from toolaxis.job.output.export import _part_shape
 
     path = tmp_path / "part.step"
     path.write_bytes(listed(f"#{SHELL}", SOLID_LINE).encode("utf-16"))

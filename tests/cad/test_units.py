@@ -66,7 +66,7 @@ def test_a_cutter_wider_than_the_part_is_named():
 
 def test_plan_says_it(tmp_path):
     """In the plan's part, from where plan.json and the command take it."""
-    from toolaxis.job.run import plan
+    from toolaxis.job.planning.pipeline import plan
 
     made = plan(part(sheet(30.0, 8.0)), "ball:10", 0.05)
     assert any("check the unit" in warning for warning in made.part.warnings)

@@ -127,7 +127,7 @@ def test_plan_prints_json_on_stdout_alone(sheet: Path, tmp_path: Path, capsys: C
 
 def test_other_methods_stand_beside_the_plan(sheet: Path, tmp_path: Path, capsys: Capture,
                                              monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("toolaxis.job.baselines.BY_SUB_SURFACE", ("roman",))
+    monkeypatch.setattr("toolaxis.job.planning.comparison.BY_SUB_SURFACE", ("roman",))
     out = tmp_path / "out"
     assert main(["plan", str(sheet), *FAST, "--faces=1", "--compare", "--feedrate=600", "--rapid=6000",
                  "--out", str(out)]) == 0
@@ -205,12 +205,12 @@ def test_ctrl_c_twice_leaves_nothing(sheet: Path, tmp_path: Path) -> None:
                                           (Cancelled("enough"), "stopped while drawing")])
 def test_a_plan_survives_its_pictures(sheet: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch,
                                       reason: Exception, said: str) -> None:
-    import toolaxis.job.pictures
+    import toolaxis.job.output.pictures
 
     def fail(*_: object) -> None:
         raise reason
 
-    monkeypatch.setattr(toolaxis.job.pictures, "draw_plan", fail)
+    monkeypatch.setattr(toolaxis.job.output.pictures, "draw_plan", fail)
     assert main(["plan", str(sheet), *FAST, "--faces=1", "--out", str(tmp_path / "out")]) == 0
     assert said in capsys.readouterr().err
     assert strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "complete"

@@ -14,8 +14,8 @@ import pytest
 from toolaxis.cli import stopping
 from toolaxis.cli.main import main
 from toolaxis.cli.stopping import Ended, Stopping, writing
-from toolaxis.job.folder import read_plan
-from toolaxis.job.posting import verdict_of
+from toolaxis.job.files.plan_folder import read_plan
+from toolaxis.job.output.post import verdict_of
 
 FAST = ["--tool=ball:6", "--scallop=0.2", "--limits=cone:0,0,1,10", "--no-pictures"]
 posix = pytest.mark.skipif(sys.platform == "win32", reason="no signals to other processes")
@@ -119,7 +119,7 @@ def test_a_verdict_survives_its_pictures(planned: Path, tmp_path: Path, monkeypa
     def _fail(*_: object) -> None:
         raise Cancelled("enough")
 
-    monkeypatch.setattr("toolaxis.job.pictures.draw_verdict", _fail)
+    monkeypatch.setattr("toolaxis.job.output.pictures.draw_verdict", _fail)
     assert main(["verify", str(folder)]) == 0
     assert "the verdict is whole" in capsys.readouterr().err
     assert json.loads((folder / "verdict.json").read_text())["passed"] is True
@@ -152,7 +152,7 @@ def test_what_fails_outside_of_a_face_is_told_in_a_sentence_too(sheet: Path, tmp
     def _fail(*_: object, **__: object) -> None:
         raise KeyError("planted")
 
-    monkeypatch.setattr("toolaxis.job.run.chosen_faces", _fail)
+    monkeypatch.setattr("toolaxis.job.planning.pipeline.chosen_faces", _fail)
     assert main(["plan", str(sheet), *FAST, "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().err
     assert "Traceback" in said and said.splitlines()[-1].startswith("toolaxis: failed: KeyError: 'planted', at ")

@@ -9,8 +9,8 @@ import pytest
 
 from toolaxis.cad.load import load
 from toolaxis.cli.main import main
-from toolaxis.job.folder import read_plan
-from toolaxis.job.judge import verify_plan
+from toolaxis.job.files.plan_folder import read_plan
+from toolaxis.job.output.verify import verify_plan
 
 LOW = 0.004
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from toolaxis.job.folder import read_plan
+from toolaxis.job.files.plan_folder import read_plan
 
 FAST = ["--tool=ball:6", "--scallop=0.2", "--limits=cone:0,0,1,10", "--no-pictures", "--workers=1"]
 

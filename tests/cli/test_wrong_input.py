@@ -114,9 +114,9 @@ def test_words_that_make_no_command(capsys: pytest.CaptureFixture[str], words: l
 def test_an_output_folder_that_cannot_be_written_is_refused_before_computing(
         parts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
         place: str) -> None:
-    import toolaxis.job.run
+    import toolaxis.job.planning.pipeline
 
-    monkeypatch.setattr(toolaxis.job.run, "load", lambda *_: pytest.fail("the part was read"))
+    monkeypatch.setattr(toolaxis.job.planning.pipeline, "load", lambda *_: pytest.fail("the part was read"))
     (tmp_path / "file").write_text("x")
     target = tmp_path / place
     code, _, err = run(capsys, "plan", str(parts / "sheet.step"), "--tool=ball:8", "--scallop=0.01",

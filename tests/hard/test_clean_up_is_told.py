@@ -11,7 +11,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cli.main import main
-from toolaxis.job.folder import staged, write_plan
+from toolaxis.job.files.plan_folder import staged, write_plan
 
 
 def _flat(*rows: list[float]) -> ta.Face:

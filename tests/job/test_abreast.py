@@ -10,7 +10,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
-from toolaxis.job.abreast import abreast, checked_workers, how_it_ended
+from toolaxis.job.planning.parallel import abreast, checked_workers, how_it_ended
 from toolaxis.progress import NO_PROGRESS, Progress, breathe, heard
 
 several = pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux")

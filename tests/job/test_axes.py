@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import Cancelled, InvalidInput
-from toolaxis.job.axes import rule_of_thumb, try_axis, with_operations
-from toolaxis.job.judge import verify
+from toolaxis.job.output.verify import verify
+from toolaxis.job.planning.edit_axis import rule_of_thumb, try_axis, with_operations
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
 

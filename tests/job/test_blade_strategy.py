@@ -8,8 +8,8 @@ from benchmarks._blades import loft
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
-from toolaxis.job.pictures import draw_plan
-from toolaxis.job.spec import check_five_axes, with_rings
+from toolaxis.job.inputs.spec import check_five_axes, with_rings
+from toolaxis.job.output.pictures import draw_plan
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.strategies.blade.layers import closed_parameter
 

@@ -7,8 +7,8 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.strip.width import strip_width
-from toolaxis.job.contacts import widths_along, with_contacts
-from toolaxis.job.folder import read_plan
+from toolaxis.job.files.contacts_from_cl import widths_along, with_contacts
+from toolaxis.job.files.plan_folder import read_plan
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.nearest import nearest
 

@@ -8,8 +8,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cli.main import main
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.targets import LOCKED, REFUSED_HINT, REFUSED_LOCK, read_division
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.planning.sub_surfaces import LOCKED, REFUSED_HINT, REFUSED_LOCK, read_division
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.sub_surface import division_document, division_from
 

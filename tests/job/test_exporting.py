@@ -9,10 +9,10 @@ import pytest
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.exporting import export, to_trimesh
-from toolaxis.job.folder import read_plan, write_json
-from toolaxis.job.judge import verdict_document, verify_plan
-from toolaxis.job.views import read_views, write_views
+from toolaxis.job.files.plan_folder import read_plan, write_json
+from toolaxis.job.files.verdict_maps import read_views, write_views
+from toolaxis.job.output.export import export, to_trimesh
+from toolaxis.job.output.verify import verdict_document, verify_plan
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.map_colouring import colours_of
 from toolaxis.verify.verdict import Verdict

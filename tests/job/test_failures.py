@@ -12,10 +12,13 @@ import pytest
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.job import judge, planning, timing, zones
-from toolaxis.job.abreast import checked_workers
-from toolaxis.job.folder import PLAN, read_plan, staged, write_plan
-from toolaxis.job.judge import verdict_document
+from toolaxis.job.files.plan_folder import PLAN, read_plan, staged, write_plan
+from toolaxis.job.output import verify as judge
+from toolaxis.job.output.verify import verdict_document
+from toolaxis.job.planning import clean_up_zones as zones
+from toolaxis.job.planning import planner as planning
+from toolaxis.job.planning import timing
+from toolaxis.job.planning.parallel import checked_workers
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
 
@@ -178,7 +181,7 @@ def test_a_fault_of_the_whole_keeps_every_face_and_the_plan_incomplete(monkeypat
     def _fail(*_: object, **__: object) -> None:
         raise IndexError("planted")
 
-    monkeypatch.setattr("toolaxis.job.run.timed", _fail)
+    monkeypatch.setattr("toolaxis.job.planning.pipeline.timed", _fail)
     made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1)
     assert all(op.done for op in made.operations) and made.outcome == "incomplete"
     (fault,) = made.faults
@@ -194,7 +197,7 @@ def test_a_fault_of_the_whole_keeps_every_face_and_the_plan_incomplete(monkeypat
 
 def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(monkeypatch: pytest.MonkeyPatch,
                                                                     tmp_path: Path) -> None:
-    from toolaxis.job import folder
+    from toolaxis.job.files import plan_folder as folder
 
     made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), folder.apt_text
     monkeypatch.setattr(folder, "apt_text", lambda path, tool, name, *rest: 1 // 0 if name.endswith("face2") else

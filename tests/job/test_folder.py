@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import read_plan, staged, write_plan
+from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
 from toolaxis.plan.plan import Plan
 
 

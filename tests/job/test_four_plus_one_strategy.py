@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.posting import posted
-from toolaxis.job.spec import by_strategy
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.inputs.spec import by_strategy
+from toolaxis.job.output.post import posted
 from toolaxis.plan.plan import Plan
 
 TOOL, MACHINE = "torus:12x1", "mikron-ucp-710"

@@ -7,9 +7,9 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.feed.continuous_ik import following
-from toolaxis.job.order import arranged
-from toolaxis.job.posting import posted
-from toolaxis.job.timing import timed
+from toolaxis.job.output.post import posted
+from toolaxis.job.planning.sequencing import arranged
+from toolaxis.job.planning.timing import timed
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan

@@ -8,8 +8,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cli.main import main
-from toolaxis.job.folder import read_plan, staged, write_plan
-from toolaxis.job.zones import WHOLLY, told
+from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
+from toolaxis.job.planning.clean_up_zones import WHOLLY, told
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone

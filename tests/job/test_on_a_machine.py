@@ -9,10 +9,10 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.feed.fixed_axis_time import index_time
-from toolaxis.job.axes import try_axis, with_operations
-from toolaxis.job.folder import read_json, read_plan, write_plan
-from toolaxis.job.judge import verdict_document
-from toolaxis.job.timing import timed
+from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
+from toolaxis.job.output.verify import verdict_document
+from toolaxis.job.planning.edit_axis import try_axis, with_operations
+from toolaxis.job.planning.timing import timed
 from toolaxis.machine.setup import Mounting
 from toolaxis.report.tables import plan_table
 

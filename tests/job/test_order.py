@@ -13,10 +13,10 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.collision.index_moves import Stop, trouble_between
 from toolaxis.collision.machine_collision import Surroundings
 from toolaxis.feed.jerk_profile import travel_time
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.order import arranged
-from toolaxis.job.posting import posted
-from toolaxis.job.timing import timed
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.output.post import posted
+from toolaxis.job.planning.sequencing import arranged
+from toolaxis.job.planning.timing import timed
 from toolaxis.machine.bodies import Body
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
 from toolaxis.machine.setup import Mounting

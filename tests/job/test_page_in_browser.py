@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from toolaxis.job.folder import read_plan, staged, write_json, write_plan
-from toolaxis.job.judge import verdict_document, verify_plan
-from toolaxis.job.reporting import report
-from toolaxis.job.views import write_views
+from toolaxis.job.files.plan_folder import read_plan, staged, write_json, write_plan
+from toolaxis.job.files.verdict_maps import write_views
+from toolaxis.job.output.report import report
+from toolaxis.job.output.verify import verdict_document, verify_plan
 from toolaxis.numeric.equal_area import equal_area
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.plan.orientation import REASONS

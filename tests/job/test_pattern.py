@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.axes import with_operations
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.pattern import recognised, shared_out, too_narrow
-from toolaxis.job.rooms import tightest
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.planning.blade_clearances import tightest
+from toolaxis.job.planning.blade_pattern import recognised, shared_out, too_narrow
+from toolaxis.job.planning.edit_axis import with_operations
 from toolaxis.plan.document import plan_document
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.judge import verify_plan
-from toolaxis.job.pictures import draw_verdict, width_study
+from toolaxis.job.output.pictures import draw_verdict, width_study
+from toolaxis.job.output.verify import verify_plan
 from toolaxis.plan.plan import Plan
 
 

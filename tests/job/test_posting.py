@@ -15,8 +15,8 @@ from nc_plans import a_plan, axes_at
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import read_plan, staged, write_plan
-from toolaxis.job.posting import posted
+from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
+from toolaxis.job.output.post import posted
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan

@@ -17,10 +17,10 @@ import pytest
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.folder import read_plan, staged, write_json, write_plan
-from toolaxis.job.judge import verdict_document, verify_plan
-from toolaxis.job.reporting import report
-from toolaxis.job.views import read_views, write_views
+from toolaxis.job.files.plan_folder import read_plan, staged, write_json, write_plan
+from toolaxis.job.files.verdict_maps import read_views, write_views
+from toolaxis.job.output.report import report
+from toolaxis.job.output.verify import verdict_document, verify_plan
 from toolaxis.numeric.equal_area import from_equal_area
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.plan.orientation import REASONS

@@ -11,7 +11,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
-from toolaxis.job.rescheduling import reschedule
+from toolaxis.job.output.reschedule import reschedule
 from toolaxis.post.apt import apt_text
 from toolaxis.post.read_apt import read_apt
 

@@ -8,9 +8,9 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.spec import chosen_faces, parse_faces
-from toolaxis.job.targets import Target, by_axis
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.inputs.spec import chosen_faces, parse_faces
+from toolaxis.job.planning.sub_surfaces import Target, by_axis
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
@@ -157,7 +157,7 @@ def test_faces_by_number_and_by_default() -> None:
 
 
 def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    import toolaxis.job.planning as job
+    import toolaxis.job.planning.planner as job
 
     search = job.searched
 
@@ -175,7 +175,7 @@ def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeyp
 
 
 def test_a_face_with_a_kink_is_divided_there(tmp_path: Path) -> None:
-    from toolaxis.job.folder import read_plan, write_plan
+    from toolaxis.job.files.plan_folder import read_plan, write_plan
 
     x = np.linspace(0, 24, 7)
     roof = [[[a, b, 8 - 0.3 * abs(a - 12)] for b in (0.0, 5.0, 10.0, 16.0)] for a in x]
@@ -214,7 +214,7 @@ def test_a_face_of_a_hundred_small_facets_is_left_in_one_sentence() -> None:
 
 def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
                                                                monkeypatch: pytest.MonkeyPatch) -> None:
-    from toolaxis.job import baselines
+    from toolaxis.job.planning import comparison as baselines
 
     assert baselines.BY_SUB_SURFACE == ("sectors", "roman", "normal")
     monkeypatch.setattr(baselines, "BY_SUB_SURFACE", ("roman", "normal"))  # sectors take half a minute

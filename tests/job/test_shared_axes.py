@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.job.planning import REFUSED, Job
-from toolaxis.job.targets import Target
+from toolaxis.job.planning.planner import REFUSED, Job
+from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS
 

@@ -10,9 +10,9 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.job.folder import read_plan, staged, write_plan
-from toolaxis.job.judge import _task
-from toolaxis.job.spec import parse_faces, with_joined
+from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
+from toolaxis.job.inputs.spec import parse_faces, with_joined
+from toolaxis.job.output.verify import _task
 from toolaxis.numeric.knots import restricted
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.nurbs import NurbsSurface

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.baselines import compared
-from toolaxis.job.folder import read_json, read_plan, write_plan
-from toolaxis.job.spec import by_strategy, check_five_axes
-from toolaxis.job.timing import timed
+from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
+from toolaxis.job.inputs.spec import by_strategy, check_five_axes
+from toolaxis.job.planning.comparison import compared
+from toolaxis.job.planning.timing import timed
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.survey import survey
+from toolaxis.job.output.inspect import survey
 
 ARC = sqrt(0.5)
 

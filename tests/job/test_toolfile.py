@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.job.toolfile import library, load_holder, load_tool
+from toolaxis.job.inputs.tool_file import library, load_holder, load_tool
 
 
 def fctb(folder: Path, **parameters: Any) -> str:

@@ -9,11 +9,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import Cancelled
-from toolaxis.job import turned
-from toolaxis.job.abreast import checked_workers
-from toolaxis.job.pattern import recognised
-from toolaxis.job.planning import went_on
-from toolaxis.job.turned import spread_out
+from toolaxis.job.planning import blade_copies as turned
+from toolaxis.job.planning.blade_copies import spread_out
+from toolaxis.job.planning.blade_pattern import recognised
+from toolaxis.job.planning.parallel import checked_workers
+from toolaxis.job.planning.planner import went_on
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation

@@ -5,7 +5,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.report.tables import plan_table
 from toolaxis.shape.analytic import Cylinder
 

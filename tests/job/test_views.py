@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.views import NAME, read_views, write_views
+from toolaxis.job.files.verdict_maps import NAME, read_views, write_views
 
 
 def judged(seed: int) -> tuple[SimpleNamespace, SimpleNamespace]:

@@ -6,7 +6,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.feasibility.surroundings import grouped
-from toolaxis.job.rooms import tightest
+from toolaxis.job.planning.blade_clearances import tightest
 from toolaxis.search.fixed_axis import task
 from toolaxis.search.link_heights import OVER, Crossing, height_over
 from toolaxis.strategies.common.path_check import MovingCrossing

@@ -6,8 +6,8 @@ from benchmarks._blades import loft
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
-from toolaxis.job.posting import posted
-from toolaxis.job.reading import read_cl
+from toolaxis.job.files.read_cl import read_cl
+from toolaxis.job.output.post import posted
 from toolaxis.machine.setup import Mounting
 from toolaxis.post.context import Options
 

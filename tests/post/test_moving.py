@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.job.posting import posted
+from toolaxis.job.output.post import posted
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting

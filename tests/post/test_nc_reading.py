@@ -8,7 +8,7 @@ from test_moving import _plan
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.job.posting import posted
+from toolaxis.job.output.post import posted
 from toolaxis.machine.kinematics import inverse
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting

@@ -8,7 +8,7 @@ from FreeCAD import Vector
 from freecad.toolaxis import bridge
 from freecad.toolaxis.reading import Source
 
-from toolaxis.job.axes import try_axis
+from toolaxis.job.planning.edit_axis import try_axis
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan

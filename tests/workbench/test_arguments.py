@@ -11,7 +11,7 @@ from freecad.toolaxis.reading import sculptured
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.job.toolfile import load_tool
+from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.progress import Progress
 
 Quantity = FreeCAD.Units.Quantity

@@ -282,7 +282,7 @@ def turned_copy(document, operation, face):
 def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path, posting):
     from freecad.toolaxis.exporting import export
 
-    from toolaxis.job.folder import read_plan
+    from toolaxis.job.files.plan_folder import read_plan
 
     thing = parts.block(document)
     name = parts.sculptured_name(thing)

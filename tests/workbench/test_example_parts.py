@@ -22,7 +22,7 @@ from freecad.toolaxis.objects.surfaces import CLEAN_UP, is_shown
 from freecad.toolaxis.places import matrix_of
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.job.folder import read_plan
+from toolaxis.job.files.plan_folder import read_plan
 from toolaxis.progress import NO_PROGRESS
 
 FOLDER = Path(__file__).resolve().parents[2] / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/example_parts")

@@ -10,8 +10,8 @@ from freecad.toolaxis.exporting import Wish, export
 import toolaxis as ta
 from toolaxis.cad.machines import load_machine
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.folder import read_plan, write_plan
-from toolaxis.job.posting import posted
+from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.output.post import posted
 from toolaxis.machine.setup import Mounting
 
 OFFSET = (0.0, 0.0, 60.0)

@@ -11,7 +11,7 @@ import Part as FreecadPart
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.folder import write_plan
+from toolaxis.job.files.plan_folder import write_plan
 from toolaxis.plan.document import tool_from
 from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.shape.kinks import split_at_kinks

@@ -17,7 +17,7 @@ from toolaxis.batch.journal import Journal
 from toolaxis.batch.summary import Row, summary_csv, summary_document
 from toolaxis.batch.task import Answer
 from toolaxis.errors import InvalidInput, JobError, MissingBackend
-from toolaxis.job.folder import made_folders, remove_empty
+from toolaxis.job.files.plan_folder import made_folders, remove_empty
 
 JOB, JOURNAL, LOCK, WORK = "job.json", "journal.jsonl", ".lock", ".work"
 _SUMMARIES = ("summary.csv", "summary.json")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import toolaxis
 from toolaxis.batch.task import Answer, Task
-from toolaxis.job.abreast import how_it_ended
+from toolaxis.job.planning.parallel import how_it_ended
 
 #: Seconds between two looks at the user and the clock.
 TICK = 0.1

@@ -15,7 +15,7 @@ from toolaxis import __version__
 from toolaxis.batch.task import Source, Task
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.job.spec import Spec, by_strategy, roughness_for
+from toolaxis.job.inputs.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine

@@ -81,10 +81,10 @@ def _failure(reason: BaseException, task: Task) -> tuple[str, str]:
 
 def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) -> tuple[str, str, dict[str, Any]]:
     """Write a plan's folder; its outcome, the reason for it and its figures."""
-    from toolaxis.job.folder import PLAN, read_json, read_plan, write_json, write_plan
-    from toolaxis.job.judge import passes, verdict_document, verify_plan
-    from toolaxis.job.run import plan
-    from toolaxis.job.views import write_views
+    from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, write_json, write_plan
+    from toolaxis.job.files.verdict_maps import write_views
+    from toolaxis.job.output.verify import passes, verdict_document, verify_plan
+    from toolaxis.job.planning.pipeline import plan
 
     part, *obstacles = (_part(source, scratch, known) for source in (task.part, *task.obstacles))
     if task.memory is not None:  # once the parts are read: what their kernel takes is looked at from outside
@@ -107,7 +107,7 @@ def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) ->
         verdict = "passed" if passes(judged, found) else "failed"
         reasons += written["reasons"]
     if task.pictures:
-        from toolaxis.job.pictures import draw_plan
+        from toolaxis.job.output.pictures import draw_plan
 
         draw_plan(made, folder)
     outcome = "complete" if made.outcome == "complete" and verdict != "failed" else "incomplete"

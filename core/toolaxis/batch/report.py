@@ -8,9 +8,9 @@ from typing import Any
 
 from toolaxis.batch.summary import NAME, VERSION
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError
-from toolaxis.job.abreast import abreast, checked_workers
-from toolaxis.job.folder import PLAN, read_json, staged
-from toolaxis.job.reporting import PAGE, report
+from toolaxis.job.files.plan_folder import PLAN, read_json, staged
+from toolaxis.job.output.report import PAGE, report
+from toolaxis.job.planning.parallel import abreast, checked_workers
 from toolaxis.progress import NO_PROGRESS, Progress
 
 SUMMARY = "summary.json"

@@ -14,7 +14,7 @@ from toolaxis.batch.jobfile import Wanted, read_jobs
 from toolaxis.batch.summary import Row
 from toolaxis.batch.task import Answer, Task
 from toolaxis.errors import Cancelled, InvalidInput, JobError
-from toolaxis.job.abreast import checked_workers
+from toolaxis.job.planning.parallel import checked_workers
 from toolaxis.progress import NO_PROGRESS, Progress
 
 

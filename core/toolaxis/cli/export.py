@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from toolaxis.cli.output import print_json, say
-from toolaxis.job.exporting import export
+from toolaxis.job.output.export import export
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:

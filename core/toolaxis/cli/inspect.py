@@ -8,7 +8,7 @@ from typing import Any
 
 from toolaxis.cad.load import load
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.job.survey import FaceSummary, survey
+from toolaxis.job.output.inspect import FaceSummary, survey
 from toolaxis.report.tables import number, table
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import GREATEST, Seam

@@ -8,8 +8,8 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled
-from toolaxis.job.folder import PLAN, read_json, staged, write_plan
-from toolaxis.job.spec import Spec, by_strategy, roughness_for
+from toolaxis.job.files.plan_folder import PLAN, read_json, staged, write_plan
+from toolaxis.job.inputs.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
@@ -36,7 +36,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     spec = _spec(given)
     tool = spec.resolved_tool()
     with staged(Path(given.out)) as stage:
-        from toolaxis.job.run import plan
+        from toolaxis.job.planning.pipeline import plan
 
         with shown_progress(asked) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
@@ -83,7 +83,7 @@ def _roughness(given: Namespace) -> float | None:
 
 def _draw(made: Plan, folder: Path, progress: Progress) -> None:
     """Draw the pictures; a plan is worth keeping without them."""
-    from toolaxis.job.pictures import draw_plan
+    from toolaxis.job.output.pictures import draw_plan
 
     try:
         draw_plan(made, folder, progress)

@@ -7,11 +7,11 @@ from pathlib import Path
 from toolaxis.cad.machines import load_machine
 from toolaxis.cli.output import print_json, say
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import read_plan, staged
-from toolaxis.job.posting import posted, verdict_of
-from toolaxis.job.reading import read_cl
-from toolaxis.job.reposting import reposted
-from toolaxis.job.spec import offset_from
+from toolaxis.job.files.plan_folder import read_plan, staged
+from toolaxis.job.files.read_cl import read_cl
+from toolaxis.job.inputs.spec import offset_from
+from toolaxis.job.output.post import posted, verdict_of
+from toolaxis.job.output.repost import reposted
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, say
-from toolaxis.job.reporting import report
+from toolaxis.job.output.report import report
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:

@@ -12,10 +12,10 @@ from toolaxis.cad.machines import load_machine
 from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.errors import InvalidInput
-from toolaxis.job.reading import read_cl
-from toolaxis.job.rescheduling import NewAngles, reschedule
-from toolaxis.job.spec import offset_from
-from toolaxis.job.toolfile import load_holder, load_tool
+from toolaxis.job.files.read_cl import read_cl
+from toolaxis.job.inputs.spec import offset_from
+from toolaxis.job.inputs.tool_file import load_holder, load_tool
+from toolaxis.job.output.reschedule import NewAngles, reschedule
 from toolaxis.machine.setup import Mounting
 from toolaxis.post.apt import locations_text
 from toolaxis.report.tables import table

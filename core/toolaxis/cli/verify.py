@@ -8,9 +8,9 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import Cancelled
-from toolaxis.job.folder import read_plan, staged, write_json
-from toolaxis.job.judge import not_judged, passes, verdict_document, verify_plan
-from toolaxis.job.views import write_views
+from toolaxis.job.files.plan_folder import read_plan, staged, write_json
+from toolaxis.job.files.verdict_maps import write_views
+from toolaxis.job.output.verify import not_judged, passes, verdict_document, verify_plan
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
 from toolaxis.report.tables import verdict_table
@@ -69,7 +69,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress) -> None:
     """Draw the maps; a verdict is worth keeping without them."""
-    from toolaxis.job.pictures import draw_verdict
+    from toolaxis.job.output.pictures import draw_verdict
 
     try:
         draw_verdict(plan, verdict, folder, progress)

@@ -283,7 +283,7 @@ def exported(walk, folder):
 def verified(walk, folder):
     """The judge in the panel, and the same of the plan that was written."""
     import toolaxis as ta
-    from toolaxis.job.folder import read_plan
+    from toolaxis.job.files.plan_folder import read_plan
 
     desk = walk.desk
     desk.gui.Selection.clearSelection()

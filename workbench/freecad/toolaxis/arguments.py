@@ -223,7 +223,7 @@ def fields_of(document, given):
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
-        from toolaxis.job.spec import roughness_for
+        from toolaxis.job.inputs.spec import roughness_for
 
         roughness_for(found.get("strategy", INDEXED), found["roughness"] / 1000)
     return found

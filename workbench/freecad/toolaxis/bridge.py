@@ -154,7 +154,7 @@ def cutter_of(tool):
     tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
     """
     if isinstance(tool_of(tool), str):
-        from toolaxis.job.toolfile import load_tool
+        from toolaxis.job.inputs.tool_file import load_tool
 
         return load_tool(tool)
     return tool if hasattr(tool, "corner_radius") else tool_from(tool)

@@ -241,7 +241,7 @@ def _verdict(operations):
 def _write(plan, folder, wish, told):
     """Make all files beside the folder, then move them there."""
     from toolaxis.errors import InvalidInput
-    from toolaxis.job.folder import staged, write_plan
+    from toolaxis.job.files.plan_folder import staged, write_plan
 
     verdict, progress = told
     try:
@@ -254,7 +254,7 @@ def _write(plan, folder, wish, told):
                 for name, text in _program(plan, wish, folder.resolve().name, verdict).items():
                     (inner / name).write_text(text, encoding="utf-8")
             if wish.report:
-                from toolaxis.job.reporting import report
+                from toolaxis.job.output.report import report
 
                 report(inner, None, progress)
             names = sorted(path.name for path in inner.iterdir())
@@ -271,7 +271,7 @@ def _write(plan, folder, wish, told):
 def _program(plan, wish, name, verdict):
     """The files of a program."""
     from toolaxis.cad.machines import load_machine
-    from toolaxis.job.posting import posted
+    from toolaxis.job.output.post import posted
     from toolaxis.machine.setup import Mounting
 
     mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None

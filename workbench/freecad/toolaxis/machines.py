@@ -86,7 +86,7 @@ def read_text(text):
         When it names none, or the place is none.
     """
     from toolaxis.errors import InvalidInput
-    from toolaxis.job.spec import offset_from
+    from toolaxis.job.inputs.spec import offset_from
 
     name, _, place = text.removeprefix(PREFIX).rpartition("@") if "@" in text else (text.removeprefix(PREFIX), "", "")
     if not text.startswith(PREFIX) or not name:

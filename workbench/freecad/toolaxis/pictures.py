@@ -28,7 +28,7 @@ def drawn(plan, progress):
     ImportError
         Where matplotlib is missing.
     """
-    from toolaxis.job.pictures import draw_plan
+    from toolaxis.job.output.pictures import draw_plan
 
     with tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         draw_plan(plan, Path(folder), progress)

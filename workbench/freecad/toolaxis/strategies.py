@@ -32,7 +32,7 @@ def check_strategy(inputs):
         In one sentence with the remedy.
     """
     from toolaxis.errors import InvalidInput
-    from toolaxis.job.spec import by_strategy, check_five_axes, roughness_for
+    from toolaxis.job.inputs.spec import by_strategy, check_five_axes, roughness_for
     from toolaxis.strategies.blade.plan import check_ball
     from toolaxis.strategies.roughness.feasible_area import check_bull_nose
     from toolaxis.strategies.two_point.rings import check_bottom

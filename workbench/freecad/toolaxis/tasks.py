@@ -94,8 +94,8 @@ def _load() -> None:
     try:
         import scipy.spatial  # noqa: F401
 
-        import toolaxis.job.axes
-        import toolaxis.job.run  # noqa: F401
+        import toolaxis.job.planning.edit_axis
+        import toolaxis.job.planning.pipeline  # noqa: F401
     finally:
         if collecting:
             gc.enable()

@@ -171,7 +171,7 @@ def axis_picture(plan, op, progress):
     progress : toolaxis.progress.Progress
     """
     from toolaxis.errors import ToolAxisError
-    from toolaxis.job.axes import rule_of_thumb
+    from toolaxis.job.planning.edit_axis import rule_of_thumb
 
     picture = picture_of(op.face, op.orientation.map)
     if picture is None:

@@ -263,7 +263,7 @@ class AxisView(QtCore.QObject):
         feed : "u" or "v", optional
             The one that is locked, or the better one, unless given.
         """
-        from toolaxis.job.axes import try_axis
+        from toolaxis.job.planning.edit_axis import try_axis
 
         plan, op = self.plan, self.operation
         if op is None or not self.map.isEnabled() or self._is_copy(op):
@@ -316,7 +316,7 @@ class AxisView(QtCore.QObject):
             self._take(self._best(self.operation))
 
     def _take(self, operation):
-        from toolaxis.job.axes import with_operations
+        from toolaxis.job.planning.edit_axis import with_operations
 
         self.plan = with_operations(self.plan, {operation.number: operation})
         self.left = left_to_clean_up(self.plan)

@@ -79,7 +79,7 @@ def tools_in(document):
     ----------
     document : App.Document
     """
-    from toolaxis.job.toolfile import library
+    from toolaxis.job.inputs.tool_file import library
 
     found = controllers(document)
     held = {thing.Tool.Name for thing in found if getattr(thing, "Tool", None) is not None}

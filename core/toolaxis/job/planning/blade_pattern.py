@@ -14,7 +14,7 @@ from toolaxis.bladed.find_blades import Bladed, NoPattern, blades_of
 from toolaxis.bladed.strips import strips
 from toolaxis.bladed.trim_buried import uncovered
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.job.targets import faceted
+from toolaxis.job.planning.sub_surfaces import faceted
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import tight_fillet

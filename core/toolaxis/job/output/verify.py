@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import Cancelled, InvalidInput, fault
 from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, grouped
-from toolaxis.job.folder import read_plan, write_plan
+from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.machine.kinematics import placement
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.toolfile import load_holder, load_tool
+from toolaxis.job.inputs.tool_file import load_holder, load_tool
 from toolaxis.machine.machine import Machine
 from toolaxis.plan.plan import STRATEGIES, Inputs
 from toolaxis.shape.face import Face

@@ -12,7 +12,7 @@ from toolaxis.collision.index_moves import RETRACT, Stop, trouble_at_the_ends, t
 from toolaxis.collision.machine_collision import FLAT, Surroundings, free_solutions
 from toolaxis.errors import about
 from toolaxis.feed.jerk_profile import travel_time
-from toolaxis.job.in_motion import kept_clear, refused
+from toolaxis.job.planning.moving_axis_collisions import kept_clear, refused
 from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.folder import read_json
-from toolaxis.job.order import arranged
+from toolaxis.job.files.plan_folder import read_json
+from toolaxis.job.planning.sequencing import arranged
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.library import machine_to_toml
 from toolaxis.machine.setup import Mounting

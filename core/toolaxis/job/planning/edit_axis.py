@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.job.timing import feeds_of, timed
+from toolaxis.job.planning.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.work_coordinates import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit

@@ -10,10 +10,10 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.normal_cone import smallest_cap
-from toolaxis.job.axes import search_task
-from toolaxis.job.blade_pictures import draw_blade
-from toolaxis.job.rooms import tightest
-from toolaxis.job.roughness_pictures import draw_roughness
+from toolaxis.job.output.blade_pictures import draw_blade
+from toolaxis.job.output.roughness_pictures import draw_roughness
+from toolaxis.job.planning.blade_clearances import tightest
+from toolaxis.job.planning.edit_axis import search_task
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.estimate import estimate
 from toolaxis.path.iso_parametric import layout
@@ -171,7 +171,7 @@ def width_lines(plan: Plan, op: Operation, job: Task) -> list[tuple[Array, Array
     op : Operation
         With a path.
     job : Task
-        Of `toolaxis.job.axes.search_task`.
+        Of `toolaxis.job.planning.edit_axis.search_task`.
 
     Returns
     -------

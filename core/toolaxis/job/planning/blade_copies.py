@@ -14,11 +14,11 @@ from toolaxis.contact.clearance.queries import judged as decided
 from toolaxis.contact.clearance.queries import segment_motions
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, fault
 from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.job.abreast import Outcome, abreast
-from toolaxis.job.axes import frame_of, judged
-from toolaxis.job.failures import failed, failed_after
-from toolaxis.job.pattern import Pattern, Share
-from toolaxis.job.zones import with_zones
+from toolaxis.job.planning.blade_pattern import Pattern, Share
+from toolaxis.job.planning.clean_up_zones import with_zones
+from toolaxis.job.planning.edit_axis import frame_of, judged
+from toolaxis.job.planning.failures import failed, failed_after
+from toolaxis.job.planning.parallel import Outcome, abreast
 from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation

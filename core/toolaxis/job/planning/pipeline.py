@@ -12,15 +12,15 @@ from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
-from toolaxis.job.abreast import checked_workers
-from toolaxis.job.baselines import compared
-from toolaxis.job.failures import failed_after
-from toolaxis.job.pattern import recognised
-from toolaxis.job.planning import Job, went_on
-from toolaxis.job.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined, with_rings
-from toolaxis.job.targets import check_division, not_divided, read_division, smooth_pieces
-from toolaxis.job.timing import timed
-from toolaxis.job.toolfile import load_tool
+from toolaxis.job.inputs.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined, with_rings
+from toolaxis.job.inputs.tool_file import load_tool
+from toolaxis.job.planning.blade_pattern import recognised
+from toolaxis.job.planning.comparison import compared
+from toolaxis.job.planning.failures import failed_after
+from toolaxis.job.planning.parallel import checked_workers
+from toolaxis.job.planning.planner import Job, went_on
+from toolaxis.job.planning.sub_surfaces import check_division, not_divided, read_division, smooth_pieces
+from toolaxis.job.planning.timing import timed
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits

@@ -11,7 +11,7 @@ from toolaxis.feed.feed_drop import SLOW, Crawl
 from toolaxis.feed.fixed_axis_time import Feeds, index_time, machining_time
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.moving_axis_time import FiveAxisMotion, five_axis_motion
-from toolaxis.job.order import arranged
+from toolaxis.job.planning.sequencing import arranged
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
@@ -38,7 +38,7 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
     ----------
     plan : Plan
     reorder : bool
-        Whether operations may be put in the order that takes least time between them, see `toolaxis.job.order`.
+        Whether operations may be put in the order that takes least time between them, see `sequencing`.
     """
     plan = plan if reorder and plan.order is not None else arranged(plan, reorder)
     plain = replace(plan, operations=tuple(replace(op, time=None) for op in plan.operations))

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.contacts import widths_along, with_contacts
-from toolaxis.job.folder import PLAN, read_json, read_plan, sha256_of, staged
-from toolaxis.job.timing import feeds_of
-from toolaxis.job.views import NAME as MAPS
-from toolaxis.job.views import read_views
+from toolaxis.job.files.contacts_from_cl import widths_along, with_contacts
+from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, sha256_of, staged
+from toolaxis.job.files.verdict_maps import NAME as MAPS
+from toolaxis.job.files.verdict_maps import read_views
+from toolaxis.job.planning.timing import feeds_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress, heard
@@ -152,7 +152,7 @@ def _still(plan: Plan) -> bytes:
     """A picture of the plan, as PNG."""
     from io import BytesIO
 
-    from toolaxis.job.pictures import DPI
+    from toolaxis.job.output.pictures import DPI
     from toolaxis.report.figures.plan_overview import overview_picture
     from toolaxis.report.figures.plots import operation_picture
 

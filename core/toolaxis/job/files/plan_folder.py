@@ -13,7 +13,7 @@ from typing import Any
 
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, about, fault, piece_of
-from toolaxis.job.failures import failed_after, failure_text, fault_text
+from toolaxis.job.planning.failures import failed_after, failure_text, fault_text
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan

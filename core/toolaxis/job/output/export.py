@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.contacts import with_contacts
-from toolaxis.job.folder import read_plan, sha256_of, staged
-from toolaxis.job.views import read_views
+from toolaxis.job.files.contacts_from_cl import with_contacts
+from toolaxis.job.files.plan_folder import read_plan, sha256_of, staged
+from toolaxis.job.files.verdict_maps import read_views
 from toolaxis.plan.plan import Plan
 
 if TYPE_CHECKING:

@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault, piece_of
-from toolaxis.job.abreast import abreast
-from toolaxis.job.axes import frame_of, judged
-from toolaxis.job.baselines import compared
-from toolaxis.job.failures import failed
-from toolaxis.job.pattern import Pattern, shared_out
-from toolaxis.job.rooms import with_rooms
-from toolaxis.job.targets import Target, by_axis, given_targets, held, lost, smooth_pieces, with_given
-from toolaxis.job.timing import feeds_of, timed
-from toolaxis.job.turned import followed, spread_out, with_refused
-from toolaxis.job.zones import zoned
+from toolaxis.job.planning.blade_clearances import with_rooms
+from toolaxis.job.planning.blade_copies import followed, spread_out, with_refused
+from toolaxis.job.planning.blade_pattern import Pattern, shared_out
+from toolaxis.job.planning.clean_up_zones import zoned
+from toolaxis.job.planning.comparison import compared
+from toolaxis.job.planning.edit_axis import frame_of, judged
+from toolaxis.job.planning.failures import failed
+from toolaxis.job.planning.parallel import abreast
+from toolaxis.job.planning.sub_surfaces import Target, by_axis, given_targets, held, lost, smooth_pieces, with_given
+from toolaxis.job.planning.timing import feeds_of, timed
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances

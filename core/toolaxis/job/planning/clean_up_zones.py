@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 from toolaxis.errors import Cancelled, fault
-from toolaxis.job.abreast import abreast
-from toolaxis.job.axes import search_task
-from toolaxis.job.failures import failed_after
+from toolaxis.job.planning.edit_axis import search_task
+from toolaxis.job.planning.failures import failed_after
+from toolaxis.job.planning.parallel import abreast
 from toolaxis.path.rest_material import FACTOR, Excess, also_machined
 from toolaxis.path.unmachined_ends import beyond_layers
 from toolaxis.plan.operation import Operation

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
-from toolaxis.job.axes import judged
-from toolaxis.job.failures import failed
+from toolaxis.job.planning.edit_axis import judged
+from toolaxis.job.planning.failures import failed
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from

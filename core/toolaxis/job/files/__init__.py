@@ -1,0 +1,1 @@
+"""Plan folders and cutter location files, read and written."""

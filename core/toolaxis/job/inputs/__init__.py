@@ -1,0 +1,1 @@
+"""What a job is given: a specification, and tools from files."""

@@ -1,0 +1,1 @@
+"""What is made of a plan: verdict, programs, exports, pages and pictures."""

@@ -1,0 +1,1 @@
+"""From a part and a tool to a plan."""
