@@ -190,6 +190,9 @@ def contacts_at(rng, face, tool, lean, uv):
     d = face.evaluate(uv)
     n = unit(np.cross(d.su, d.sv))
     axis = unit(n + lean * rng.standard_normal((len(uv), 3)))
+    # Past the flank the corner has no point with such a normal, and the tool would not touch: that one leans little.
+    past = np.sum(n * axis, axis=1) <= np.sin(tool.half_angle)
+    axis = np.where(past[:, None], unit(n + 0.1 * axis), axis)
     across = n - np.sum(n * axis, axis=1)[:, None] * axis
     tips = d.point + tool.corner_radius * (n - axis)
     return tips + (tool.flat_radius * unit(across) if tool.flat_radius > 0 else 0), axis, n
