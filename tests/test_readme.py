@@ -1,4 +1,4 @@
-"""The README does what it says: every command and the Python example run, every test and file that it names exists."""
+"""README and manual do what they say: commands and code run; tests, files and options that they name exist."""
 
 import re
 import subprocess
@@ -8,7 +8,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
+MANUAL = ROOT / "resources" / "manual"
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMAND = (MANUAL / "command.md").read_text(encoding="utf-8")
+GUARANTEES = (MANUAL / "guarantees.md").read_text(encoding="utf-8")
+WORDS = 900
 
 
 def blocks(language: str) -> list[str]:
@@ -50,19 +54,41 @@ def test_the_python_example_runs_and_passes() -> None:
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
 
 
-@pytest.mark.parametrize("name", sorted(set(re.findall(r"tests/[\w/]+\.py::\w+", TEXT))))
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"tests/[\w/]+\.py::\w+", GUARANTEES))))
 def test_every_promise_has_its_test(name: str) -> None:
     path, _, function = name.partition("::")
     assert f"def {function}(" in (ROOT / path).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", sorted(set(re.findall(r"\]\(([^)]+)\)", TEXT))))
-def test_every_link_leads_to_a_file(name: str) -> None:
-    assert (ROOT / name).is_file()
+def links(page: Path) -> list[Path]:
+    found = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    return [page.parent / name for name in found if "://" not in name]
 
 
-def test_every_option_that_is_named_exists() -> None:
-    shown = "".join(subprocess.run([sys.executable, "-m", "toolaxis.cli.main", command, "--help"], capture_output=True,
-                                   text=True, check=True).stdout for command in ("plan", "post", "batch", "export"))
-    for option in set(re.findall(r"--[a-z]+", TEXT)) - {"--help"}:
-        assert option in shown
+@pytest.mark.parametrize("page", [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(MANUAL.glob("*.md"))],
+                         ids=lambda page: page.name)
+def test_every_link_leads_to_a_file(page: Path) -> None:
+    assert [str(path) for path in links(page) if not path.is_file()] == []
+
+
+def test_the_readme_leads_to_every_page_of_the_manual() -> None:
+    led_to = {path.name for path in links(ROOT / "README.md")}
+    assert {page.name for page in MANUAL.glob("*.md")} <= led_to
+
+
+def test_the_readme_is_read_in_five_minutes() -> None:
+    assert len(TEXT.split()) <= WORDS
+
+
+def helped() -> dict[str, str]:
+    names = ("inspect", "plan", "verify", "post", "report", "export", "reschedule", "batch")
+    return {name: subprocess.run([sys.executable, "-m", "toolaxis.cli.main", name, "--help"], capture_output=True,
+                                 text=True, check=True).stdout for name in names}
+
+
+def test_every_option_that_is_named_exists_and_plan_has_none_that_the_manual_omits() -> None:
+    shown = helped()
+    named = set(re.findall(r"--[a-z]+(?:-[a-z]+)*", TEXT + COMMAND)) - {"--help"}
+    assert [option for option in sorted(named) if option not in "".join(shown.values())] == []
+    options = set(re.findall(r"--[a-z]+(?:-[a-z]+)*", shown["plan"])) - {"--help", "--out", "--no-pictures"}
+    assert sorted(options - named) == []
