@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 PART ?= examples/freeform.step
 OUT ?= out/demo
 
-.PHONY: setup demo test test-all lint bench docs clean
+.PHONY: setup demo test tests test-all lint bench docs clean
 
 setup: $(STAMP)
 
@@ -27,7 +27,9 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: lint
+test: lint tests
+
+tests: setup
 	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 40
 
 test-all: lint

@@ -198,10 +198,9 @@ def test_a_wrong_number_of_workers_is_refused(workers):
 
 @several
 def test_a_plan_is_the_same_with_one_process_and_two():
-    grid = np.stack(np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij"), -1)
-    face = ta.Face.from_bspline(np.concatenate([grid, 4 * np.sin(grid[..., :1] / 15)], axis=-1))
-    tool = ta.Tool.torus(diameter=12, corner_radius=2)
-    plans = [ta.plan(face, tool, scallop=0.2, regions=2, workers=workers) for workers in (1, 2)]
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij")
+    face = ta.Face.from_bspline(np.stack([x, y, 2 * np.sin(x / 15) * np.cos(y / 13)], axis=-1))
+    plans = [ta.plan(face, ta.Tool.ball(8), scallop=0.3, regions=2, workers=workers) for workers in (1, 2)]
     one, two = ([(op.number, op.face.label, op.orientation.axis.tolist(), op.orientation.length)
                  for op in plan.operations] for plan in plans)
     assert one == two and len(one) == 2

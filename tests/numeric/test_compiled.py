@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -79,6 +80,51 @@ def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
         answers.append(run(script, tmp_path).split())
     assert [float(answer) for answer, _ in answers] == [2.0, 2.0, 21.0]
     assert [hits for _, hits in answers] == ["0", "1", "0"]
+
+
+def test_kept_code_serves_another_clone(tmp_path: Path) -> None:
+    """The text of the sources decides, not where they lie or when they were written."""
+    pytest.importorskip("numba")
+    script = "from twice_kernel import twice; print(twice(1.5), sum(twice.stats.cache_hits.values()))"
+    source = "from toolaxis.numeric.compiled import compiled\n\n\n@compiled\ndef twice(x):\n    return {} * x\n"
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.mkdir()
+    (first / "twice_kernel.py").write_text(source.format("2.0"))
+    assert run(script, first, NUMBA_CACHE_DIR="").split() == ["3.0", "0"]
+    shutil.copytree(first, second)
+    os.utime(second / "twice_kernel.py", (1e9, 1e9))
+    assert run(script, second, NUMBA_CACHE_DIR="").split() == ["3.0", "1"]
+    written = os.stat(second / "twice_kernel.py")
+    (second / "twice_kernel.py").write_text(source.format("4.0"))
+    os.utime(second / "twice_kernel.py", ns=(written.st_atime_ns, written.st_mtime_ns))
+    assert run(script, second, NUMBA_CACHE_DIR="").split() == ["6.0", "0"]
+
+
+def test_kept_code_expires_with_imported_constants(tmp_path: Path) -> None:
+    pytest.importorskip("numba")
+    (tmp_path / "scaled_kernel.py").write_text("from scale import SCALE\nfrom toolaxis.numeric.compiled import "
+                                               "compiled\n\n\n@compiled\ndef scaled(x):\n    return SCALE * x\n")
+    script = "from scaled_kernel import scaled; print(scaled(1.5), sum(scaled.stats.cache_hits.values()))"
+    answers = []
+    for scale in ("2.0", "2.0", "4.0"):
+        (tmp_path / "scale.py").write_text(f"SCALE = {scale}\n")
+        answers.append(run(script, tmp_path).split())
+    assert answers == [["3.0", "0"], ["3.0", "1"], ["6.0", "0"]]
+
+
+def test_kept_code_expires_when_fields_change_places(tmp_path: Path) -> None:
+    """Also where the kernel's module does not know the named tuple that it is handed."""
+    pytest.importorskip("numba")
+    (tmp_path / "first_kernel.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+                                              "@compiled\ndef low(pair):\n    return pair[0].low\n")
+    script = ("from first_kernel import low\nfrom span import Span\n"
+              "print(low((Span(low=1.0, high=2.0), 3)), sum(low.stats.cache_hits.values()))")
+    answers = []
+    for names in ("low high", "low high", "high low"):
+        fields = "".join(f"    {name}: float\n" for name in names.split())
+        (tmp_path / "span.py").write_text(f"from typing import NamedTuple\n\n\nclass Span(NamedTuple):\n{fields}")
+        answers.append(run(script, tmp_path).split())
+    assert answers == [["1.0", "0"], ["1.0", "1"], ["1.0", "0"]]
 
 
 def test_kept_code_for_other_arguments_is_not_taken(tmp_path: Path) -> None:

@@ -4,11 +4,15 @@ Each kernel stands beside a plain numpy twin.  The twin is the oracle in tests, 
 missing or broken; then one notice is given.
 """
 
+import functools
 import hashlib
 import os
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
+
+import numpy
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -92,18 +96,35 @@ def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool =
 
 
 def _stamp(kernel: Any, options: str) -> None:
-    """Let code kept on disk expire with the file of every kernel it calls, not with its own file alone.
+    """Let code kept on disk expire with the text of every kernel it calls, and with the constants it was given.
 
-    numba compares the file of the kernel itself only, although the kernels it calls are built into it.
+    numba compares the file of the kernel itself only, although the kernels it calls and the numbers that its module
+    imports are built into it; older releases compare when the file was written, which says nothing in a fresh clone.
     """
     store: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
-    own = getattr(store, "_source_stamp", None)
-    called = {value.source_stamp for value in kernel.py_func.__globals__.values()
-              if type(value) is type(kernel) and hasattr(value, "source_stamp")}
-    kernel.source_stamp = hashlib.sha256(repr((own, options, sorted(called))).encode()).hexdigest()
-    if own is not None:
+    own = _digest_of(kernel.py_func.__code__.co_filename) or getattr(store, "_source_stamp", None)
+    called, constants = set(), []
+    for name, value in kernel.py_func.__globals__.items():
+        if type(value) is type(kernel) and hasattr(value, "source_stamp"):
+            called.add(value.source_stamp)
+        elif type(value) in (bool, int, float, str, tuple) and not name.startswith("__"):
+            constants.append((name, repr(value)))
+        elif isinstance(value, type) and hasattr(value, "_fields"):
+            constants.append((name, repr(value._fields)))
+    told = (own, options, numpy.__version__, sorted(called), sorted(constants))
+    kernel.source_stamp = hashlib.sha256(repr(told).encode()).hexdigest()
+    if own is not None and store is not None:
         store._source_stamp = kernel.source_stamp
         _check(store, kernel.source_stamp)
+
+
+@functools.cache
+def _digest_of(file: str) -> str | None:
+    """The digest of what a file says, or None where there is no file, as in a notebook."""
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError:
+        return None
 
 
 def _check(store: Any, stamp: str) -> None:
@@ -111,17 +132,27 @@ def _check(store: Any, stamp: str) -> None:
 
     numba names the file in a list that it writes before the file.  Two processes that compile a kernel for different
     arguments at the same time may choose the same file, and the code for the one is called with the other's arguments.
+    Nor does it compare the names of a named tuple's fields: code kept from before two of them changed places reads the
+    one for the other.
     """
     save, load = store.save, store.load
 
     def marked(key: Any, code: Any) -> None:
-        save(key, (stamp, key, code))
+        save(key, (stamp, _fields_in(key[0]), key, code))
 
     def checked(key: Any) -> Any:
         found = load(key)
-        return found[2] if isinstance(found, tuple) and found[:2] == (stamp, key) else None
+        fits = isinstance(found, tuple) and found[:3] == (stamp, _fields_in(key[0]), key)
+        return found[3] if fits else None
 
     store.save, store.load = marked, checked
+
+
+def _fields_in(types: Any) -> tuple[Any, ...]:
+    """The names of the fields of all named tuples among the types of arguments."""
+    fields = getattr(types, "fields", ())
+    within = types if isinstance(types, tuple) else getattr(types, "types", ())
+    return (fields, *(_fields_in(one) for one in within))
 
 
 def compilations() -> Callable[[], int]:
