@@ -86,7 +86,7 @@ def test_kept_code_serves_another_clone(tmp_path: Path) -> None:
     """The text of the sources decides, not where they lie or when they were written."""
     pytest.importorskip("numba")
     script = "from twice_kernel import twice; print(twice(1.5), sum(twice.stats.cache_hits.values()))"
-    source = "from toolaxis.numeric.compiled import compiled\n\n\n@compiled\ndef twice(x):\n    return {} * x\n"
+    source = "from toolaxis.numeric.jit import compiled\n\n\n@compiled\ndef twice(x):\n    return {} * x\n"
     first, second = tmp_path / "first", tmp_path / "second"
     first.mkdir()
     (first / "twice_kernel.py").write_text(source.format("2.0"))
@@ -102,7 +102,7 @@ def test_kept_code_serves_another_clone(tmp_path: Path) -> None:
 
 def test_kept_code_expires_with_imported_constants(tmp_path: Path) -> None:
     pytest.importorskip("numba")
-    (tmp_path / "scaled_kernel.py").write_text("from scale import SCALE\nfrom toolaxis.numeric.compiled import "
+    (tmp_path / "scaled_kernel.py").write_text("from scale import SCALE\nfrom toolaxis.numeric.jit import "
                                                "compiled\n\n\n@compiled\ndef scaled(x):\n    return SCALE * x\n")
     script = "from scaled_kernel import scaled; print(scaled(1.5), sum(scaled.stats.cache_hits.values()))"
     answers = []
@@ -115,7 +115,7 @@ def test_kept_code_expires_with_imported_constants(tmp_path: Path) -> None:
 def test_kept_code_expires_when_fields_change_places(tmp_path: Path) -> None:
     """Also where the kernel's module does not know the named tuple that it is handed."""
     pytest.importorskip("numba")
-    (tmp_path / "first_kernel.py").write_text("from toolaxis.numeric.compiled import compiled\n\n\n"
+    (tmp_path / "first_kernel.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
                                               "@compiled\ndef low(pair):\n    return pair[0].low\n")
     script = ("from first_kernel import low\nfrom span import Span\n"
               "print(low((Span(low=1.0, high=2.0), 3)), sum(low.stats.cache_hits.values()))")
