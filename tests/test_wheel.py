@@ -36,7 +36,7 @@ def test_what_is_in_it(wheel: Path) -> None:
     assert any(name.endswith("data/share/toolaxis/tools/torus-12x1.toml") for name in names)
     assert any(name.endswith("data/share/toolaxis/machines/mikron-ucp-710.toml") for name in names)
     for file in ("page.html.j2", "batch.html.j2", "page.css", "page.js"):
-        assert f"toolaxis/report/{file}" in names
+        assert f"toolaxis/report/html/{file}" in names
     assert {name.split("/")[0].split("-")[0] for name in names} == {"toolaxis"}
 
 
@@ -49,8 +49,8 @@ def test_the_tool_library_works_from_where_a_wheel_puts_it(wheel: Path, tmp_path
             f"assert toolaxis.__file__.startswith({str(tmp_path)!r}), toolaxis.__file__\n"
             "from toolaxis.job.inputs.tool_file import library, load_tool\n"
             "assert len(library()) >= 6 and load_tool('torus-12x1').stickout == 60\n"
-            "from toolaxis.machine import catalogue\n"
-            "assert len(catalogue.library()) >= 7 and catalogue.load_machine('mikron-ucp-710').kind == 'table-table'\n"
+            "from toolaxis.machine import library\n"
+            "assert len(library.library()) >= 7 and library.load_machine('mikron-ucp-710').kind == 'table-table'\n"
             "from toolaxis.plan.schema import schema\n"
             "assert schema()['title'] == 'toolaxis plan'\n")
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path,

@@ -55,8 +55,8 @@ assert "numba" not in sys.modules
 def test_a_broken_numba_gives_one_notice(tmp_path: Path) -> None:
     (tmp_path / "numba.py").write_text("raise SystemError('made for another numpy')")
     path = os.pathsep.join([str(tmp_path), str(CORE)])
-    done = subprocess.run([sys.executable, "-c", "from toolaxis.numeric import bspline, polygons, compiled\n"
-                           "assert not compiled.available"], capture_output=True, text=True, timeout=60, check=False,
+    done = subprocess.run([sys.executable, "-c", "from toolaxis.numeric import bspline, polygons, jit\n"
+                           "assert not jit.available"], capture_output=True, text=True, timeout=60, check=False,
                           env={**os.environ, "PYTHONPATH": path})
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("numba cannot be used (made for another numpy): slower numpy code runs instead") == 1

@@ -86,10 +86,10 @@ def test_scripts_find_the_functions_on_documents():
 
 
 def test_without_numba_the_numbers_are_the_same():
-    code = ("import Part, freecad.toolaxis, toolaxis as ta\nfrom toolaxis.numeric import compiled\n"
+    code = ("import Part, freecad.toolaxis, toolaxis as ta\nfrom toolaxis.numeric import jit\n"
             "face, tool = ta.load(Part.read(sys.argv[1])).face(1), ta.Tool.torus(12, 1)\n"
             "widths = ta.strip_width(face, tool, face.grid(2, 2), [0.1, 0.1, 1], 0.02)\n"
-            "sys.__stdout__.write(f'{compiled.available} ' + ' '.join(map(repr, widths.ravel().tolist())))")
+            "sys.__stdout__.write(f'{jit.available} ' + ' '.join(map(repr, widths.ravel().tolist())))")
     answers = [started(code, str(ROOT / "examples" / "saddle.step"), TOOLAXIS_NUMBA=numba) for numba in ("0", "1")]
     assert answers[0][0] == "False"
     plain, compiled = (list(map(float, answer[1:])) for answer in answers)
