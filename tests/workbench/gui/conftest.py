@@ -394,10 +394,6 @@ def desk(_desk):
     panels that were closed must be gone."""
     _desk.errors.clear()
     before = len(_desk.reported())
-    # Whatever opens or closes a panel collects: what is there before a test, most of it libraries, is not looked at
-    # then.  The test before this one held its panels until now, so they are collected before the rest is set aside.
-    gc.collect()
-    gc.freeze()
     yield _desk
     _desk.tidy()
     assert not _desk.errors, _desk.errors

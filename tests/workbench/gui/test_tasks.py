@@ -155,7 +155,7 @@ def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterw
     """A full collection over all objects of FreeCAD and the libraries takes more than 0.1 s."""
     from freecad.toolaxis import tasks
 
-    gc.unfreeze()  # what the desk has set aside
+    assert gc.get_freeze_count() == 0
     usual, first = sys.getswitchinterval(), started(patient)
     second = started(patient)[0]
     desk.wait(lambda: first[1].stages, "it computes")

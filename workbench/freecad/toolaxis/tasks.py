@@ -108,8 +108,7 @@ def clear_away() -> None:
     Panels that were closed leave Python objects of widgets behind, which the bindings hand out again for a new widget
     that lies at a dead one's address; collected later, they would take the new one for dead.
     """
-    if _running:
-        gc.unfreeze()
+    gc.unfreeze()
     gc.collect()
     if _running:
         gc.freeze()
