@@ -11,7 +11,7 @@ from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.task import Task
-from toolaxis.verify.turned_copies import find_copy, measured_on_copy
+from toolaxis.verify.turned_copies import TurnedCopies, measured_on_copy
 from toolaxis.verify.verdict import judge, measure, verdict_on
 
 WIDTH = 2.171571  # R6 r1, lead 10 deg, h = 0.02
@@ -35,6 +35,10 @@ def rectangle(corner, one, two, number):
 
 def named(face, number):
     return replace(face, number=number, label=str(number))
+
+
+def find_copy(source, task):
+    return TurnedCopies().find(source, task)
 
 
 FLOOR = rectangle([-8, -8, 0], [16, 0, 0], [0, 16, 0], 7)
@@ -112,6 +116,17 @@ def test_where_anything_differs_it_is_no_copy(source):
     for around in ((moved_by(beside, 0, 0, 5e-5), hub), (beside, hub, clamp), (hub,),
                    (beside, moved_by(hub, 0.002, 0, 0)), (replace(beside, flip=not beside.flip), hub)):
         assert find_copy(source, replace(good, surroundings=around)) is None
+
+
+def test_turns_that_follow_from_known_ones_are_not_looked_at_again(source):
+    """Two turns of which the hub is its own image make a third one; their errors add up."""
+    turned = TurnedCopies()
+    found = [turned.find(source, copied(source, 72.0 * k)) for k in (1, 2, 3, 4)]
+    assert all(copy is not None for copy in found)
+    errors = [copy.error for copy in found]
+    assert errors == sorted(errors)
+    assert errors[-1] < 5e-5
+    assert [np.allclose(copy.turn.rotation, turn(72.0 * k)[:3, :3], atol=1e-7) for k, copy in enumerate(found, 1)]
 
 
 def test_a_bore_with_a_keyway_is_not_its_own_image(source):

@@ -8,7 +8,6 @@ anew.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -66,9 +65,22 @@ class Turn(NamedTuple):
         """Points after the turn."""
         return np.asarray(points @ self.rotation.T + self.shift)
 
-    def rounded(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Rotation and shift in so many digits that operations of one blade have the same."""
-        return tuple(self.rotation.ravel().round(7).tolist()), tuple(self.shift.round(5).tolist())
+    def after(self, first: "Turn") -> "Turn":
+        """This turn after another one."""
+        return Turn(self.rotation @ first.rotation, self.moved(first.shift), self.error + first.error)
+
+    def is_near(self, other: "Turn") -> bool:
+        """Whether it brings points where another one does, up to the digits of cutter locations."""
+        apart = np.abs(self.rotation - other.rotation).max(), np.abs(self.shift - other.shift).max()
+        return bool(apart[0] <= _AXES and apart[1] <= _TIPS)
+
+
+class OwnTurn(NamedTuple):
+    """A turn that brings a face onto itself but for an error, mm; the face is kept, so that no other gets its identity."""
+
+    face: Face
+    turn: Turn
+    error: float
 
 
 class Copy(NamedTuple):
@@ -86,37 +98,56 @@ class Copy(NamedTuple):
     error: float
 
 
-def find_copy(source: Task, task: Task) -> Copy | None:
-    """How an operation is a copy of another one; None where it is not, or not in all that counts.
+class TurnedCopies:
+    """Finds turned copies, and remembers which turns bring a face onto itself."""
 
-    Parameters
-    ----------
-    source, task : Task
-    """
-    if not _same_inputs(source, task):
-        return None
-    turn = _turn_between(source, task)
-    if turn is None:
-        return None
-    images: dict[int, Face] = {}
-    error = 0.0
-    for role in ("targets", "skin", "touching", "surroundings"):
-        faces, others = getattr(source, role), getattr(task, role)
-        found = _images(faces, others, turn)
-        images |= found
-        reached = {id(face) for face in found.values()}
-        rest = tuple(face for face in others if id(face) not in reached)
-        alone = {id(face) for face in faces if id(face) not in found}
-        if len(faces) != len(others) or {id(face) for face in rest} != alone:
+    def __init__(self) -> None:
+        self._own: dict[tuple[int, bool], list[OwnTurn]] = {}
+
+    def find(self, source: Task, task: Task) -> Copy | None:
+        """How an operation is a copy of another one; None where it is not, or not in all that counts.
+
+        Parameters
+        ----------
+        source, task : Task
+        """
+        if not _same_inputs(source, task):
             return None
-        for face in rest:
-            error = max(error, _own_deviation(face, role != "surroundings", *turn.rounded()))
-            images[id(face)] = face
-    if error > _OWN:
-        return None
-    of_source = (*source.targets, *source.skin, *source.touching, *source.surroundings)
-    names = {face.label: images[id(face)].label for face in of_source}
-    return Copy(turn, images, names, turn.error + _NET + error)
+        turn = _turn_between(source, task)
+        if turn is None:
+            return None
+        images: dict[int, Face] = {}
+        error = 0.0
+        for role in ("targets", "skin", "touching", "surroundings"):
+            faces, others = getattr(source, role), getattr(task, role)
+            found = _images(faces, others, turn)
+            images |= found
+            reached = {id(face) for face in found.values()}
+            rest = tuple(face for face in others if id(face) not in reached)
+            alone = {id(face) for face in faces if id(face) not in found}
+            if len(faces) != len(others) or {id(face) for face in rest} != alone:
+                return None
+            for face in rest:
+                error = max(error, self._own_error(face, role != "surroundings", turn))
+                images[id(face)] = face
+        if error > _OWN:
+            return None
+        of_source = (*source.targets, *source.skin, *source.touching, *source.surroundings)
+        names = {face.label: images[id(face)].label for face in of_source}
+        return Copy(turn, images, names, turn.error + _NET + error)
+
+    def _own_error(self, face: Face, rim: bool, turn: Turn) -> float:
+        """By how much a face after a turn misses itself, mm, as the sum of two turns where their errors are known."""
+        known = self._own.setdefault((id(face), rim), [])
+        for one in known:
+            if one.turn.is_near(turn):
+                return one.error
+            for two in known:
+                if one.turn.after(two.turn).is_near(turn):
+                    known.append(OwnTurn(face, turn, one.error + two.error))
+                    return one.error + two.error
+        known.append(OwnTurn(face, turn, _own_deviation(face, rim, turn)))
+        return known[-1].error
 
 
 def _same_inputs(source: Task, task: Task) -> bool:
@@ -175,23 +206,21 @@ def _is_image(face: Face, other: Face, turn: Turn) -> bool:
     return bool(np.abs(turn.moved(_net(face)) - _net(other)).max() <= _NET)
 
 
-@lru_cache(maxsize=256)
-def _own_deviation(face: Face, rim: bool, rotation: tuple[float, ...], shift: tuple[float, ...]) -> float:
+def _own_deviation(face: Face, rim: bool, turn: Turn) -> float:
     """By how much a face after a turn misses itself, mm: an end face or a bore does not, whatever its parameters.
 
     Looked at both ways on points all over the face and along its border, which with `rim` must fall on its border
     again; infinite where it faces the other way there.
     """
-    forth = np.array(rotation).reshape(3, 3)
     rays = face_rays(face, face.diagonal / _ACROSS)
     uv = np.concatenate([rays.uv, border_points(face, _RIM)])
     point, normal = face.evaluate(uv).point, face.normal(uv)
     lines = [line_of(face, loop) for loop in face.outline]
     worst = 0.0
-    for turn, move in ((forth, np.array(shift)), (forth.T, -forth.T @ np.array(shift))):
-        moved = point @ turn.T + move
+    for rotation, shift in ((turn.rotation, turn.shift), (turn.rotation.T, -turn.rotation.T @ turn.shift)):
+        moved = point @ rotation.T + shift
         found = nearest(face, moved)
-        if dot(face.normal(found.uv), normal @ turn.T).min() < _SAME_WAY:
+        if dot(face.normal(found.uv), normal @ rotation.T).min() < _SAME_WAY:
             return float("inf")
         worst = max(worst, float(found.distance.max()))
         if rim:

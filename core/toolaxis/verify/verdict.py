@@ -231,7 +231,11 @@ def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) 
     find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
                    task.touching, enough=task.tolerance.gouge, threads=threads, progress=progress)
     found = find()
-    return find(taken_off=depths.missed_behind_edges) if -found.distance > SMALLEST else found
+    if -found.distance <= SMALLEST:
+        return found
+    face = next(face for face in task.touching if face.label == found.face)
+    missed = depths.missed_near(face, np.array(found.point))
+    return find(taken_off=depths.missed_behind_edges) if missed else found
 
 
 def _needed(task: Task, name: str) -> float:

@@ -20,7 +20,7 @@ from toolaxis.shape.joining.smooth_skins import own_pieces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.task import Task
-from toolaxis.verify.turned_copies import Measured, find_copy, measured_on_copy
+from toolaxis.verify.turned_copies import Measured, TurnedCopies, measured_on_copy
 from toolaxis.verify.verdict import OperationVerdict, Verdict, measure, not_measured, verdict_on
 
 Array = NDArray[np.float64]
@@ -73,6 +73,7 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     done = [op for op in plan.operations if op.path is not None]
     limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
     copies = {} if plan.blades is None or plan.obstacles else plan.blades.copies
+    turned = TurnedCopies()
     # By the operation of which others are turned copies, what was measured of it, or of the first of them.
     known: dict[int, tuple[Task, Measured]] = {}
     found: list[OperationVerdict] = []
@@ -83,7 +84,7 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
                 task = _task(plan, op, done[index - 1] if index else None)
                 within = progress.within(name)
                 family = copies.get(op.number, op.number)
-                verdict = _as_copy(task, known[family], within) if family in known else None
+                verdict = _as_copy(turned, task, known[family], within) if family in known else None
                 if verdict is None:
                     measured = measure(task, spacing, threads, within)
                     verdict = verdict_on(task, measured, within)
@@ -99,9 +100,10 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     return Verdict(tuple(found))
 
 
-def _as_copy(task: Task, source: tuple[Task, Measured], progress: Progress) -> OperationVerdict | None:
+def _as_copy(turned: TurnedCopies, task: Task, source: tuple[Task, Measured],
+             progress: Progress) -> OperationVerdict | None:
     """The verdict on a turned copy of an operation that was measured; None where it is none, or would not pass so."""
-    copy = find_copy(source[0], task)
+    copy = turned.find(source[0], task)
     measured = None if copy is None else measured_on_copy(task, source[1], copy)
     found = None if measured is None else verdict_on(task, measured, progress)
     return found if found is not None and found.passed else None
