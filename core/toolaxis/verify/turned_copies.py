@@ -76,7 +76,7 @@ class Turn(NamedTuple):
 
 
 class OwnTurn(NamedTuple):
-    """A turn that brings a face onto itself but for an error, mm; the face is kept, so that no other gets its identity."""
+    """A turn that brings a face onto itself but for an error, mm.  Holding the face keeps its identity from others."""
 
     face: Face
     turn: Turn
