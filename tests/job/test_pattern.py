@@ -4,11 +4,13 @@ import json
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.job.planning.blade_clearances import tightest
 from toolaxis.job.planning.blade_pattern import recognised, shared_out, too_narrow
@@ -26,6 +28,9 @@ from toolaxis.shape.analytic import Cylinder
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.part import Body, Part
+from toolaxis.verify.task import Task
+from toolaxis.verify.turned_copies import Measured
+from toolaxis.verify.verdict import measure
 
 COUNT = 4
 BLISK = Path(__file__).parents[2] / "examples" / "blisk.step"
@@ -121,6 +126,33 @@ def test_the_judge_passes_every_blade(plan: Plan) -> None:
     verdict = ta.verify(plan, spacing=1.0)
     assert len(verdict.operations) == 2 * COUNT
     assert verdict.passed, verdict.reasons
+
+
+def test_what_is_the_same_at_each_blade_is_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    tool = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
+    made = ta.plan(wheel(), tool, 0.15, regions=1)
+    measured = []
+
+    def counted(task: Task, *more: Any) -> Measured:
+        measured.append(task.name)
+        return measure(task, *more)
+
+    monkeypatch.setattr("toolaxis.job.output.verify.measure", counted)
+    verdict = ta.verify(made, spacing=1.0)
+    assert verdict.passed, verdict.reasons
+    assert measured == [op.name for op in made.operations[:2]]
+    assert [op.name for op in verdict.operations] == [op.name for op in made.operations]
+    assert [op.faces for op in verdict.operations] == [(op.face.label,) for op in made.operations]
+    spoilt = made.operations[4]
+    assert spoilt.path is not None and made.blades is not None and spoilt.number in made.blades.copies
+    tips = spoilt.path.cl.copy()
+    cut = np.flatnonzero(spoilt.path.kind == Motion.CUT)
+    tips[cut[len(cut) // 2]] -= 0.05 * spoilt.path.normal[cut[len(cut) // 2]]
+    operations = list(made.operations)
+    operations[4] = replace(spoilt, path=replace(spoilt.path, cl=tips))
+    verdict = ta.verify(replace(made, operations=tuple(operations)), spacing=1.0)
+    assert measured[2:] == [*measured[:2], spoilt.name]
+    assert [op.passed for op in verdict.operations] == [op.number != spoilt.number for op in made.operations]
 
 
 def test_figures_of_copies_are_proven_and_no_better_than_the_originals(plan: Plan) -> None:

@@ -102,6 +102,18 @@ class Depths:
             off[rows] = taken_off(self._behind[int(k)], point[rows])
         return off
 
+    def missed_near(self, face: Face, point: Array) -> bool:
+        """Whether a face behind a convex edge stands out over those that the cutter may touch, near a point of it.
+
+        Parameters
+        ----------
+        face : Face
+        point : (3,) array
+            mm
+        """
+        steps = steps_of(face, (*self.task.targets, *self.task.skin), point[None])
+        return bool(taken_off(steps, point[None])[0] > 0.0)
+
     @cached_property
     def _behind(self) -> tuple[Steps, ...]:
         lower = (*self.task.targets, *self.task.skin)

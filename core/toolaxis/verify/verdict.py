@@ -21,6 +21,7 @@ from toolaxis.verify.material_removal import Remains, Removal
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.task import Task, motion_of, spot
+from toolaxis.verify.turned_copies import Measured
 
 Array = NDArray[np.float64]
 
@@ -185,27 +186,38 @@ def judge(task: Task, spacing: float | None = None, threads: int = 1,
     spacing, threads, progress
         As for `verify`.
     """
+    return verdict_on(task, measure(task, spacing, threads, progress), progress)
+
+
+def measure(task: Task, spacing: float | None = None, threads: int = 1, progress: Progress = NO_PROGRESS) -> Measured:
+    """Measure one operation: what it leaves, how deep it cuts, and how far its tool stays from all else.
+
+    Parameters
+    ----------
+    task : Task
+    spacing, threads, progress
+        As for `verify`.
+    """
     cl = (task.tips, task.axes, task.kind)
     cutter = Removal(cl, task.profile, threads=threads, progress=progress)
     cut = partial(cutter.along, height=_standing(task))
 
     depths = Depths(task, cut)
 
-    def measure(face: Face, point: Array, normal: Array) -> Remains:
+    def along(face: Face, point: Array, normal: Array) -> Remains:
         left = cut((point + task.allowance * normal, normal), depth=task.depth)
         depths.correct(face, (point, normal), left)
         return left
 
     left = Declared(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
-    targets = tuple(surface_map(face, partial(measure, face), spacing, declared=partial(left.holds, face))
+    targets = tuple(surface_map(face, partial(along, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
-    skin = [_kept_of(surface_map(face, partial(measure, face), spacing, heights=False)) for face in task.skin]
+    skin = tuple(_kept_of(surface_map(face, partial(along, face), spacing, heights=False)) for face in task.skin)
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
     edge = _behind_edges(task, depths, threads, progress)
     uncertainty = cutter.uncertainty + max(face.tolerance for face in (*task.targets, *task.skin))
-    rooms = {**_rooms(task, threads, progress), **machine_rooms(task, progress)}
-    return _summed(task, (targets, skin), (rooms, edge, link_cut), uncertainty)
+    return Measured(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty)
 
 
 def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
@@ -219,7 +231,11 @@ def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) 
     find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
                    task.touching, enough=task.tolerance.gouge, threads=threads, progress=progress)
     found = find()
-    return find(taken_off=depths.missed_behind_edges) if -found.distance > SMALLEST else found
+    if -found.distance <= SMALLEST:
+        return found
+    face = next(face for face in task.touching if face.label == found.face)
+    missed = depths.missed_near(face, np.array(found.point))
+    return find(taken_off=depths.missed_behind_edges) if missed else found
 
 
 def _needed(task: Task, name: str) -> float:
@@ -273,11 +289,19 @@ def _with_edge(task: Task, places: tuple[Place, ...], edge: Clearance, least: fl
     return tuple(sorted((behind, *places), key=lambda place: -place.value)[:10])
 
 
-def _summed(task: Task, found: tuple[tuple[SurfaceMap, ...], Sequence[tuple[SurfaceMap, int]]],
-            room: tuple[dict[str, Clearance | str], Clearance, Place | None], uncertainty: float) -> OperationVerdict:
-    targets, skin = found[0], tuple(one for one, _ in found[1])
-    count = sum(len(one.uv) for one in targets) + sum(rays for _, rays in found[1])
-    rooms, edge, link_cut = room
+def verdict_on(task: Task, measured: Measured, progress: Progress = NO_PROGRESS) -> OperationVerdict:
+    """Hold what was measured of an operation against what is allowed; the machine is looked at here.
+
+    Parameters
+    ----------
+    task : Task
+    measured : Measured
+    progress : Progress
+    """
+    targets, edge, link_cut = measured.targets, measured.edge, measured.link_cut
+    skin, uncertainty = tuple(one for one, _ in measured.skin), measured.uncertainty
+    count = sum(len(one.uv) for one in targets) + sum(rays for _, rays in measured.skin)
+    rooms = {**measured.rooms, **machine_rooms(task, progress)}
     limit, maps = FACTOR * task.scallop, (*targets, *skin)
     area = sum(one.area for one in targets)
     left = sum(one.left for one in targets)

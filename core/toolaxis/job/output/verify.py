@@ -20,7 +20,8 @@ from toolaxis.shape.joining.smooth_skins import own_pieces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.maps import Place, Zone
 from toolaxis.verify.task import Task
-from toolaxis.verify.verdict import OperationVerdict, Verdict, judge, not_measured
+from toolaxis.verify.turned_copies import Measured, TurnedCopies, measured_on_copy
+from toolaxis.verify.verdict import OperationVerdict, Verdict, measure, not_measured, verdict_on
 
 Array = NDArray[np.float64]
 
@@ -71,13 +72,25 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     """
     done = [op for op in plan.operations if op.path is not None]
     limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+    copies = {} if plan.blades is None or plan.obstacles else plan.blades.copies
+    turned = TurnedCopies()
+    # By the operation of which others are turned copies, what was measured of it, or of the first of them.
+    known: dict[int, tuple[Task, Measured]] = {}
     found: list[OperationVerdict] = []
     for index, op in enumerate(done):
         name = f"{op.name} ({index + 1} of {len(done)})"
         try:
             with heard(progress):
                 task = _task(plan, op, done[index - 1] if index else None)
-                found.append(judge(task, spacing, threads, progress.within(name)))
+                within = progress.within(name)
+                family = copies.get(op.number, op.number)
+                verdict = _as_copy(turned, task, known[family], within) if family in known else None
+                if verdict is None:
+                    measured = measure(task, spacing, threads, within)
+                    verdict = verdict_on(task, measured, within)
+                    if copies:
+                        known.setdefault(family, (task, measured))
+                found.append(verdict)
         except Cancelled:
             if not found:
                 raise
@@ -85,6 +98,15 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
         except Exception as reason:  # nothing is known of this operation; the others are judged
             found.append(not_measured(op.name, limits, fault(reason).sentence))
     return Verdict(tuple(found))
+
+
+def _as_copy(turned: TurnedCopies, task: Task, source: tuple[Task, Measured],
+             progress: Progress) -> OperationVerdict | None:
+    """The verdict on a turned copy of an operation that was measured; None where it is none, or would not pass so."""
+    copy = turned.find(source[0], task)
+    measured = None if copy is None else measured_on_copy(task, source[1], copy)
+    found = None if measured is None else verdict_on(task, measured, progress)
+    return found if found is not None and found.passed else None
 
 
 def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Task:
