@@ -34,8 +34,9 @@ def test_a_fault_in_planning(job: list[dict[str, object]], tmp_path: Path, monke
 
 
 def test_a_fault_in_judging(job: list[dict[str, object]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = judge.judge
-    monkeypatch.setattr(judge, "judge", lambda task, *rest: whole(task, *rest) if task.name == "op01-face1" else 1 // 0)
+    whole = judge.measure
+    monkeypatch.setattr(judge, "measure", lambda task, *rest: whole(task, *rest) if task.name == "op01-face1" else
+                        1 // 0)
     answer = carried_out(read_jobs(job)[0].task(), tmp_path, {})
     assert answer.outcome == "incomplete" and "op02-face2: failed: ZeroDivisionError" in answer.reason
     assert [op["passed"] for op in json.loads(answer.files["verdict.json"])["operations"]] == [True, False]

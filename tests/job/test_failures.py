@@ -211,14 +211,14 @@ def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(monkeypatch:
 
 
 def test_the_judge_s_own_fault_is_told_of_the_operation_that_it_was_about(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), judge.judge
+    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), judge.measure
 
-    def _judge(task, *rest):
+    def _measure(task, *rest):
         if task.name.endswith("face2"):
             raise MemoryError if rest[1] == 1 else IndexError("planted")
         return whole(task, *rest)
 
-    monkeypatch.setattr(judge, "judge", _judge)
+    monkeypatch.setattr(judge, "measure", _measure)
     for threads, said in ((1, "out of memory"), (2, "IndexError: planted")):
         verdict = ta.verify(made, threads=threads)
         assert [op.passed for op in verdict.operations] == [True, False, True] and not verdict.passed
