@@ -111,7 +111,7 @@ class Desk:
         self.pump(0.5)
         FreeCADGui.activateWorkbench("ToolAxisWorkbench")
         self.pump(0.3)
-        self.errors, self.held, self.box = [], [], None
+        self.errors, self.held = [], []
         self.opened, self.made = [], []
         self._record()
         self.reports = [w for w in self.children(self.widgets.QTextEdit)  # the window keeps them to its end
@@ -163,7 +163,8 @@ class Desk:
         """All widgets of a class, in a widget if one is given.
 
         Without one the window is not asked: its Python object would keep those of all that was found in it, which are
-        handed out again, when they are dead, for other widgets at their addresses.
+        handed out again, when they are dead, for other widgets at their addresses.  Even so an answer is a risk, see
+        `standard_button`: ask once in a test, not again and again.
         """
         with nothing_ends():
             found = self.app.allWidgets() if within is None else within.findChildren(kind)
@@ -229,17 +230,14 @@ class Desk:
             self.app.sendEvent(widget, QtGui.QKeyEvent(kind, key, self.qt.Qt.NoModifier, text))
 
     def standard_button(self, name):
-        """A button in the bar of the task panel."""
-        from freecad.toolaxis.tasks import clear_away
+        """A button in the bar of the task panel, from the panel that FreeCAD gave the bar to.
 
-        for _ in range(2):
-            with nothing_ends():
-                for box in self.children(self.widgets.QDialogButtonBox):
-                    button = box.button(getattr(self.widgets.QDialogButtonBox, name))
-                    if self.is_a(button, self.widgets.QPushButton) and button.isVisible():
-                        self.box = box  # the button's Python object ends with that of its box
-                        return button
-            clear_away()
+        Qt is not asked for all its widgets: among Python's objects of a thousand there may be one of a dead widget,
+        which stands for another at an address within its own, and FreeCAD ends when that one is called.
+        """
+        for one in filter(None, [known() for known in self.opened]):
+            if getattr(one, "buttons", None) is not None:
+                return one.buttons.button(getattr(self.widgets.QDialogButtonBox, name))
         raise AssertionError(f"there is no button {name}")
 
     def dialog_text(self, action):
@@ -367,7 +365,6 @@ class Desk:
         for name in list(FreeCAD.listDocuments()):
             FreeCAD.closeDocument(name)
         self.pump(0.1)
-        self.box = None
         self.held.clear()  # else they would be handed out for widgets that lie at their addresses later
         clear_away()
 

@@ -1,13 +1,13 @@
 """What the task panels have in common: the document is watched, work is left, and everything is let go of once."""
 
 import FreeCADGui
-from PySide import QtCore
+from PySide import QtCore, QtWidgets
 
 from .watching import Watch
 
 
 class Panel:
-    """A task panel on a document; FreeCAD calls reject and isAllowedAlterDocument.
+    """A task panel on a document; FreeCAD calls reject, isAllowedAlterDocument and modifyStandardButtons.
 
     Parameters
     ----------
@@ -19,10 +19,16 @@ class Panel:
     def __init__(self, document, form):
         self.document, self.form = document, form
         self.work, self.over = None, False
+        self.buttons = None
 
     def isAllowedAlterDocument(self):
         """Other commands may change the document meanwhile; the panel notices."""
         return True
+
+    def modifyStandardButtons(self, box):
+        """Called by FreeCAD with the box of the panel's buttons."""
+        if isinstance(box, QtWidgets.QDialogButtonBox):  # else it is Python's object of a dead widget, see load_form
+            self.buttons = box
 
     def reject(self):
         """Stop what runs, and close."""
@@ -59,6 +65,7 @@ class Panel:
         self.over = True
         self.watch.end()
         self._leave()
+        self.buttons = None
         self._let_go()
 
     def _let_go(self):

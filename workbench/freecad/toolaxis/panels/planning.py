@@ -55,7 +55,7 @@ class PlanPanel(Panel):
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
         self.ongoing = Ongoing(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
-        self.computed = self.buttons = None
+        self.computed = None
         self.outrun = False
         self._fill(inputs)
         self._connect()
@@ -70,8 +70,7 @@ class PlanPanel(Panel):
 
     def modifyStandardButtons(self, box):
         """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan, and `accept` refuses."""
-        if isinstance(box, QtWidgets.QDialogButtonBox):  # else it is Python's object of a dead widget, see load_form
-            self.buttons = box
+        super().modifyStandardButtons(box)
         self._show_state()
 
     def accept(self):
@@ -346,7 +345,6 @@ class PlanPanel(Panel):
         self.preview.forget()
 
     def _let_go(self):
-        self.buttons = None
         self.view.leave()
         self.preview.clear()
 
