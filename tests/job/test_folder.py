@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, OF_VERDICT, read_plan, staged, write_plan
 from toolaxis.plan.plan import Plan
 
 
@@ -44,8 +44,19 @@ def test_an_earlier_plan_is_replaced_and_the_users_files_stay(small_plan: Plan, 
     with staged(folder) as stage:
         write_plan(small_plan, stage.folder)
         assert "op07-face9.apt" in names(folder), "the old plan stands until the new one is whole"
-        stage.publish()
+        stage.publish(OF_PLAN)
     assert names(folder) == ["notes.txt", "op01-face1.apt", "part.json", "plan.json"]
+
+
+def test_an_earlier_verdict_goes_with_its_pictures_and_the_plan_stays(folder: Path) -> None:
+    before = names(folder)
+    for name in ("verdict.json", "verdict-maps.npz", "op02-face2-verdict.png"):
+        (folder / name).write_text("old")
+    (folder / "op01-face1-passes.png").write_text("of the plan")
+    with staged(folder) as stage:
+        (stage.folder / "verdict.json").write_text("{}")
+        stage.publish(OF_VERDICT)
+    assert names(folder) == sorted([*before, "op01-face1-passes.png", "verdict.json"])
 
 
 def test_an_earlier_plan_stays_when_the_new_one_fails(small_plan: Plan, folder: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.output.pictures import draw_verdict
 from toolaxis.job.planning.blade_clearances import tightest
 from toolaxis.job.planning.blade_pattern import recognised, shared_out, too_narrow
 from toolaxis.job.planning.edit_axis import with_operations
@@ -128,7 +129,8 @@ def test_the_judge_passes_every_blade(plan: Plan) -> None:
     assert verdict.passed, verdict.reasons
 
 
-def test_what_is_the_same_at_each_blade_is_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_the_same_at_each_blade_is_measured_and_drawn_once(monkeypatch: pytest.MonkeyPatch,
+                                                                   tmp_path: Path) -> None:
     tool = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40, holder=[(8, 0), (8, 30)])
     made = ta.plan(wheel(), tool, 0.15, regions=1)
     measured = []
@@ -141,6 +143,8 @@ def test_what_is_the_same_at_each_blade_is_measured_once(monkeypatch: pytest.Mon
     verdict = ta.verify(made, spacing=1.0)
     assert verdict.passed, verdict.reasons
     assert measured == [op.name for op in made.operations[:2]]
+    draw_verdict(made, verdict, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"{name}-verdict.png" for name in measured]
     assert [op.name for op in verdict.operations] == [op.name for op in made.operations]
     assert [op.faces for op in verdict.operations] == [(op.face.label,) for op in made.operations]
     spoilt = made.operations[4]
@@ -153,6 +157,8 @@ def test_what_is_the_same_at_each_blade_is_measured_once(monkeypatch: pytest.Mon
     verdict = ta.verify(replace(made, operations=tuple(operations)), spacing=1.0)
     assert measured[2:] == [*measured[:2], spoilt.name]
     assert [op.passed for op in verdict.operations] == [op.number != spoilt.number for op in made.operations]
+    draw_verdict(made, verdict, tmp_path)
+    assert (tmp_path / f"{spoilt.name}-verdict.png").is_file()
 
 
 def test_figures_of_copies_are_proven_and_no_better_than_the_originals(plan: Plan) -> None:

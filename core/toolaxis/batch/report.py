@@ -74,7 +74,7 @@ def report_batch(folder: Path, file: Path | None = None, progress: Progress = NO
         leaves |= {planned[k]["job"]: Leaf("", [], f"no page: {fault.sentence}") for k, fault in made.faults.items()}
         text = batch_page(folder.resolve().name, records, leaves)
         (stage.folder / target.name).write_text(text, encoding="utf-8")
-        stage.publish(clear=False)
+        stage.publish()
     return target
 
 

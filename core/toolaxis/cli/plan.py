@@ -8,7 +8,7 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled
-from toolaxis.job.files.plan_folder import PLAN, read_json, staged, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, staged, write_plan
 from toolaxis.job.inputs.spec import Spec, by_strategy, roughness_for
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
@@ -57,7 +57,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             if not given.no_pictures and made.outcome != "cancelled":
                 _draw(made, stage.folder, progress)
         with writing():
-            stage.publish()
+            stage.publish(OF_PLAN)
     return _told(made, given)
 
 

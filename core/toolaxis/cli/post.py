@@ -44,7 +44,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     with staged(folder) as stage:
         for name, text in files.items():
             (stage.folder / name).write_text(text, encoding="utf-8")
-        stage.publish(clear=False)
+        stage.publish()
     missing = [op.name for op in plan.operations if not op.done]
     if given.json:
         print_json({"dialect": given.dialect, "files": [str(folder / name) for name in files], "verdict": verdict,

@@ -8,7 +8,7 @@ from toolaxis.cli.display import shown_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import Cancelled
-from toolaxis.job.files.plan_folder import read_plan, staged, write_json
+from toolaxis.job.files.plan_folder import OF_VERDICT, read_plan, staged, write_json
 from toolaxis.job.files.verdict_maps import write_views
 from toolaxis.job.output.verify import not_judged, passes, verdict_document, verify_plan
 from toolaxis.plan.plan import Plan
@@ -46,7 +46,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             if not (given.no_pictures or verdict.unjudged):
                 _draw(plan, verdict, stage.folder, progress)
             with writing():
-                stage.publish(clear=False)
+                stage.publish(OF_VERDICT)
     if given.json:
         print_json(document)
     else:

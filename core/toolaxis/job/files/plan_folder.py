@@ -5,7 +5,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,9 +23,10 @@ from toolaxis.post.read_apt import read_apt
 from toolaxis.shape.part import Part
 
 PLAN = "plan.json"
-#: What a folder may hold of an earlier plan; the rest in it is the user's and stays.
-_OURS = (PLAN, "plan.step", "plan.glb", "verdict.json", "verdict-maps.npz", "report.html", "part.*", "obstacle-*.*",
-         "op*.apt", "failed-*.txt", "program-*.*", "setup-*.md", "*.png")
+#: What a folder may hold of an earlier plan, and of an earlier verdict; the rest in it is the user's and stays.
+OF_PLAN = (PLAN, "plan.step", "plan.glb", "verdict.json", "verdict-maps.npz", "report.html", "part.*", "obstacle-*.*",
+           "op*.apt", "failed-*.txt", "program-*.*", "setup-*.md", "*.png")
+OF_VERDICT = ("verdict.json", "verdict-maps.npz", "op*-verdict.png")
 
 
 @dataclass(frozen=True)
@@ -43,21 +44,20 @@ class Stage:
     folder: Path
     target: Path
 
-    def publish(self, clear: bool = True) -> None:
+    def publish(self, instead_of: Sequence[str] = ()) -> None:
         """Move every file to its place, plan.json last, so that a plan.json is never without its files.
 
         Parameters
         ----------
-        clear : bool
-            Remove an earlier plan's files first.
+        instead_of : sequence of str
+            Patterns of files to remove first: `OF_PLAN` or `OF_VERDICT`.
         """
         if not self.target.exists():
             os.replace(self.folder, self.target)
             return
-        if clear:
-            for pattern in _OURS:
-                for path in self.target.glob(pattern):
-                    path.unlink()
+        for pattern in instead_of:
+            for path in self.target.glob(pattern):
+                path.unlink()
         names = sorted((path.name for path in self.folder.iterdir()), key=lambda name: (name == PLAN, name))
         for name in names:
             os.replace(self.folder / name, self.target / name)

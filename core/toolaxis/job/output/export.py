@@ -74,7 +74,7 @@ def export(plan: Plan | str | PathLike[str], file: str | PathLike[str], *, colou
             _write_step(plan, made, name)
         else:
             made.write_bytes(_gltf(plan, colour, views, name))
-        stage.publish(clear=False)
+        stage.publish()
     return target
 
 

@@ -117,7 +117,7 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
 
 
 def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress = NO_PROGRESS) -> None:
-    """Draw the scallop and gouge maps of every operation.
+    """Draw the scallop and gouge maps of the operations; a turned copy that passes looks as the one it is a copy of.
 
     Parameters
     ----------
@@ -127,10 +127,11 @@ def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress 
     progress : Progress
     """
     axes = {op.name: op.orientation.axis for op in plan.operations}
-    for index, found in enumerate(verdict.operations):
-        progress.report("drawing", index, len(verdict.operations))
-        if not found.maps:
-            continue
+    copies = {} if plan.blades is None else plan.blades.copies
+    turned = {op.name for op in plan.operations if op.number in copies}
+    drawn = [found for found in verdict.operations if found.maps and not (found.passed and found.name in turned)]
+    for index, found in enumerate(drawn):
+        progress.report("drawing", index, len(drawn))
         axis = axes[found.name]
         assert axis is not None
         targets = found.maps[:len(found.faces)]

@@ -71,7 +71,7 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
         text = page(plan, _beside(plan, folder, progress), folder.resolve().name)
     with staged(target.parent) as stage:
         (stage.folder / target.name).write_text(text, encoding="utf-8")
-        stage.publish(clear=False)
+        stage.publish()
     return target
 
 
