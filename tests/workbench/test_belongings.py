@@ -5,10 +5,11 @@ import zipfile
 import FreeCAD
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis import bridge
-from freecad.toolaxis.objects import frames, is_operation
-from freecad.toolaxis.objects.belongings import FRAMES, belongings, child, frame_of
-from freecad.toolaxis.objects.frames import kind_of_frame
+from freecad.toolaxis.document import work_coordinates
+from freecad.toolaxis.document.children import FRAMES, belongings, child, frame_of
+from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.document.work_coordinates import kind_of_frame
+from freecad.toolaxis.services import api
 
 LIMITS = "cone:0.2,0.1,1,2"
 FRAME, PASSES, TOOL = "its work coordinate system is missing", "its passes are missing", "Part::FeaturePython"
@@ -32,7 +33,7 @@ def whole(operation):
     """Whether an operation has all that stands after planning, in its place and valid."""
     document = operation.Document
     frame, passes, tool = frame_of(operation), child(operation, "Path::Feature"), child(operation, TOOL)
-    assert tool.Passes == passes and passes.Path.Size > 10 and not operation.Stale and not bridge.is_stale(operation)
+    assert tool.Passes == passes and passes.Path.Size > 10 and not operation.Stale and not api.is_stale(operation)
     assert not [thing.Name for thing in document.Objects if "Invalid" in thing.State]
     part = operation.Faces[0][0]
     part.Placement.Base = part.Placement.Base + Vector(3, 4, 5)
@@ -47,11 +48,11 @@ def test_what_is_deleted_is_told_at_once_and_made_again(document, operation, kin
     thing = frame_of(operation) if kind == "frame" else child(operation, "Path::Feature")
     document.removeObject(thing.Name)
     assert operation.Stale and any(words in reason for reason in operation.StaleReasons)
-    assert bridge.is_stale(operation)
+    assert api.is_stale(operation)
     document.recompute()
     assert not [other.Name for other in document.Objects if "Invalid" in other.State]
     assert operation.Stale and [words in reason for reason in operation.StaleReasons] == [True]
-    assert bridge.recompute(operation) == [operation]
+    assert api.recompute(operation) == [operation]
     assert whole(operation)
 
 
@@ -62,16 +63,16 @@ def test_both_deleted_and_what_is_dragged_out_of_the_operation(document, operati
     document.recompute()
     assert len(operation.StaleReasons) == 2 and PASSES in operation.StaleReasons
     document.removeObject(passes.Name)
-    bridge.recompute(operation)
+    api.recompute(operation)
     assert whole(operation)
 
 
 def test_the_tool_or_a_map_may_be_deleted(document, operation):
-    bridge.verify(operation)
+    api.verify(operation)
     for kind in (TOOL, "Mesh::Feature"):
         document.removeObject(child(operation, kind).Name)
     document.recompute()
-    assert not operation.Stale and not bridge.is_stale(operation)
+    assert not operation.Stale and not api.is_stale(operation)
 
 
 @pytest.mark.parametrize("undo", [0, 1])
@@ -86,7 +87,7 @@ def test_undo_brings_what_was_deleted_back_with_the_mark(document, operation, un
     if undo:
         document.undo()
         document.recompute()
-        assert names(document) == before and not operation.Stale and not bridge.is_stale(operation)
+        assert names(document) == before and not operation.Stale and not api.is_stale(operation)
         document.redo()
         assert operation.Stale and frame_of(operation) is None
         document.undo()
@@ -95,7 +96,7 @@ def test_undo_brings_what_was_deleted_back_with_the_mark(document, operation, un
 
 
 def test_an_operation_takes_with_it_what_belongs_to_it(document, parts, part, operation):
-    bridge.verify(operation)
+    api.verify(operation)
     other = parts.planned(document, (part, parts.sculptured_name(part)))[0]
     note = document.addObject("App::FeaturePython", "Note")
     operation.addObject(note)
@@ -114,7 +115,7 @@ def test_an_operation_takes_with_it_what_belongs_to_it(document, parts, part, op
 def test_undo_and_redo_of_a_deleted_operation(document, parts, part, transaction):
     document.UndoMode = 1
     made = parts.planned(document, (part, parts.sculptured_name(part)))[0]
-    bridge.verify(made)
+    api.verify(made)
     before, name = names(document), made.Name
     if transaction:
         document.openTransaction("Delete")
@@ -133,7 +134,7 @@ def test_undo_and_redo_of_a_deleted_operation(document, parts, part, transaction
     document.undo()
     document.recompute()
     again = document.getObject(name)
-    assert bridge.verify(again).passed and whole(again)
+    assert api.verify(again).passed and whole(again)
 
 
 def test_undo_of_planning_and_redo_again(document, parts, part):
@@ -186,8 +187,8 @@ def test_a_frame_that_cannot_be_opened_is_told_and_made_again(document, operatio
     try:
         again = next(thing for thing in opened.Objects if is_operation(thing))
         assert frame_of(again) is None
-        assert again.Stale and FRAME in again.StaleReasons[0] and bridge.is_stale(again)
-        bridge.recompute(again)
+        assert again.Stale and FRAME in again.StaleReasons[0] and api.is_stale(again)
+        api.recompute(again)
         assert frame_of(again).TypeId == kind_of_frame(opened) and whole(again)
         assert sorted(kinds(opened)) == before, "nothing of the lost frame stays"
     finally:
@@ -210,13 +211,13 @@ def test_what_a_lost_frame_left_behind_goes_with_its_operation_alone(document, p
 def test_a_frame_of_the_other_kind_is_kept(document, parts, part, monkeypatch):
     import _PartDesign  # noqa: F401
 
-    monkeypatch.setattr(frames, "kind_of_frame", lambda _: FRAMES[-1])
+    monkeypatch.setattr(work_coordinates, "kind_of_frame", lambda _: FRAMES[-1])
     made = parts.planned(document, (part, parts.sculptured_name(part)), limits=LIMITS)[0]
     monkeypatch.undo()
     frame = frame_of(made)
-    assert frame.TypeId == FRAMES[-1] and not bridge.is_stale(made)
+    assert frame.TypeId == FRAMES[-1] and not api.is_stale(made)
     made.Scallop = 0.4
-    bridge.recompute(made)
+    api.recompute(made)
     assert frame_of(made) == frame and whole(made)
 
 

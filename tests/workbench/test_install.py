@@ -66,7 +66,8 @@ def test_an_installed_library_serves_where_the_clone_has_none(tmp_path):
     """The add-on's folder alone, with core somewhere else on the path."""
     copy = tmp_path / "Mod" / "workbench" / "freecad" / "toolaxis"
     copy.mkdir(parents=True)
-    (copy / "__init__.py").write_text((ROOT / "workbench" / "freecad" / "toolaxis" / "__init__.py").read_text())
+    for path in (ROOT / "workbench" / "freecad" / "toolaxis").glob("*.py"):
+        (copy / path.name).write_text(path.read_text())
     code = ("import freecad\nsys.modules.pop('freecad.toolaxis', None)\nfreecad.__path__.insert(0, sys.argv[1])\n"
             "sys.path[:] = [p for p in sys.path if not p.endswith('/core')] + [sys.argv[2]]\n"
             "import freecad.toolaxis as addon, toolaxis\n"

@@ -4,9 +4,9 @@ import numpy as np
 import Part
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis.meetings import DEPTH, Copy
-from freecad.toolaxis.objects.passes import Stations
-from freecad.toolaxis.onpasses import bumps
+from freecad.toolaxis.document.passes import Stations
+from freecad.toolaxis.services.collisions import DEPTH, Copy
+from freecad.toolaxis.services.path_collisions import bumps
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath

@@ -1,7 +1,7 @@
 """How long a computation may still take, from reports with times that are made up."""
 
 import pytest
-from freecad.toolaxis.remaining import Remaining, clock
+from freecad.toolaxis.services.time_left import Remaining, clock
 
 
 def test_nothing_is_said_of_what_is_soon_done():

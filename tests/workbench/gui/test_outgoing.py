@@ -109,17 +109,17 @@ def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
 @pytest.fixture
 def leaning(desk, operation, _recalling):
     """A second operation, on a turned copy of the part, so that the machine has to index."""
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.services import api
 
     document, part = operation.Document, operation.Faces[0][0]
     other = document.addObject("Part::Feature", "Other")
     other.Shape = part.Shape.copy()
     other.Placement = FreeCAD.Placement(Vector(0, 40, 0), FreeCAD.Rotation(Vector(1, 0, 0), 25))
     document.recompute()
-    inputs = bridge.inputs_of(operation)
+    inputs = api.inputs_of(operation)
     inputs = replace(inputs, faces=((other, inputs.faces[0][1]),), limits=f"cone:0,{-0.42},{0.9},2")
     with _recalling():
-        made = bridge.apply(document, inputs, bridge.task(inputs)(_silent()))[0]
+        made = api.apply(document, inputs, api.task(inputs)(_silent()))[0]
     assert made.Motions, made.Reasons
     return operation, made
 

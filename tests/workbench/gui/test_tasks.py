@@ -33,14 +33,14 @@ def patient(progress):
 
 
 def started(compute):
-    from freecad.toolaxis.tasks import Work
+    from freecad.toolaxis.services.background import Work
 
     work = Work(compute)
     return work, Ears(work.start())
 
 
 def test_a_result_arrives_once_on_the_gui_thread(desk):
-    from freecad.toolaxis.tasks import Work
+    from freecad.toolaxis.services.background import Work
 
     worked_in = []
     work = Work(lambda progress: worked_in.append(threading.current_thread()) or 42)
@@ -64,7 +64,7 @@ def test_stages_are_told_but_not_each_report(desk):
 
 
 def test_intermediate_results_are_digested_off_the_gui_thread(desk):
-    from freecad.toolaxis.tasks import Work
+    from freecad.toolaxis.services.background import Work
 
     def compute(progress):
         for k in range(400):
@@ -128,13 +128,13 @@ def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotte
     gc.collect()
     desk.pump(0.5)
     assert ears.heard == []
-    from freecad.toolaxis import tasks
+    from freecad.toolaxis.services import background
 
-    desk.wait(lambda: not tasks._running, "the thread is let go")
+    desk.wait(lambda: not background._running, "the thread is let go")
 
 
 def test_what_was_closed_is_let_go_while_something_is_computed(desk):
-    from freecad.toolaxis import tasks
+    from freecad.toolaxis.services import background
 
     class Panel:
         def __init__(self):
@@ -144,16 +144,16 @@ def test_what_was_closed_is_let_go_while_something_is_computed(desk):
     work, _ = started(patient)
     gc.collect()
     assert gone() is not None, "set aside"
-    tasks.clear_away()
+    background.clear_away()
     assert gone() is None and gc.get_freeze_count() > 0
     work.cancel()
-    desk.wait(lambda: not tasks._running, "it ends")
+    desk.wait(lambda: not background._running, "it ends")
 
 
 @pytest.mark.parametrize("end", ["cancel", "leave"])
 def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterwards(desk, end):
     """A full collection over all objects of FreeCAD and the libraries takes more than 0.1 s."""
-    from freecad.toolaxis import tasks
+    from freecad.toolaxis.services import background
 
     assert gc.get_freeze_count() == 0
     usual, first = sys.getswitchinterval(), started(patient)
@@ -162,18 +162,18 @@ def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterw
     looked_at = len(gc.get_objects())
     assert gc.get_freeze_count() > 10 * looked_at and gc.isenabled() and sys.getswitchinterval() < usual
     getattr(first[0], end)()
-    desk.wait(lambda: len(tasks._running) == 1, "one has ended")
+    desk.wait(lambda: len(background._running) == 1, "one has ended")
     assert gc.get_freeze_count() > 0 and sys.getswitchinterval() < usual, "the other one still computes"
     getattr(second, end)()
-    desk.wait(lambda: not tasks._running, "the other one has ended")
+    desk.wait(lambda: not background._running, "the other one has ended")
     assert gc.get_freeze_count() == 0 and sys.getswitchinterval() == usual
 
 
 def test_the_end_of_the_application_waits_for_what_stops(desk):
-    from freecad.toolaxis import tasks
+    from freecad.toolaxis.services import background
 
     _, ears = started(patient)
     desk.pump(0.1)
-    tasks.stop_all()
+    background.stop_all()
     desk.wait(lambda: ears.heard, "it stops")
     assert ears.heard == [("cancelled", None)]

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import FreeCAD
+from freecad.toolaxis.saved_names import FormerModules
 
 ROOT = Path(__file__).resolve().parents[3]
 CORE = ROOT / "core"
@@ -17,15 +18,19 @@ PUBLIC = ("is_stale", "make_jobs", "merge", "plan", "recompute", "split", "verif
 if (CORE / "toolaxis").is_dir() and str(CORE) not in sys.path:
     sys.path.insert(0, str(CORE))
 
+# Before all other finders: an update that only copies files leaves those of former packages where they were.
+sys.meta_path.insert(0, FormerModules())
+
 FreeCAD.__unit_test__ += ["freecad.toolaxis.unit_tests"]
 
 
 def __getattr__(name):
     if name not in PUBLIC:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import bridge, cam_jobs
+    from freecad.toolaxis.cam import jobs
+    from freecad.toolaxis.services import api
 
-    return getattr(cam_jobs if name == "make_jobs" else bridge, name)
+    return getattr(jobs if name == "make_jobs" else api, name)
 
 
 def __dir__():

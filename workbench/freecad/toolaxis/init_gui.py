@@ -2,8 +2,7 @@
 
 import FreeCAD
 import FreeCADGui
-
-from . import RESOURCES
+from freecad.toolaxis import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -22,9 +21,9 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from .commands import examples, register
-        from .panels.report import offer_report
-        from .tasks import hear_errors
+        from freecad.toolaxis.gui.commands import examples, register
+        from freecad.toolaxis.gui.widgets.error_report import offer_report
+        from freecad.toolaxis.services.background import hear_errors
 
         hear_errors(offer_report)
         names = register()
