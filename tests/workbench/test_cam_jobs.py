@@ -15,9 +15,10 @@ from freecad.toolaxis.cam.tools import add_bit
 from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
 from freecad.toolaxis.document.cam_probe import tool_from
 from freecad.toolaxis.document.children import frame_of
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.work_coordinates import kind_of_frame
-from freecad.toolaxis.services import api
+from freecad.toolaxis.services.write_results import apply
 
 from toolaxis.cad.freecad.documents import shape_of
 from toolaxis.errors import Cancelled, InvalidInput
@@ -38,7 +39,7 @@ def planned(document, parts, thing, name, lean=(0.15, 0.1, 0.05), **given):
     inputs = parts.inputs_for((thing, name), **given)
     plan = parts.quick_plan(inputs, Vector(*(np.array(face.normalAt(0.5, 0.5)) + lean)))
     assert plan.operations[0].done, plan.operations[0].orientation.reasons
-    return api.apply(document, inputs, plan)[0], plan.operations[0]
+    return apply(document, inputs, plan)[0], plan.operations[0]
 
 
 def turned(document, parts):
@@ -170,8 +171,8 @@ def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
     operation.Scallop = 0.5
     document.recompute()
     assert operation.Stale
-    inputs = api.inputs_of(operation)
-    api.apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
+    inputs = inputs_of(operation)
+    apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
     again, = make_jobs(document, [operation])
     assert len(document.Objects) == count and len(again.Operations.Group[0].Gcode) < lines
     assert (again.PostProcessor, again.PostProcessorArgs, again.Fixtures) == ("grbl", "--no-header", ["G58"])
@@ -347,8 +348,8 @@ def test_a_later_call_takes_offsets_that_are_free(document, parts):
     first, second, third = (planned(document, parts, thing, name, (lean, 0.0, 0.0)) for lean in (0.1, 0.1, 0.3))
     job, = make_jobs(document, [first[0], second[0]])
     assert job.Fixtures == ["G54"] and make_jobs(document, third[0])[0].Fixtures == ["G55"]
-    inputs = api.inputs_of(second[0])
-    api.apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
+    inputs = inputs_of(second[0])
+    apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
     jobs = make_jobs(document, [first[0], second[0]])
     assert [job.Fixtures for job in jobs] == [["G54"], ["G56"]] and not shared_of(jobs)
 

@@ -13,7 +13,7 @@ import Part as FreecadPart
 import pytest
 from freecad.toolaxis.cam.jobs import count_jobs, make_jobs
 from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
-from freecad.toolaxis.document import machine_angles
+from freecad.toolaxis.document import machine_angles, machine_limits
 from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.kinds import is_operation, is_plan, plan_of
 from freecad.toolaxis.document.machine import place_machine
@@ -52,7 +52,7 @@ def planned(name):
     given = dict(rest)
     place, machine, faces = given.pop("offset", None), given.pop("machine", None), given.pop("faces", None)
     if machine:
-        given["limits"] = machine_angles.text_of(machine, place)
+        given["limits"] = machine_limits.text_of(machine, place)
     document = FreeCAD.newDocument("Walk")
     document.UndoMode = 1
     thing = document.addObject("Part::Feature", "Imported")
@@ -189,7 +189,7 @@ def test_both_solutions_of_a_machine_are_the_commands(walk, machine):
         found = [(list(ours.RotaryAngles), np.degrees(op["rotary"])) for ours, op in rows]
     else:
         numbered = {op.number: op for op in walk.plan.operations}
-        mounted = machine_angles.mounting(f"machine:{machine}@0,0,60", walk.plan.tool)
+        mounted = machine_limits.mounting(f"machine:{machine}@0,0,60", walk.plan.tool)
         ways = machine_angles.in_order(mounted, [(op.orientation.axis, op.path.cl) for op in
                                            (numbered[row["number"]] for _, row in rows)])
         texts = [machine_angles.texts_of(mounted.machine, *one) for one in ways]

@@ -4,8 +4,8 @@ import json
 
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis.services import api
 from freecad.toolaxis.services.export import Wish, export
+from freecad.toolaxis.services.write_results import apply
 
 import toolaxis as ta
 from toolaxis.cad.machines import load_machine
@@ -27,7 +27,7 @@ def made(document, parts):
     name = parts.sculptured_name(first)
     inputs = parts.inputs_for((first, name), (second, name))
     plan = parts.quick_plan(inputs)
-    return api.apply(document, inputs, plan), plan
+    return apply(document, inputs, plan), plan
 
 
 def files(folder):

@@ -7,7 +7,7 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis.document import machine_angles
+from freecad.toolaxis.document import machine_angles, machine_limits
 from freecad.toolaxis.document.machine import machine_of, place_machine
 from freecad.toolaxis.document.preferences import PLACE
 from freecad.toolaxis.gui.machine.motion import Journey, corners, meeting, places
@@ -28,35 +28,35 @@ TIPS = np.array([[5.0, 4.0, 10.0], [15.0, 12.0, 9.0], [8.0, 2.0, 11.0]])
 
 @pytest.fixture(scope="module")
 def mounted():
-    return machine_angles.mounting(TEXT, TOOL)
+    return machine_limits.mounting(TEXT, TOOL)
 
 
 def test_the_library_and_the_users_folder_are_offered(tmp_path):
-    assert set(library()) <= set(machine_angles.available())
+    assert set(library()) <= set(machine_limits.available())
     (tmp_path / "mine.toml").write_text(library()["ab-trunnion"].read_text())
     preferences = FreeCAD.ParamGet(PLACE)
     preferences.SetString("MachinesFolder", str(tmp_path))
     try:
-        assert machine_angles.available()["mine"] == str(tmp_path / "mine.toml")
-        mine = machine_angles.text_of(machine_angles.available()["mine"])
-        assert machine_angles.mounting(mine, TOOL).machine.name.startswith("A, B")
+        assert machine_limits.available()["mine"] == str(tmp_path / "mine.toml")
+        mine = machine_limits.text_of(machine_limits.available()["mine"])
+        assert machine_limits.mounting(mine, TOOL).machine.name.startswith("A, B")
     finally:
         preferences.RemString("MachinesFolder")
-    assert "mine" not in machine_angles.available()
+    assert "mine" not in machine_limits.available()
 
 
 def test_a_text_comes_back(mounted):
-    assert machine_angles.text_of("bc-table-table", (0, 0, 20)) == TEXT
-    name, offset = machine_angles.read_text(TEXT)
+    assert machine_limits.text_of("bc-table-table", (0, 0, 20)) == TEXT
+    name, offset = machine_limits.read_text(TEXT)
     assert name == "bc-table-table" and list(offset) == [0, 0, 20]
-    assert machine_angles.read_text("machine:x") == ("x", None)
-    assert machine_angles.limits_from("cone:0,0,1,60", TOOL) == "cone:0,0,1,60"
-    assert machine_angles.limits_from("", TOOL) is None
-    assert machine_angles.limits_from(TEXT, TOOL).machine.name == mounted.machine.name
+    assert machine_limits.read_text("machine:x") == ("x", None)
+    assert machine_limits.limits_from("cone:0,0,1,60", TOOL) == "cone:0,0,1,60"
+    assert machine_limits.limits_from("", TOOL) is None
+    assert machine_limits.limits_from(TEXT, TOOL).machine.name == mounted.machine.name
     for bad, words in (("machine:", "name no machine"), ("machine:nothing", "neither a file nor"),
                        ("machine:bc-table-table@1,2", "three numbers")):
         with pytest.raises(InvalidInput, match=words):
-            machine_angles.mounting(bad, TOOL)
+            machine_limits.mounting(bad, TOOL)
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -69,22 +69,22 @@ def test_both_solutions_hold_the_axis(mounted, axis):
 
 
 def test_what_speaks_against_a_solution_is_said(mounted):
-    tilted = machine_angles.mounting("machine:ab-trunnion@0,0,20", TOOL)
+    tilted = machine_limits.mounting("machine:ab-trunnion@0,0,20", TOOL)
     assert "beyond its range" in machine_angles.ways_to_hold(tilted, [0.9, 0.0, 0.4], TIPS)[0].reason
-    far = machine_angles.mounting("machine:bc-table-table@900,0,20", TOOL)
+    far = machine_limits.mounting("machine:bc-table-table@900,0,20", TOOL)
     assert "leaves its travel by" in machine_angles.ways_to_hold(far, AXES[0], TIPS)[0].reason
     inside, outside = 20.0, 900.0
     for _ in range(40):
         middle = (inside + outside) / 2
-        one = machine_angles.mounting(f"machine:bc-table-table@{middle!r},0,20", TOOL)
+        one = machine_limits.mounting(f"machine:bc-table-table@{middle!r},0,20", TOOL)
         said = machine_angles.ways_to_hold(one, AXES[0], TIPS)[0].reason
         inside, outside = (inside, middle) if said else (middle, outside)
-    near = machine_angles.mounting(f"machine:bc-table-table@{outside!r},0,20", TOOL)
+    near = machine_limits.mounting(f"machine:bc-table-table@{outside!r},0,20", TOOL)
     assert machine_angles.ways_to_hold(near, AXES[0], TIPS)[0].reason.endswith("leaves its travel by 0.1 mm")
-    deep = machine_angles.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
     way = machine_angles.ways_to_hold(deep, AXES[0], TIPS)[0]
     assert "the spindle meets the table by" in way.reason and way.meeting == ("spindle", "table")
-    assert machine_angles.ways_to_hold(machine_angles.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
+    assert machine_angles.ways_to_hold(machine_limits.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
     rows = machine_angles.in_order(mounted, [(axis, TIPS) for axis in AXES])
     assert all(taken >= 0 for _, taken in rows)
     first, second = (ways[taken].rotary for ways, taken in rows)
@@ -161,18 +161,19 @@ LIMITS = "machine:ab-trunnion@0,0,20"
 def test_a_plan_for_a_machine_shows_its_angles_and_is_written_for_it(document, parts, tmp_path):
     from dataclasses import replace
 
-    from freecad.toolaxis.services import api
+    from freecad.toolaxis.document.inputs import inputs_of
     from freecad.toolaxis.services.export import Wish, export
+    from freecad.toolaxis.services.write_results import apply
 
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), limits=TEXT)
-    mounted = machine_angles.mounting(TEXT, inputs.assembled())
+    mounted = machine_limits.mounting(TEXT, inputs.assembled())
     second = machine_angles.ways_to_hold(mounted, parts.LEANING, TIPS)[1]
     assert not second.reason, second.reason
     plan = parts.quick_plan(inputs, Vector(*mounted.axis_at(second.rotary)))
     plan = replace(plan, machine=mounted, operations=(replace(plan.operations[0], rotary=tuple(second.rotary)),))
-    made = api.apply(document, inputs, plan)[0]
-    assert made.Limits == TEXT and not made.Stale and api.inputs_of(made).limits == TEXT
+    made = apply(document, inputs, plan)[0]
+    assert made.Limits == TEXT and not made.Stale and inputs_of(made).limits == TEXT
     assert len(made.RotaryAngles) == 2 and made.RotaryAngles[0] == second.text(mounted.machine)
     names = export(made, tmp_path / "plan", Wish("linuxcnc", "bc-table-table", (0, 0, 20)))
     written = json.loads((tmp_path / "plan" / "plan.json").read_text())
@@ -185,12 +186,13 @@ def test_a_plan_for_a_machine_shows_its_angles_and_is_written_for_it(document, p
 @pytest.mark.long
 def test_planning_for_a_machine_allows_what_it_holds(document, parts):
     from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
 
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), scallop=0.6, limits=LIMITS)
-    made = api.apply(document, inputs, api.task(inputs)(parts.NO_PROGRESS))[0]
+    made = apply(document, inputs, api.task(inputs)(parts.NO_PROGRESS))[0]
     assert made.Outcome == "feasible" and len(made.RotaryAngles) == 2, made.Reasons
-    assert machine_angles.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
+    assert machine_limits.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
     assert "machine" not in made.NotChecked
     assert 1 in json.loads(made.AxisMap)["map"]["reason"], "axes that the machine does not hold are grey on the map"
 
@@ -248,7 +250,7 @@ def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
     assert found[0].member == "holder" and found[-1] is None
     first, second = machine_angles.in_order(mounted, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
     assert not first[0][0].reason and not second[0][0].reason
-    deep = machine_angles.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
     short, far = machine_angles.in_order(deep, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
     assert "the spindle meets the table" in short[0][0].reason and not far[0][0].reason
 

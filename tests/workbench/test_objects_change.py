@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 from freecad.toolaxis.document import shape_cache, staleness
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.passes import moves
 from freecad.toolaxis.document.staleness import same, signature
 from freecad.toolaxis.document.work_coordinates import kind_of_frame
 from freecad.toolaxis.services import api, write_results
-from freecad.toolaxis.services.write_results import child
+from freecad.toolaxis.services.write_results import apply, child, keep_verdict
 
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -93,7 +94,7 @@ def test_a_verdict_holds_for_what_was_judged(operation, document, parts, part):
 def test_a_part_changed_while_it_was_judged(operation, document, parts, part):
     found = api.verification(operation)(NO_PROGRESS).operations
     part.Shape = parts.wavy(10.3)
-    api.keep_verdict(operation, found)
+    keep_verdict(operation, found)
     document.recompute()
     assert operation.Verdict == "out of date"
 
@@ -271,7 +272,7 @@ def test_the_part_changed_while_it_was_planned(document, parts, part):
     part.Shape = FreecadPart.makeSphere(5)
     before = names(document)
     with pytest.raises(ToolAxisError, match="changed"):
-        api.apply(document, inputs, plan)
+        apply(document, inputs, plan)
     assert names(document) == before
 
 
@@ -305,7 +306,7 @@ def test_everything_is_there_after_saving_and_opening(saved, document):
     gouge = made.Gouge.Value
     points = moves(child(made, "Path::Feature"))[0]
     kinds = [thing.TypeId for thing in made.Group]
-    inputs = api.inputs_of(made)
+    inputs = inputs_of(made)
     FreeCAD.closeDocument(document.Name)
     opened = FreeCAD.openDocument(str(path))
     try:
@@ -315,7 +316,7 @@ def test_everything_is_there_after_saving_and_opening(saved, document):
         assert again.Gouge.Value == pytest.approx(gouge, rel=1e-12)
         assert [thing.TypeId for thing in again.Group] == kinds
         assert np.abs(moves(child(again, "Path::Feature"))[0] - points).max() < 1e-6
-        back = api.inputs_of(again)
+        back = inputs_of(again)
         assert (back.tool, back.scallop, back.holder, back.limits) == (inputs.tool, inputs.scallop, inputs.holder, "")
         assert not again.Stale and not api.is_stale(again)
         opened.recompute(None, True)

@@ -6,13 +6,14 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.passes import moves, read_back
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.tool_on_path import tool_shape
 from freecad.toolaxis.document.work_coordinates import kind_of_frame
 from freecad.toolaxis.services import api
-from freecad.toolaxis.services.write_results import child
+from freecad.toolaxis.services.write_results import apply, child
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.tools.tool import Tool
@@ -103,7 +104,7 @@ def stand(request, document, parts):
     normal = part.face(selected(inputs)).normal(np.array([[0.5, 0.5]]))[0]
     plan = parts.quick_plan(inputs, Vector(*(normal + np.array([0.15, 0.1, 0.05]))))
     assert plan.operations[0].done, plan.operations[0].orientation.reasons
-    return mover, api.apply(document, inputs, plan)[0], plan
+    return mover, apply(document, inputs, plan)[0], plan
 
 
 def bridge_source(inputs):
@@ -158,7 +159,7 @@ def test_the_frame_stands_by_the_mean_feed(document, parts):
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)))
     plan = parts.quick_plan(inputs)
-    made = api.apply(document, inputs, plan)[0]
+    made = apply(document, inputs, plan)[0]
     matrix, op = matrix_of(frame_of(made).Placement), plan.operations[0]
     assert np.allclose(matrix[:3, 0], op.frame.x, atol=1e-12)
     steps = np.diff(op.path.cl, axis=0)[op.path.kind[1:] == Motion.CUT]
@@ -178,8 +179,8 @@ def test_an_operation_tells_what_was_found(operation):
 
 def test_what_is_not_checked_has_no_clearance(document, parts):
     thing = parts.block(document)
-    inputs = api.Inputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
-    made = api.apply(document, inputs, parts.quick_plan(inputs))[0]
+    inputs = Inputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
+    made = apply(document, inputs, parts.quick_plan(inputs))[0]
     assert "holder" in made.NotChecked and not hasattr(made, "HolderClearance")
 
 
@@ -190,8 +191,8 @@ def test_inputs_come_back_from_the_operation(document, parts):
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), obstacles=(other,), limits="cone:0,0,1,60",
                               tolerance=0.004, allowance=0.1, direction="climb", objective="passes", feedrate=777.0,
                               spindle=5400.0)
-    made = api.apply(document, inputs, parts.quick_plan(inputs))[0]
-    back = api.inputs_of(made)
+    made = apply(document, inputs, parts.quick_plan(inputs))[0]
+    back = inputs_of(made)
     assert back == inputs, (back, inputs)
 
 
@@ -199,7 +200,7 @@ def test_passes_come_back_as_they_were_planned(document, parts):
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), feedrate=600.0)
     plan = parts.quick_plan(inputs)
-    made = api.apply(document, inputs, plan)[0]
+    made = apply(document, inputs, plan)[0]
     passes, path = child(made, "Path::Feature"), plan.operations[0].path
     back = read_back(passes, made.Motions, made.Starts)
     assert np.abs(back.cl - path.cl).max() < 1e-6 and np.array_equal(back.kind, path.kind)

@@ -4,11 +4,11 @@ import FreeCAD
 import numpy as np
 import Part
 import pytest
+from freecad.toolaxis.document.inputs import Inputs
 from freecad.toolaxis.document.placement import chain_of
 from freecad.toolaxis.document.read_shapes import Source
 from freecad.toolaxis.document.sub_surface_shape import SURFACE, show_surface
 from freecad.toolaxis.document.tessellation_offset import bulge
-from freecad.toolaxis.services import api
 
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -27,7 +27,7 @@ def shown(document, request):
     thing.Shape = block.cut(ball) if request.param == "hollow" else block.common(ball)
     kinds = [type(face.Surface).__name__ for face in thing.Shape.Faces]
     number = kinds.index("Sphere") + 1
-    part, _ = Source.of(api.Inputs(((thing, f"Face{number}"),))).read(NO_PROGRESS)
+    part, _ = Source.of(Inputs(((thing, f"Face{number}"),))).read(NO_PROGRESS)
     return thing, number, part.face(number), request.param
 
 

@@ -18,6 +18,7 @@ import FreeCAD
 import freecad.toolaxis
 import pytest
 from freecad.toolaxis.cam.jobs import make_jobs
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_operation, is_plan, operations_in
 from freecad.toolaxis.document.machine import machine_of
 from freecad.toolaxis.document.operation import Operation
@@ -64,7 +65,7 @@ def test_it_opens_as_it_was_saved(opened, operation, parts):
 
 def test_it_is_verified_and_planned_again(opened, operation, parts):
     assert api.verify(operation).passed
-    inputs = api.inputs_of(operation)
+    inputs = inputs_of(operation)
     assert (inputs.tool, inputs.scallop, inputs.holder) == (parts.TOOL, parts.SCALLOP, parts.HOLDER)
     again = parts.planned(opened, *inputs.faces, tolerance=inputs.tolerance)[0]
     assert again.Passes == operation.Passes
@@ -74,7 +75,7 @@ def test_it_is_verified_and_planned_again(opened, operation, parts):
 def test_it_keeps_the_machining_tolerance_that_held_then(opened, operation, parts):
     """0.002 mm, in the tree as in what it is verified and planned again with; a new operation takes 0.01 mm."""
     thing = opened.getObject("Block")
-    assert operation.Tolerance.Value == 0.002 and api.inputs_of(operation).job().tolerance.gouge == 0.002
+    assert operation.Tolerance.Value == 0.002 and inputs_of(operation).job().tolerance.gouge == 0.002
     api.verify(operation)
     assert operation.GougeAllowed.Value == 0.002
     fresh = parts.planned(opened, (thing, parts.sculptured_name(thing)))[0]

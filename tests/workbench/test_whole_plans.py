@@ -7,7 +7,7 @@ from pathlib import Path
 import FreeCAD
 import pytest
 from freecad.toolaxis.document.children import frame_of
-from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation, operations_in, plan_of
 from freecad.toolaxis.document.read_shapes import Source
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, SURFACE, is_shown
@@ -36,7 +36,7 @@ def divided(whole_parts):
     document.UndoMode = 1
     thing, name = whole_parts.roof(document)
     made = api.plan(document, (thing, name), TOOL, 0.4, regions=2, method="normal")
-    theirs = ta.plan(thing, api.inputs_of(made[0]).assembled(), 0.4, faces=[int(name[4:])], regions=2,
+    theirs = ta.plan(thing, inputs_of(made[0]).assembled(), 0.4, faces=[int(name[4:])], regions=2,
                      method="normal", feedrate=made[0].FeedRate.Value * 60)
     yield made, theirs
     FreeCAD.closeDocument(document.Name)
@@ -262,7 +262,7 @@ def test_clean_up_zones_are_hatched(document, whole_parts):
     from toolaxis.plan.zone import Zone
 
     thing, name = whole_parts.roof(document)
-    inputs = api.Inputs(((thing, name),))
+    inputs = Inputs(((thing, name),))
     part, _ = Source.of(inputs).read(NO_PROGRESS)
     face = part.face(int(name[4:]))
     group = document.addObject("App::DocumentObjectGroupPython", "Group")

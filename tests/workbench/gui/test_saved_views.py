@@ -1,10 +1,12 @@
-"""A document saved when the classes of views stood elsewhere: in the window it looks and answers as one of today."""
+"""View providers: of objects that are made, and of those saved when the classes of views stood elsewhere."""
 
 import shutil
 from pathlib import Path
 
 import FreeCAD
 import pytest
+from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.machine import place_machine
 
 SAVED = Path(__file__).resolve().parents[1] / "saved" / "before-layers.FCStd"
 VIEWS = {"ToolAxisMachine": "machine", "ToolAxisOperation": "operation", "ToolAxisTool": "tool_on_path",
@@ -19,12 +21,22 @@ def opened(desk, tmp_path):
     return document
 
 
-def test_views_are_todays_and_open_their_panels(desk, opened):
+def view_of(thing):
+    return type(thing.ViewObject.Proxy).__module__
+
+
+def test_what_is_made_gets_its_view(desk, operation):
+    machine = place_machine(operation.Document, "bc-table-table", (0, 0, 0), [])
+    for thing in (operation, child(operation, "Part::FeaturePython"), machine):
+        assert view_of(thing) == f"freecad.toolaxis.gui.views.{VIEWS[thing.Proxy.Type]}"
+
+
+def test_saved_views_are_todays_and_open_their_panels(desk, opened):
     kinds = {thing: getattr(getattr(thing, "Proxy", None), "Type", "") for thing in opened.Objects}
     ours = {thing: kind for thing, kind in kinds.items() if kind.startswith("ToolAxis")}
     assert set(ours.values()) == set(VIEWS)
     for thing, kind in ours.items():
-        assert type(thing.ViewObject.Proxy).__module__ == f"freecad.toolaxis.gui.views.{VIEWS[kind]}"
+        assert view_of(thing) == f"freecad.toolaxis.gui.views.{VIEWS[kind]}"
     for kind, form in (("ToolAxisOperation", "ToolAxisOperation"), ("ToolAxisPlan", "ToolAxisPlan"),
                        ("ToolAxisMachine", "ToolAxisMachine")):
         thing = next(thing for thing in ours if ours[thing] == kind)

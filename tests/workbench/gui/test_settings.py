@@ -62,19 +62,19 @@ def test_the_page_keeps_what_is_set(desk, kept, tmp_path):
 
 
 def test_new_plans_begin_with_what_is_preferred(desk, kept, wavy):
-    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.defaults import defaults
 
     part, face = wavy
-    usual = api.defaults(part.Document, ((part, face),))
+    usual = defaults(part.Document, ((part, face),))
     assert usual.tool.startswith("torus:")
     kept.SetString("Tool", "ball:4")
     kept.SetFloat("Scallop", 0.03)
     kept.SetFloat("FeedRate", 640.0)
-    found = api.defaults(part.Document, ((part, face),))
+    found = defaults(part.Document, ((part, face),))
     assert (found.tool, found.scallop, found.feedrate, found.spindle) == ("ball:4", 0.03, 640.0, usual.spindle)
     assert found.stickout == 20.0 and found.assembled().kind == "ball"
     kept.SetString("Tool", "ball")
-    assert api.defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"
+    assert defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"
 
 
 def test_colours_are_those_of_the_preferences(kept):

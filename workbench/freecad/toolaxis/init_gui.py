@@ -2,7 +2,8 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
+from freecad.toolaxis.document.view_providers import bring_views
+from freecad.toolaxis.paths import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -21,7 +22,8 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from freecad.toolaxis.gui.commands import examples, register
+        from freecad.toolaxis.gui.commands import examples
+        from freecad.toolaxis.gui.commands.toolbar import register
         from freecad.toolaxis.gui.widgets.error_report import offer_report
         from freecad.toolaxis.services.background import hear_errors
 
@@ -49,4 +51,11 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
         return "Gui::PythonWorkbench"
 
 
+def _attach_view(thing):
+    from freecad.toolaxis.gui.views.attach import attach
+
+    attach(thing)
+
+
+bring_views(_attach_view)
 FreeCADGui.addWorkbench(ToolAxisWorkbench())

@@ -12,7 +12,10 @@ from freecad.toolaxis.cam.job_setup import Passes, add_passes, bare_job, plane_c
 from freecad.toolaxis.cam.work_offsets import offsets_for, tell_shared
 from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.placement import placement_from
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.transaction import one_step
 from freecad.toolaxis.services.arguments import document_of, operation_of, progress_of
 
@@ -114,10 +117,6 @@ def count_jobs(operations):
 
 def _ready(operation):
     """An operation checked and read, and its turned copies on other blades."""
-    from freecad.toolaxis.document.read_operation import Standing
-    from freecad.toolaxis.document.staleness import why_stale
-    from freecad.toolaxis.services.api import inputs_of
-
     from toolaxis.errors import InvalidInput
 
     reasons = why_stale(operation)

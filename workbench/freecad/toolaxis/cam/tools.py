@@ -1,6 +1,7 @@
 """Our cutters as tool bits and tool controllers of FreeCAD's CAM, by what its modules have and not by its version."""
 
 from importlib.util import find_spec
+from math import degrees
 
 #: Kinds of cutters: FreeCAD's shape and its type; the ones after the first where a shape is not there.
 _SHAPES = {"torus": (("bullnose", "Bullnose"),), "ball": (("ballend", "Ballend"),), "flat": (("endmill", "Endmill"),),
@@ -89,8 +90,6 @@ def _sizes(tool, shape, new):
     if shape == "bullnose":
         found |= {"CornerRadius": tool.corner_radius} if new else {"FlatRadius": tool.flat_radius}
     if shape == "taperedballnose":
-        from math import degrees
-
         found |= {"TaperAngle": 2 * degrees(tool.half_angle), "TaperDiameter": 2 * tool.profile.top_radius}
     return found
 

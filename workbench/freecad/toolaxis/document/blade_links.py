@@ -1,7 +1,7 @@
 """Blades in the tree: a group for each, with operations in the first, and links to them, turned, in the others."""
 
 import FreeCAD
-from freecad.toolaxis.document.placement import placement_from
+from freecad.toolaxis.document.placement import carried, placement_from
 from freecad.toolaxis.document.properties import Property, assign, ensure
 from freecad.toolaxis.document.sub_surface_shape import is_shown
 from freecad.toolaxis.document.transaction import remove
@@ -162,8 +162,6 @@ class Tree:
         return link
 
     def _fill(self, link, op, turn, chain):
-        from freecad.toolaxis.document.placement import carried
-
         here = carried(chain)
         assign(link, Turn=here.inverse().multiply(placement_from(turn)).multiply(here), Face=f"Face{op.face.number}",
                Gouge=max(float(op.orientation.gouge), 0.0), Axis=FreeCAD.Vector(*map(float, op.orientation.axis)),

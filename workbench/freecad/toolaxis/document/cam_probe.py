@@ -1,5 +1,7 @@
 """The one place that talks to FreeCAD's CAM workbench, by what its objects have and not by its version."""
 
+from pathlib import PurePosixPath
+
 _KINDS = {"bullnose": "torus", "torus": "torus", "ballend": "ball", "endmill": "flat", "taperedballnose": "tapered"}
 
 
@@ -48,8 +50,6 @@ def tool_from(thing):
 
 def _shape_of(bit):
     """What kind of tool a bit is, in lower case without blanks: its type in 1.1, its shape's file in 1.0."""
-    from pathlib import PurePosixPath
-
     for name in ("ShapeType", "ShapeName", "ShapeID", "BitShape"):
         text = getattr(bit, name, None)
         if isinstance(text, str) and text:

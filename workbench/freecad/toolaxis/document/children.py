@@ -2,7 +2,7 @@
 
 import FreeCAD
 from freecad.toolaxis.document.axis_lines import is_lines
-from freecad.toolaxis.document.kinds import is_operation, is_plan, operations_in, plan_of
+from freecad.toolaxis.document.kinds import is_operation, is_plan, operations_in
 from freecad.toolaxis.document.properties import assign
 from freecad.toolaxis.document.sub_surface_shape import colour_view, is_shown
 from freecad.toolaxis.document.verdict_maps import colour
@@ -141,10 +141,17 @@ class Keeper:
     """Follows all documents: what belongs to an operation goes with it, and what is deleted alone is told.
 
     Nothing is done while FreeCAD itself undoes or redoes: it brings back, or takes away, what was recorded.
+
+    Attributes
+    ----------
+    going : set of str
+        Names of the operations and plans that are just being deleted, with what belongs to them.
+    followers : list
+        What is told of operations: `deleted(thing, going)` before one of them, or a turned copy of one, is deleted.
     """
 
     def __init__(self):
-        self.going = set()
+        self.going, self.followers = set(), []
 
     def slotDeletedObject(self, thing):
         """Called by FreeCAD before an object is deleted."""
@@ -152,7 +159,8 @@ class Keeper:
         if document is None or document.Transacting or document.Restoring:
             return
         if is_operation(thing) or "Turn" in thing.PropertiesList:
-            self._tell_plan(thing)
+            for follower in self.followers:
+                follower.deleted(thing, self.going)
         if is_operation(thing):
             self._take(document, thing)
             return
@@ -173,13 +181,6 @@ class Keeper:
             colour_view(thing)
 
     slotRedoDocument = slotUndoDocument
-
-    def _tell_plan(self, thing):
-        from freecad.toolaxis.document.plan_group import note_deleted
-
-        plan, source = plan_of(thing), getattr(thing, "LinkedObject", None)
-        if plan is not None and plan.Name not in self.going and (source is None or source.Name not in self.going):
-            note_deleted(plan, thing)
 
     def _take(self, document, operation):
         self.going.add(operation.Name)

@@ -1,6 +1,7 @@
 """What a face looks like, so that it is known again when the faces of a part are renumbered."""
 
 import FreeCAD
+from freecad.toolaxis.document.read_shapes import number_in
 from freecad.toolaxis.document.shape_cache import known_of
 
 _KINDS = {"Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Toroid": "torus",
@@ -28,8 +29,6 @@ def facts_of(thing, name):
     InvalidInput
         When there is no such face.
     """
-    from freecad.toolaxis.document.read_shapes import number_in
-
     from toolaxis.cad.freecad.documents import shape_of
 
     shape = shape_of(thing)

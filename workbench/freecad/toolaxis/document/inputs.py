@@ -3,7 +3,9 @@
 import json
 from dataclasses import dataclass
 
-from freecad.toolaxis.document.machine_angles import PREFIX
+from freecad.toolaxis.document.children import frame_of
+from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
+from freecad.toolaxis.document.machine_limits import PREFIX
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.strategies import INDEXED, ROUGH, ROUGHNESS, check_strategy
 
@@ -194,8 +196,6 @@ def inputs_of(thing):
     Inputs
         Without faces where the part was deleted.
     """
-    from freecad.toolaxis.document.kinds import is_plan
-
     faces = tuple((part, name) for part, names in thing.Faces for name in names if name)
     rows = {name: tuple((point.x, point.z) for point in getattr(thing, name.capitalize()))
             for name in ("shank", "holder")}
@@ -259,8 +259,6 @@ def locked_axis(operation):
     ----------
     operation : App.DocumentObject
     """
-    from freecad.toolaxis.document.children import frame_of
-
     frame = frame_of(operation)
     if frame is not None:
         return tuple(float(x) for x in matrix_of(frame.Placement)[:3, 2])
@@ -269,8 +267,6 @@ def locked_axis(operation):
 
 def _shares(operation):
     """Whether an operation stands in a plan whose sub-surfaces share axes."""
-    from freecad.toolaxis.document.kinds import plan_of
-
     above = plan_of(operation)
     return above is not None and bool(above.Orientations)
 
@@ -282,8 +278,6 @@ def kept_pieces(plan):
     ----------
     plan : App.DocumentObject
     """
-    from freecad.toolaxis.document.kinds import operations_in
-
     rows = [(one, [(part, name) for part, names in one.Faces for name in names if name]) for one in operations_in(plan)]
     by_hand = {(faces[0][0].Name, faces[0][1]) for one, faces in rows
                if faces and (one.AxisLocked or one.FeedLocked or one.DrawnByHand)}

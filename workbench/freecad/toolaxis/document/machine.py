@@ -1,8 +1,14 @@
 """The machine of a document: which one, where the document stands on its table, and the angles of each operation."""
 
+from dataclasses import replace
+from math import degrees, isfinite, radians
+from re import findall
+
 import FreeCAD
+from freecad.toolaxis.document.machine_angles import ranges_along, texts_of, ways_to_hold
 from freecad.toolaxis.document.properties import Property, Proxy, assign, ensure
 from freecad.toolaxis.document.transaction import one_step
+from freecad.toolaxis.document.view_providers import attach_view
 
 translate = FreeCAD.Qt.translate
 
@@ -67,10 +73,7 @@ def place_machine(document, name, offset, found):
         if thing is None:
             thing = document.addObject("App::FeaturePython", "Machine")
             Machine(thing)
-            if FreeCAD.GuiUp:
-                from freecad.toolaxis.gui.views.machine import MachineView
-
-                MachineView(thing.ViewObject)
+            attach_view(thing)
         thing.Label = translate("ToolAxis", "Machine {}").format(machine.name)
         assign(thing, Machine=name, Offset=FreeCAD.Vector(*offset), Source=machine.source,
                Assumed=list(machine.assumed), Axes=[_range(axis) for axis in (*machine.linear, *machine.rotary)])
@@ -94,10 +97,6 @@ def keep_angles(operation, plan, op):
         if "RotaryAngles" in operation.PropertiesList and not op.done:
             operation.RotaryAngles = []
         return
-    from dataclasses import replace
-
-    from freecad.toolaxis.document.machine_angles import ranges_along, texts_of, ways_to_hold
-
     mounted = replace(plan.machine, tool_length=plan.tool.gauge_length)
     ensure(operation, _ANGLES)
     if op.orientation.lead is not None:
@@ -114,9 +113,6 @@ def angles_kept(operation):
     ----------
     operation : App.DocumentObject
     """
-    from math import radians
-    from re import findall
-
     texts = getattr(operation, "RotaryAngles", None) or [""]
     return tuple(radians(float(number)) for number in findall(r"[ABC] (-?[\d.]+(?:e-?\d+)?)\u00b0", texts[0]))
 
@@ -140,8 +136,6 @@ def nearest(ways, rotary):
 
 def _range(axis):
     """An axis with its range, in mm or degrees."""
-    from math import degrees, isfinite
-
     turning = hasattr(axis, "point")
     unit, ends = ("\u00b0" if turning else " mm"), (axis.low, axis.high)
     texts = [f"{degrees(end) if turning else end:g}{unit}" if isfinite(end) else "\u221e" for end in ends]

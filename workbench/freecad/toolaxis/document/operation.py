@@ -5,8 +5,9 @@ from math import degrees
 import FreeCAD
 from freecad.toolaxis.document.children import Keeper, note
 from freecad.toolaxis.document.inputs import FORMER_TOLERANCE
-from freecad.toolaxis.document.kinds import is_operation, is_plan
+from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.properties import Property, Proxy, assign
+from freecad.toolaxis.document.staleness import same, standing, why_stale
 from freecad.toolaxis.document.strategies import STRATEGIES
 
 _ASKED, _LOCKS, _FOUND, _JUDGED, _KEPT = "Inputs", "Locks", "Result", "Verdict", "Tool Axis"
@@ -118,25 +119,31 @@ class _Watch(Keeper):
     """Marks also what FreeCAD left out of a recompute because the part behind it failed."""
 
     def slotRecomputedDocument(self, document):
-        """Mark the operations, and then the whole plans, of a document where something is invalid."""
-        from freecad.toolaxis.document.plan_group import why_stale as why_plan_stale
-
+        """Mark the operations of a document where something is invalid."""
         if any("Invalid" in thing.State for thing in document.Objects):
             for thing in filter(is_operation, document.Objects):
                 mark(thing)
-            for thing in filter(is_plan, document.Objects):
-                compare(thing, why_plan_stale)
+            for follower in self.followers:
+                follower.marked(document)
 
 
 _WATCH = _Watch()
 _watching = []
 
 
-def watch():
-    """Follow the recomputes of all documents, once."""
+def watch(*followers):
+    """Follow all documents, once.
+
+    Parameters
+    ----------
+    *followers
+        What else is told of operations, once each: `deleted(thing, going)` as `Keeper` has it, and `marked(document)`
+        after those of a document were marked.
+    """
     if not _watching:
         FreeCAD.addDocumentObserver(_WATCH)
         _watching.append(_WATCH)
+    _WATCH.followers += [one for one in followers if one not in _WATCH.followers]
 
 
 def mark(thing):
@@ -146,8 +153,6 @@ def mark(thing):
     ----------
     thing : App.DocumentObject
     """
-    from freecad.toolaxis.document.staleness import why_stale
-
     compare(thing, why_stale)
     if thing.Verdict in ("passed", "failed") and not _verdict_holds(thing):
         assign(thing, Verdict="out of date", VerdictReasons=["the part or the inputs have changed since: verify again"])
@@ -172,8 +177,6 @@ def compare(thing, why):
 
 
 def _verdict_holds(thing):
-    from freecad.toolaxis.document.staleness import same, standing
-
     try:
         words, shapes = standing(thing)
     except Exception as reason:

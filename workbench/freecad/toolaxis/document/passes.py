@@ -1,6 +1,7 @@
 """The passes of an operation as a Path object in the frame of its plane, and back."""
 
 import FreeCAD
+from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.properties import Property, assign, ensure
 
 #: What passes whose axis moves keep at each of their points, in the frame of the plane.
@@ -131,7 +132,6 @@ def read_back(passes, motions, breaks):
         When the axis moves and the commands are not those any more for which it was planned.
     """
     import numpy as np
-    from freecad.toolaxis.document.placement import matrix_of
 
     from toolaxis.cldata.toolpath import Motion, ToolPath
     from toolaxis.errors import InvalidInput

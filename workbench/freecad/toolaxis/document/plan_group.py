@@ -1,11 +1,15 @@
 """A whole plan: what was asked for several sub-surfaces together, with their operations in it."""
 
 import json
+from dataclasses import asdict, replace
 
 import FreeCAD
-from freecad.toolaxis.document.kinds import operations_in
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.operation import INPUTS, compare, set_inputs, watch
 from freecad.toolaxis.document.properties import Property, Proxy, assign
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.staleness import changed_inputs, digest
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
 
 _FOUND, _KEPT = "Result", "Tool Axis"
@@ -43,16 +47,34 @@ class WholePlan(Proxy):
 
     def __init__(self, thing):
         super().__init__(thing)
-        watch()
+        watch(_PLANS)
 
     def onDocumentRestored(self, thing):
         """Give a plan of an older version what it does not have yet."""
         super().onDocumentRestored(thing)
-        watch()
+        watch(_PLANS)
 
     def execute(self, thing):
         """Compare with what was planned; computes no axis."""
         compare(thing, why_stale)
+
+
+class _Plans:
+    """Tells whole plans what becomes of their operations."""
+
+    def deleted(self, thing, going):
+        """Mark the plan of an operation, or of a turned copy, that is deleted by itself."""
+        plan, source = plan_of(thing), getattr(thing, "LinkedObject", None)
+        if plan is not None and plan.Name not in going and (source is None or source.Name not in going):
+            note_deleted(plan, thing)
+
+    def marked(self, document):
+        """Compare the plans of a document after their operations."""
+        for thing in filter(is_plan, document.Objects):
+            compare(thing, why_stale)
+
+
+_PLANS = _Plans()
 
 
 def why_stale(plan):
@@ -62,9 +84,6 @@ def why_stale(plan):
     ----------
     plan : App.DocumentObject
     """
-    from freecad.toolaxis.document.inputs import inputs_of
-    from freecad.toolaxis.document.staleness import changed_inputs
-
     if not plan.PlannedWith:
         return ["nothing was planned yet"]
     inputs, gone = inputs_of(plan), no_longer_there(plan)
@@ -140,10 +159,6 @@ def keep_plan(thing, inputs, plan):
     inputs : freecad.toolaxis.document.inputs.Inputs
     plan : toolaxis.plan.plan.Plan
     """
-    from dataclasses import asdict
-
-    from freecad.toolaxis.document.staleness import digest
-
     from toolaxis.plan.blades_document import blades_document
 
     set_inputs(thing, inputs)
@@ -172,10 +187,6 @@ def keep_figures(thing, plan):
     plan : toolaxis.plan.plan.Plan
         Of the one.
     """
-    from dataclasses import replace
-
-    from freecad.toolaxis.document.read_operation import Standing
-
     from toolaxis.plan.document import orientation_from
     from toolaxis.plan.operation import Operation
 

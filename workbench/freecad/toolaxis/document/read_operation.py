@@ -2,7 +2,10 @@
 
 import json
 from dataclasses import dataclass, replace
+from math import pi
 
+from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.passes import read_back
 from freecad.toolaxis.document.placement import matrix_of
 
 
@@ -41,9 +44,6 @@ class Standing:
         InvalidInput
             When it has no passes.
         """
-        from freecad.toolaxis.document.children import child
-        from freecad.toolaxis.document.passes import read_back
-
         from toolaxis.errors import InvalidInput
         from toolaxis.plan.document import orientation_from
 
@@ -106,8 +106,6 @@ class Standing:
         ----------
         part : toolaxis.shape.part.Part
         """
-        from math import pi
-
         from toolaxis.shape.joining.smooth_skins import join
 
         members = self.details.get("members")

@@ -2,7 +2,9 @@
 
 import json
 
-from freecad.toolaxis.document.inputs import FORMER_TOLERANCE
+from freecad.toolaxis.document.children import missing
+from freecad.toolaxis.document.face_identity import what_became
+from freecad.toolaxis.document.inputs import FORMER_TOLERANCE, inputs_of
 from freecad.toolaxis.document.shape_cache import known_of
 from freecad.toolaxis.document.strategies import INDEXED, ROUGHNESS
 
@@ -125,7 +127,6 @@ def standing(operation):
     InvalidInput
         When the part or a body to avoid has no shape any more.
     """
-    from freecad.toolaxis.services.api import inputs_of
 
     inputs = inputs_of(operation)
     return digest(inputs), signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
@@ -138,10 +139,6 @@ def why_stale(operation):
     ----------
     operation : App.DocumentObject
     """
-    from freecad.toolaxis.document.children import missing
-    from freecad.toolaxis.document.face_identity import what_became
-    from freecad.toolaxis.services.api import inputs_of
-
     from toolaxis.errors import ToolAxisError
 
     if not operation.PlannedWith:

@@ -1,7 +1,7 @@
 """Strategies that move the axis while it cuts: which there are, and whether one goes with what a job is given."""
 
 import FreeCAD
-from freecad.toolaxis.document.machine_angles import PREFIX, mounting
+from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 
 translate = FreeCAD.Qt.translate
 

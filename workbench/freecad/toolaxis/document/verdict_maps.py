@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import FreeCAD
+from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.properties import Property, assign, ensure
 from freecad.toolaxis.document.sub_surface_shape import SURFACE, is_shown
 
@@ -43,8 +44,7 @@ def drawn(verdict, frame):
         Of the scallops, of the gouges.
     """
     import Mesh
-    from freecad.toolaxis.document.colour_scale import judged
-    from freecad.toolaxis.document.placement import matrix_of
+    from freecad.toolaxis.document.colour_scale import judged  # brings numpy, which a document is opened without
 
     matrix, made = matrix_of(frame.inverse()), []
     for _, name, _ in _MAPS:
@@ -176,7 +176,7 @@ def _rows_of(mesh, points):
 def _joined(maps):
     """Points a little above the faces, and triangles of all maps together."""
     import numpy as np
-    from freecad.toolaxis.document.triangles import triangles_of
+    from freecad.toolaxis.document.triangles import triangles_of  # the same
 
     points, triangles, before = [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], 0
     for one in maps:

@@ -2,18 +2,21 @@
 
 from dataclasses import replace
 
-from freecad.toolaxis.document.cam_probe import tool_from as tool_from
-from freecad.toolaxis.document.inputs import Inputs as Inputs
-from freecad.toolaxis.document.inputs import flute_of
-from freecad.toolaxis.document.inputs import inputs_of as inputs_of
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_plan, plan_of
-from freecad.toolaxis.document.machine_angles import limits_from
+from freecad.toolaxis.document.machine_limits import limits_from
 from freecad.toolaxis.document.preferences import threads
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.staleness import standing as what_stands
+from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.strategies import asked_of, refuse_in_vain
-from freecad.toolaxis.services.arguments import document_of, faces_of, fields_of, operation_of, progress_of, tool_of
-from freecad.toolaxis.services.defaults import defaults as defaults
-from freecad.toolaxis.services.write_results import apply as apply
-from freecad.toolaxis.services.write_results import keep_verdict as keep_verdict
+from freecad.toolaxis.services.arguments import document_of, faces_of, fields_of, operation_of, progress_of
+from freecad.toolaxis.services.defaults import defaults
+from freecad.toolaxis.services.edit_sub_surfaces import merged
+from freecad.toolaxis.services.edit_sub_surfaces import split as cut
+from freecad.toolaxis.services.tools import tool_fields
+from freecad.toolaxis.services.write_results import apply, keep_verdict
 
 
 def task(inputs):
@@ -33,8 +36,6 @@ def task(inputs):
     InvalidInput
         When nothing is selected, a face is not there (any more), or a value is out of range.
     """
-    from freecad.toolaxis.document.read_shapes import Source
-
     tool = inputs.assembled()
     inputs.check_counts()
     inputs.job().check_tool(tool)
@@ -75,10 +76,6 @@ def verification(operation):
     InvalidInput
         When there is nothing to judge.
     """
-    from freecad.toolaxis.document.read_operation import Standing
-    from freecad.toolaxis.document.read_shapes import Source
-    from freecad.toolaxis.document.staleness import standing as what_stands
-
     from toolaxis.errors import InvalidInput
 
     inputs = inputs_of(operation)
@@ -127,37 +124,6 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
     fields = (tool_fields(tool) if tool is not None else {}) | fields
     inputs = replace(defaults(document, faces_of(document, faces)), **fields)
     return apply(document, inputs, task(inputs)(progress))
-
-
-def tool_fields(tool):
-    """The fields of `Inputs` that a tool fills.
-
-    Parameters
-    ----------
-    tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
-    """
-    tool = cutter_of(tool)
-    found = {"tool": tool.name, "flute_length": flute_of(tool), "shank": ()}
-    if tool.stickout is not None:
-        found["stickout"] = tool.stickout
-    for name in ("shank", "holder"):
-        if getattr(tool, name) is not None:
-            found[name] = tuple(map(tuple, getattr(tool, name).tolist()))
-    return found
-
-
-def cutter_of(tool):
-    """What stands for a tool as a tool of the library.
-
-    Parameters
-    ----------
-    tool : str, toolaxis.Tool, or a CAM tool controller or tool bit
-    """
-    if isinstance(tool_of(tool), str):
-        from toolaxis.job.inputs.tool_file import load_tool
-
-        return load_tool(tool)
-    return tool if hasattr(tool, "corner_radius") else tool_from(tool)
 
 
 def recompute(operation, progress=None):
@@ -209,8 +175,6 @@ def merge(operations, progress=None):
     ToolAxisError
         In one sentence; the document is then as it was.
     """
-    from freecad.toolaxis.services.edit_sub_surfaces import merged
-
     owner, inputs = merged([operation_of(one) for one in operations])
     return apply(owner.Document, inputs, task(inputs)(progress_of(progress)), owner)
 
@@ -237,8 +201,6 @@ def split(operation, line=None, parameter="", at=None, progress=None):
     ToolAxisError
         In one sentence; the document is then as it was.
     """
-    from freecad.toolaxis.services.edit_sub_surfaces import split as cut
-
     owner, inputs = cut(operation_of(operation), line, parameter, at)
     return apply(owner.Document, inputs, task(inputs)(progress_of(progress)), owner)
 
@@ -284,6 +246,4 @@ def is_stale(operation):
     ----------
     operation : App.DocumentObject
     """
-    from freecad.toolaxis.document.staleness import why_stale
-
     return bool(why_stale(operation_of(operation)))

@@ -3,6 +3,8 @@
 from math import isfinite
 
 import FreeCAD
+from freecad.toolaxis.document.kinds import is_operation, is_plan
+from freecad.toolaxis.document.read_shapes import sculptured
 from freecad.toolaxis.document.strategies import INDEXED
 
 _UNITS = FreeCAD.Units
@@ -75,8 +77,6 @@ def operation_of(operation, whole=False):
     InvalidInput
         When it is something else, or was deleted.
     """
-    from freecad.toolaxis.document.kinds import is_operation, is_plan
-
     if not isinstance(operation, FreeCAD.DocumentObject):
         raise _refused(f"operation is {_shown(operation)}: {_OPERATION}")
     _check_there("operation", operation)
@@ -118,8 +118,6 @@ def faces_of(document, faces):
     InvalidInput
         When nothing is given, or something that has no such faces.
     """
-    from freecad.toolaxis.document.read_shapes import sculptured
-
     if _is_pair(faces) or not isinstance(faces, list | tuple):
         items = [("faces", faces)]
     else:

@@ -11,6 +11,7 @@ also changes hands more often, since the window asks for it several times in dra
 import gc
 import re
 import sys
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -71,8 +72,6 @@ class _Thread(QtCore.QThread):
         except MemoryError:
             self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
         except Exception as reason:  # our own bug: the panel says so, the traceback is for the report
-            import traceback
-
             self.message = f"an error inside Tool Axis ({type(reason).__name__}: {sentence(reason)}); please report it"
             self.trace = traceback.format_exc()
 

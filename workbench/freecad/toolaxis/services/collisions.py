@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.services.obstacles import bodies_in
+
 #: Looks between two operations, and how deep two things lie in one another before they meet, mm: the cutter touches
 #: what it cuts, and faces are known to a few hundredths.
 STEPS, DEPTH = 20, 0.1
@@ -198,9 +201,6 @@ def copies(operations):
     -------
     list of Copy
     """
-    from freecad.toolaxis.document.inputs import inputs_of
-    from freecad.toolaxis.services.obstacles import bodies_in
-
     from toolaxis.cad.freecad.documents import name_of, shape_of
 
     jobs = [inputs_of(operation) for operation in operations]
@@ -222,8 +222,6 @@ def tool_of(operation):
     -------
     toolaxis.tools.tool.Tool
     """
-    from freecad.toolaxis.document.inputs import inputs_of
-
     return inputs_of(operation).assembled()
 
 

@@ -3,8 +3,12 @@
 from contextlib import suppress
 from dataclasses import replace
 
+from freecad.toolaxis.document.cam_probe import controllers, speeds, tool_from
+from freecad.toolaxis.document.inputs import Inputs
 from freecad.toolaxis.document.preferences import preferred_inputs
+from freecad.toolaxis.document.read_shapes import number_in
 from freecad.toolaxis.services.obstacles import bodies_beside
+from freecad.toolaxis.services.tools import tool_fields
 
 #: Diameters that cutters come in, mm.
 _DIAMETERS = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
@@ -27,9 +31,6 @@ def defaults(document, faces):
     freecad.toolaxis.document.inputs.Inputs
         Also where the faces cannot be used; they are refused later, with the reason.
     """
-    from freecad.toolaxis.document.cam_probe import controllers, speeds, tool_from
-    from freecad.toolaxis.services.api import Inputs, tool_fields
-
     shapes = _faces(faces)
     beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
     inputs = _preferred(_for_size(Inputs(tuple(faces), obstacles=tuple(beside)), shapes))
@@ -60,8 +61,6 @@ def _preferred(inputs):
 
 def _faces(faces):
     """The faces that can be read, in the document's space."""
-    from freecad.toolaxis.document.read_shapes import number_in
-
     from toolaxis.cad.freecad.documents import shape_of
 
     found = []

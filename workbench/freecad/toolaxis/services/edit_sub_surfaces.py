@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from freecad.toolaxis.document.inputs import Piece, inputs_of, own_piece
 from freecad.toolaxis.document.kinds import is_operation, operations_in, plan_of
+from freecad.toolaxis.document.read_shapes import Source
 
 #: Points along each edge of a line that was drawn.
 _POINTS = 24
@@ -30,8 +31,6 @@ class Division:
     """
 
     def __init__(self, operations):
-        from freecad.toolaxis.document.read_shapes import Source
-
         from toolaxis.progress import NO_PROGRESS
 
         if not operations or not all(map(is_operation, operations)):

@@ -2,10 +2,16 @@
 
 import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from freecad.toolaxis.document.blade_links import turned_copies
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.machine import angles_kept, nearest
-from freecad.toolaxis.document.machine_angles import PREFIX, in_order, mounting
+from freecad.toolaxis.document.machine_angles import in_order
+from freecad.toolaxis.document.machine_limits import PREFIX, mounting
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.services.arguments import operation_of, progress_of
 
 #: What operations of one folder have in common, and how it is called in messages.
@@ -84,8 +90,6 @@ def task(operations, folder, wish=None):
     InvalidInput
         When an operation is stale or has no part any more, or operations do not go together.
     """
-    from pathlib import Path
-
     gather, verdict = plan_task(operations), _verdict(operations)
     wish = Wish() if wish is None else wish
 
@@ -112,9 +116,6 @@ def plan_task(operations):
     InvalidInput
         When an operation is stale or has no part any more, or operations do not go together.
     """
-    from freecad.toolaxis.document.read_operation import Standing
-    from freecad.toolaxis.document.read_shapes import Source
-
     inputs = [_inputs(operation) for operation in operations]
     together = _together(operations, inputs)
     source, rows = Source.of(together), []
@@ -146,9 +147,6 @@ def plan_task(operations):
 
 def _inputs(operation):
     """The inputs of an operation that holds."""
-    from freecad.toolaxis.document.staleness import why_stale
-    from freecad.toolaxis.services.api import inputs_of
-
     from toolaxis.errors import InvalidInput
 
     reasons = why_stale(operation)
@@ -197,8 +195,6 @@ def _numbered(details, before):
 
 def _operation(number, part, row):
     """An operation of the library from what stands in the document."""
-    from freecad.toolaxis.document.read_operation import Standing
-
     from toolaxis.plan.document import orientation_from
     from toolaxis.plan.operation import Operation
 

@@ -1,6 +1,7 @@
 """What panels do, as lines of a macro that do the same again without a panel."""
 
 import FreeCAD
+from freecad.toolaxis.document.inputs import Inputs
 
 import __main__
 
@@ -63,8 +64,6 @@ def plan_line(inputs):
     ----------
     inputs : freecad.toolaxis.document.inputs.Inputs
     """
-    from freecad.toolaxis.document.inputs import Inputs
-
     usual = Inputs()
     faces = [f"{thing.Name}.{name}" for thing, name in inputs.faces]
     given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}

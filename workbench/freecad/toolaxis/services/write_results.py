@@ -15,10 +15,13 @@ from freecad.toolaxis.document.passes import commands, fill_passes, keep_axes
 from freecad.toolaxis.document.placement import chain_of, placement_from
 from freecad.toolaxis.document.plan_group import WholePlan, keep_figures, keep_plan
 from freecad.toolaxis.document.properties import assign
+from freecad.toolaxis.document.read_shapes import numbered
 from freecad.toolaxis.document.staleness import digest, signature
 from freecad.toolaxis.document.sub_surface_shape import is_shown, show_surface, surface_colour
 from freecad.toolaxis.document.tool_on_path import ToolOnPasses, tool_shape
 from freecad.toolaxis.document.transaction import one_step, remove
+from freecad.toolaxis.document.verdict_maps import keep
+from freecad.toolaxis.document.view_providers import attach_view
 from freecad.toolaxis.document.work_coordinates import add_frame, place_frame
 
 translate = FreeCAD.Qt.translate
@@ -84,8 +87,6 @@ def owners_of(inputs, plan):
     inputs : freecad.toolaxis.document.inputs.Inputs
     plan : toolaxis.plan.plan.Plan
     """
-    from freecad.toolaxis.document.read_shapes import numbered
-
     from toolaxis.cad.freecad.documents import shape_of
     from toolaxis.errors import InvalidInput
 
@@ -148,10 +149,7 @@ def _new_group(document):
 def _new_plan(document):
     plan = document.addObject("App::DocumentObjectGroupPython", "ToolAxisPlan")
     WholePlan(plan)
-    if FreeCAD.GuiUp:
-        from freecad.toolaxis.gui.views.plan_group import WholePlanView
-
-        WholePlanView(plan.ViewObject)
+    attach_view(plan)
     plan.Label = translate("ToolAxis", "Plan")
     return plan
 
@@ -169,10 +167,7 @@ def _colours(plan, standing):
 def _added(document, group):
     operation = document.addObject("App::DocumentObjectGroupPython", "Operation")
     Operation(operation)
-    if FreeCAD.GuiUp:
-        from freecad.toolaxis.gui.views.operation import OperationView
-
-        OperationView(operation.ViewObject)
+    attach_view(operation)
     group.addObject(operation)
     return operation
 
@@ -275,10 +270,8 @@ def _standing_tool(operation, plan, title):
     if standing is None:
         standing = document.addObject("Part::FeaturePython", "ToolOnPasses")
         ToolOnPasses(standing)
+        attach_view(standing)
         if FreeCAD.GuiUp:
-            from freecad.toolaxis.gui.views.tool_on_path import ToolView
-
-            ToolView(standing.ViewObject)
             standing.ViewObject.Visibility = len(plan.operations) == 1  # several would hide what they machine
         operation.addObject(standing)
     if standing.Passes != passes:
@@ -308,8 +301,6 @@ def keep_verdict(operation, verdicts, maps=None):
     App.DocumentObject or None
         The mesh.
     """
-    from freecad.toolaxis.document.verdict_maps import keep
-
     with one_step(operation.Document, translate("ToolAxis", "Verify")):
         operation.JudgedWith, operation.JudgedShapes = operation.Proxy.judging
         return keep(operation, verdicts[0], child(operation, "Path::Feature").Placement, maps)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from freecad.toolaxis.gui.widgets.quantity import fine_text
 
 from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular
@@ -100,8 +101,6 @@ def missed(code, amount):
     amount : float
         mm or rad.
     """
-    from freecad.toolaxis.gui.widgets.quantity import fine_text
-
     if not (np.isfinite(amount) and amount > 0):
         return ""
     if code in _ANGLES:

@@ -2,8 +2,11 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
-from freecad.toolaxis.gui.commands.selection import warn
+from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.gui.widgets.message_box import warn
+from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services.background import sentence
+from freecad.toolaxis.services.edit_sub_surfaces import merged, split
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 translate = FreeCAD.Qt.translate
@@ -11,8 +14,6 @@ translate = FreeCAD.Qt.translate
 
 def _chosen():
     """Operations that are selected, or whose objects are, and what else is selected that has edges and no faces."""
-    from freecad.toolaxis.document.kinds import is_operation
-
     operations, lines = [], []
     for thing in FreeCADGui.Selection.getSelection(FreeCAD.ActiveDocument.Name):
         above = [one for one in (thing, *thing.InList) if is_operation(one) and (one is thing or thing in one.Group)]
@@ -27,7 +28,6 @@ def _chosen():
 def _open(make):
     """Open the panel for the plan that inputs are made for, or say why there are none."""
     from freecad.toolaxis.gui.plan.panel import PlanPanel
-    from freecad.toolaxis.services.background import sentence
 
     try:
         owner, inputs = make()
@@ -60,8 +60,6 @@ class MergeSubSurfaces(_Command):
 
     def Activated(self):
         """Open the panel with the sub-surfaces put together, or say why that cannot be."""
-        from freecad.toolaxis.services.edit_sub_surfaces import merged
-
         operations, _ = _chosen()
         if len(operations) < 2:
             warn(translate("ToolAxis", "Select two or more sub-surfaces of one face in the tree first."))
@@ -83,8 +81,6 @@ class SplitSubSurface(_Command):
 
     def Activated(self):
         """Open the panel with the pieces, or say why that cannot be."""
-        from freecad.toolaxis.services.edit_sub_surfaces import split
-
         operations, lines = _chosen()
         if len(operations) != 1 or len(lines) > 1:
             warn(translate("ToolAxis", "Select one sub-surface in the tree, and one line that cuts it if it shall not "

@@ -2,7 +2,10 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES, ROOT
+from freecad.toolaxis.gui.commands.freecad import add_commands
+from freecad.toolaxis.gui.widgets.message_box import warn
+from freecad.toolaxis.paths import RESOURCES, ROOT
+from freecad.toolaxis.services.background import sentence
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -54,8 +57,6 @@ class Example:
     def Activated(self):
         """Open the part and look at it as a whole."""
         import Import
-        from freecad.toolaxis.gui.commands.selection import warn
-        from freecad.toolaxis.services.background import sentence
 
         document = FreeCAD.newDocument(self.name)
         try:
@@ -77,11 +78,4 @@ class Example:
 
 def register():
     """Make the commands known to FreeCAD; their names in the order of the menu."""
-    known = FreeCADGui.listCommands()
-    names = []
-    for part in PARTS:
-        name = f"ToolAxis_Example_{part}"
-        names.append(name)
-        if name not in known:
-            FreeCADGui.addCommand(name, Example(part))
-    return names
+    return add_commands({f"ToolAxis_Example_{part}": Example(part) for part in PARTS})

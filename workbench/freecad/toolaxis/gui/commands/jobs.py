@@ -1,9 +1,17 @@
 """Make CAM jobs: FreeCAD's own jobs from operations, ready for its post-processors."""
 
+from time import monotonic
+
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
-from freecad.toolaxis.gui.commands.selection import confirmed, operations, warn
+from freecad.toolaxis.cam.jobs import count_jobs, make_jobs
+from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
+from freecad.toolaxis.gui.commands.selection import operations
+from freecad.toolaxis.gui.widgets.message_box import confirmed, warn
+from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services.background import sentence
+from freecad.toolaxis.services.macros import list_of, record
+from PySide import QtCore, QtWidgets
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 translate = FreeCAD.Qt.translate
@@ -28,11 +36,6 @@ class MakeJobs:
 
     def Activated(self):
         """Make the jobs and select them, or say what is missing; asks first where they become many."""
-        from freecad.toolaxis.cam.jobs import count_jobs
-        from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
-        from freecad.toolaxis.services.background import sentence
-        from freecad.toolaxis.services.macros import list_of, record
-
         document = FreeCAD.ActiveDocument
         found = operations(document)
         if not found:
@@ -70,11 +73,6 @@ class MakeJobs:
 
 def _made(document, found):
     """The jobs; none where the user stopped."""
-    from time import monotonic
-
-    from freecad.toolaxis.cam.jobs import make_jobs
-    from PySide import QtCore, QtWidgets
-
     from toolaxis.errors import Cancelled
     from toolaxis.progress import Progress
 

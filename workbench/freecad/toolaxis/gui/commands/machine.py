@@ -2,8 +2,9 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
-from freecad.toolaxis.gui.commands.selection import operations, warn
+from freecad.toolaxis.gui.commands.selection import operations
+from freecad.toolaxis.gui.widgets.message_box import warn
+from freecad.toolaxis.paths import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

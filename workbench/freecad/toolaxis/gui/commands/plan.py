@@ -2,7 +2,7 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
+from freecad.toolaxis.paths import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

@@ -2,8 +2,11 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
-from freecad.toolaxis.gui.commands.selection import operations, plans, warn
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.gui.commands.selection import operations, plans
+from freecad.toolaxis.gui.widgets.message_box import warn
+from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services import api
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -31,9 +34,8 @@ class Recompute:
                                                   "select faces and run Plan Orientations first."))
             return
         from freecad.toolaxis.gui.plan.panel import PlanPanel
-        from freecad.toolaxis.services import api
 
         chosen = api.planned_with(found[0])
-        panel = PlanPanel(FreeCAD.ActiveDocument, api.inputs_of(chosen), chosen)
+        panel = PlanPanel(FreeCAD.ActiveDocument, inputs_of(chosen), chosen)
         FreeCADGui.Control.showDialog(panel)
         panel.compute()

@@ -1,6 +1,7 @@
-"""What commands act on, and how they say that there is nothing."""
+"""What commands act on."""
 
 import FreeCADGui
+from freecad.toolaxis.document.kinds import is_operation, is_plan
 
 
 def operations(document):
@@ -10,8 +11,6 @@ def operations(document):
     ----------
     document : App.Document
     """
-    from freecad.toolaxis.document.kinds import is_operation
-
     chosen = []
     for thing in FreeCADGui.Selection.getSelection(document.Name):
         chosen += [one for one in (thing, *thing.OutListRecursive, *thing.InListRecursive) if is_operation(one)]
@@ -26,36 +25,8 @@ def plans(document):
     ----------
     document : App.Document
     """
-    from freecad.toolaxis.document.kinds import is_operation, is_plan
-
     chosen = FreeCADGui.Selection.getSelection(document.Name)
     if any(is_operation(one) for thing in chosen for one in (thing, *thing.InListRecursive)):
         return []
     found = [thing for thing in chosen if is_plan(thing)]
     return found or [thing for thing in document.Objects if is_plan(thing)][:1]
-
-
-def warn(text):
-    """Say something in a dialog that waits for OK.
-
-    Parameters
-    ----------
-    text : str
-    """
-    from PySide import QtWidgets
-
-    text = text if text.endswith(".") else f"{text}."
-    QtWidgets.QMessageBox.information(FreeCADGui.getMainWindow(), "Tool Axis", text)
-
-
-def confirmed(text):
-    """Ask something in a dialog; whether the answer is yes.
-
-    Parameters
-    ----------
-    text : str
-    """
-    from PySide import QtWidgets
-
-    box = QtWidgets.QMessageBox
-    return box.question(FreeCADGui.getMainWindow(), "Tool Axis", text, box.Yes | box.No, box.No) == box.Yes

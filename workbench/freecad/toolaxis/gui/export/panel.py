@@ -4,11 +4,11 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
 from freecad.toolaxis.document.machine import machine_of
-from freecad.toolaxis.document.machine_angles import available
+from freecad.toolaxis.document.machine_limits import available
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import Work, sentence
 from freecad.toolaxis.services.export import Wish, task
 from freecad.toolaxis.services.macros import list_of, record
@@ -121,8 +121,7 @@ class ExportPanel(Panel):
         tell(self.form.message, f"{stage[:1].upper()}{stage[1:]}")
 
     def _done(self, folder, wish, names):
-        export = "freecad.toolaxis.services.export"
-        record(f"import {export}", f"{export}.export({list_of(self.operations)}, {str(folder)!r}, {export}.{wish!r})")
+        record(f"freecad.toolaxis.export({list_of(self.operations)}, {str(folder)!r}, freecad.toolaxis.{wish!r})")
         self.form.files.addItems(names)
         self._ended(translate("ToolAxis", "{} files in {}").format(len(names), folder), False)
 

@@ -1,7 +1,8 @@
 """What the panel of Machine looks at off the GUI thread, and what of it is shown in red."""
 
 import numpy as np
-from freecad.toolaxis.document.machine_angles import in_order, mounting
+from freecad.toolaxis.document.machine_angles import in_order
+from freecad.toolaxis.document.machine_limits import mounting
 from freecad.toolaxis.gui.machine.motion import Journey
 from freecad.toolaxis.services import collisions
 

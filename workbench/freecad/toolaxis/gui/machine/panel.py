@@ -4,15 +4,18 @@ from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.machine import machine_of, place_machine
-from freecad.toolaxis.document.machine_angles import available, text_of, texts_of
+from freecad.toolaxis.document.machine_angles import texts_of
+from freecad.toolaxis.document.machine_limits import available, text_of
+from freecad.toolaxis.document.read_operation import Standing
 from freecad.toolaxis.gui.machine.check import lengths_at, looked_at, met_by, middle_of, names_of, things_of, tip_of
 from freecad.toolaxis.gui.machine.motion import Journey, meeting
 from freecad.toolaxis.gui.machine.scene import MachineScene
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.table_entries import data_of, put
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import collisions
 from freecad.toolaxis.services.background import Work, sentence
 from PySide import QtCore, QtGui, QtWidgets
@@ -129,9 +132,6 @@ class MachinePanel(Panel):
 
     def _changed(self, *_):
         """Another machine or place: look at all operations anew."""
-        from freecad.toolaxis.document.read_operation import Standing
-        from freecad.toolaxis.services.api import inputs_of
-
         self._leave()
         self.timer.stop()
         self.found = self.journey = None

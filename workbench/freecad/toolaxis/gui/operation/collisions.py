@@ -5,6 +5,7 @@ from contextlib import suppress
 import FreeCAD
 from freecad.toolaxis.document.passes import Stations
 from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.gui.machine.scene import red_over
 from freecad.toolaxis.gui.plan.preview import view_of
 from freecad.toolaxis.gui.widgets.fields import tell
 from freecad.toolaxis.services import collisions
@@ -104,8 +105,6 @@ class Collisions:
         tell(self.label, translate("ToolAxis", "Collisions could not be looked for: {}").format(text), True)
 
     def _redden(self, wanted):
-        from freecad.toolaxis.gui.machine.scene import red_over
-
         if wanted == (self.red is not None):
             return
         if not wanted:

@@ -4,17 +4,24 @@ import json
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
 from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.read_shapes import Source
 from freecad.toolaxis.gui.axis_map.legend import Legend
+from freecad.toolaxis.gui.axis_map.raster import marked, picture_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill, measures
 from freecad.toolaxis.gui.axis_map.widget import HemisphereMap, no_map
 from freecad.toolaxis.gui.operation.collisions import Collisions
 from freecad.toolaxis.gui.pictures.window import show_pictures
+from freecad.toolaxis.gui.plan.panel import PlanPanel
+from freecad.toolaxis.gui.verify.panel import VerifyPanel
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
+from freecad.toolaxis.gui.widgets.message_box import warn
 from freecad.toolaxis.gui.widgets.panel import Panel
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.export import plan_task
 from freecad.toolaxis.services.pictures import drawn
 from PySide import QtCore, QtWidgets
 
@@ -119,9 +126,7 @@ class OperationPanel(Panel):
         if found is None or found.map is None:
             return
         try:
-            from freecad.toolaxis.document.read_shapes import Source
-
-            source = Source.of(api.inputs_of(self.operation))
+            source = Source.of(inputs_of(self.operation))
         except Exception as reason:  # the part is gone: no map
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return
@@ -145,8 +150,6 @@ class OperationPanel(Panel):
 
     def draw(self):
         """Draw the operation as it stands, off the GUI thread, and open the window with its pictures."""
-        from freecad.toolaxis.services.export import plan_task
-
         try:
             plan = plan_task([self.operation])
         except Exception as reason:
@@ -181,14 +184,10 @@ class OperationPanel(Panel):
             self.drawing = None
 
     def _plan_again(self):
-        from freecad.toolaxis.gui.plan.panel import PlanPanel
-
         chosen = api.planned_with(self.operation)
-        self._open(lambda: PlanPanel(self.document, api.inputs_of(chosen), chosen))
+        self._open(lambda: PlanPanel(self.document, inputs_of(chosen), chosen))
 
     def _verify(self):
-        from freecad.toolaxis.gui.verify.panel import VerifyPanel
-
         self._open(lambda: VerifyPanel(self.document, [self.operation]))
 
     def _open(self, make):
@@ -200,8 +199,6 @@ class OperationPanel(Panel):
             try:
                 FreeCADGui.Control.showDialog(make())
             except Exception as reason:
-                from freecad.toolaxis.gui.commands.selection import warn
-
                 warn(sentence(reason))
 
         QtCore.QTimer.singleShot(0, show)
@@ -236,8 +233,6 @@ class OperationPanel(Panel):
 
 def _picture(source, number, found, progress):
     """The picture of a kept map; runs off the GUI thread."""
-    from freecad.toolaxis.gui.axis_map.raster import marked, picture_of
-
     part, _ = source.read(progress)
     picture = picture_of(part.face(number), found.map)
     return None if picture is None else marked(picture, found)

@@ -5,8 +5,8 @@ from dataclasses import replace
 from math import degrees
 
 import FreeCAD
-from freecad.toolaxis.document.inputs import flute_of
-from freecad.toolaxis.document.machine_angles import PREFIX, mounting
+from freecad.toolaxis.document.inputs import Inputs, flute_of
+from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, ROUGH, STRATEGIES, needs
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
@@ -307,8 +307,6 @@ class PlanForm:
 
 def _shown(inputs, fastest):
     """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
-    from freecad.toolaxis.document.inputs import Inputs
-
     from toolaxis.errors import InvalidInput
     from toolaxis.partition.partition import checked_count
     from toolaxis.tools.tool import Tool
@@ -346,8 +344,6 @@ def check(values):
     InvalidInput
         With quantity, value, rule and remedy.
     """
-    from freecad.toolaxis.document.inputs import Inputs
-
     from toolaxis.errors import InvalidInput
     from toolaxis.machine.limits import parse_limits
 

@@ -1,6 +1,7 @@
 """Which axes and feeds of a plan are locked, and the sub-surfaces that are kept for that."""
 
 from freecad.toolaxis.document.inputs import Piece
+from freecad.toolaxis.services.write_results import owners_of, region_of
 
 
 class Locks:
@@ -14,8 +15,6 @@ class Locks:
     """
 
     def __init__(self, inputs=None, plan=None):
-        from freecad.toolaxis.services.write_results import owners_of
-
         self.axis, self.feed, self.drawn = set(), set(), set()
         self.owners = {}
         if plan is None:
@@ -39,8 +38,6 @@ class Locks:
         every : bool
             Whether the borders of all faces are kept, also where nothing is locked.
         """
-        from freecad.toolaxis.services.write_results import region_of
-
         held = self.axis | self.feed | self.drawn
         copies = {} if plan.blades is None else plan.blades.copies
         faces = {op.face.number for op in plan.operations if every or op.number in held}

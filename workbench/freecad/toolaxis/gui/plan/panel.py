@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
 from freecad.toolaxis.document.cam_probe import speeds
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
-from freecad.toolaxis.document.machine_angles import offered
+from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
 from freecad.toolaxis.document.read_shapes import titles_of
+from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import Locks
@@ -21,11 +22,15 @@ from freecad.toolaxis.gui.plan.selection import selected_faces, tools_in
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import Ongoing
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.defaults import defaults
 from freecad.toolaxis.services.macros import again_lines, plan_line, record
 from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
+from freecad.toolaxis.services.tools import cutter_of
+from freecad.toolaxis.services.write_results import apply
 from PySide import QtCore, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -79,9 +84,9 @@ class PlanPanel(Panel):
             return False
         plan = self.view.plan
         inputs = replace(self.computed, pieces=self._pieces())
-        before = None if self.operation is None else api.inputs_of(self.operation)
+        before = None if self.operation is None else inputs_of(self.operation)
         try:
-            api.apply(self.document, inputs, plan, self.operation)
+            apply(self.document, inputs, plan, self.operation)
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
@@ -102,7 +107,7 @@ class PlanPanel(Panel):
     def _fill(self, inputs):
         faces, problems = selected_faces(self.document)
         if inputs is None:
-            inputs = api.defaults(self.document, faces)
+            inputs = defaults(self.document, faces)
         self.tools = tools_in(self.document)
         self.form.tool.addItem(translate("ToolAxis", "typed in below"))
         self.form.tool.addItems([name for name, _ in self.tools])
@@ -151,7 +156,7 @@ class PlanPanel(Panel):
             return
         try:
             found = self.tools[index - 1][1]
-            self.fields.take_tool(api.cutter_of(found), (None, None) if isinstance(found, str) else speeds(found))
+            self.fields.take_tool(cutter_of(found), (None, None) if isinstance(found, str) else speeds(found))
         except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
             self.form.tool.setCurrentIndex(_TYPED)
             self.problem = sentence(reason)
@@ -211,7 +216,7 @@ class PlanPanel(Panel):
             self._show_state()
             return
         self.problem, self.outrun = "", False
-        inputs = api.Inputs(**self.fields.read(), pieces=self._pieces())
+        inputs = Inputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
         try:
@@ -351,8 +356,6 @@ class PlanPanel(Panel):
 
 def _growing(offered):
     """Picture and face of an intermediate result, None while it is too coarse; runs off the GUI thread."""
-    from freecad.toolaxis.gui.axis_map.raster import picture_of
-
     face, found = offered
     picture = picture_of(face, found) if len(found.axis) >= _ENOUGH else None
     return None if picture is None else (picture, face)
@@ -360,8 +363,6 @@ def _growing(offered):
 
 def _planned(task, progress):
     """Plan and pictures; runs off the GUI thread."""
-    from freecad.toolaxis.gui.axis_map.raster import axis_picture
-
     from toolaxis.progress import NO_PROGRESS
 
     plan = task(progress)

@@ -3,6 +3,7 @@
 import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.document.cam_probe import controllers
+from freecad.toolaxis.document.read_shapes import number_in, sculptured
 
 translate = FreeCAD.Qt.translate
 
@@ -34,8 +35,6 @@ def selected_faces(document):
 
 def _faces(thing, name):
     """The face of a name, or the sculptured faces of the whole object."""
-    from freecad.toolaxis.document.read_shapes import number_in, sculptured
-
     from toolaxis.cad.freecad.documents import shape_of
 
     shape = shape_of(thing)

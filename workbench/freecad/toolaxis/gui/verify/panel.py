@@ -5,7 +5,6 @@ from contextlib import suppress
 import FreeCAD
 import FreeCADGui
 import numpy as np
-from freecad.toolaxis import RESOURCES
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.verdict_maps import drawn, shown_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill
@@ -15,9 +14,11 @@ from freecad.toolaxis.gui.verify.paint import WHAT, Paint, skins_of
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.quantity import fine_text, length_text
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import Work, sentence
 from freecad.toolaxis.services.macros import record, thing_of
+from freecad.toolaxis.services.write_results import keep_verdict
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -108,7 +109,7 @@ class VerifyPanel(Panel):
         """Put verdicts and maps into the document; the meshes come to sight when the panel closes."""
         try:
             for operation, (verdicts, maps) in zip(self.operations, found, strict=True):
-                scallops, *_ = api.keep_verdict(operation, [verdict for verdict, _ in verdicts], maps)
+                scallops, *_ = keep_verdict(operation, [verdict for verdict, _ in verdicts], maps)
                 scallops.Visibility = False
                 self.meshes.append(scallops)
                 record(f"freecad.toolaxis.verify({thing_of(operation)})")

@@ -1,7 +1,7 @@
 """How a machine looks in the tree; its panel opens on a double click."""
 
 import FreeCADGui
-from freecad.toolaxis import RESOURCES
+from freecad.toolaxis.paths import RESOURCES
 
 
 class MachineView:

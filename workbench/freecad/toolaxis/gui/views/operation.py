@@ -2,7 +2,7 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis.gui.views import icon
+from freecad.toolaxis.gui.views.icons import icon
 
 translate = FreeCAD.Qt.translate
 

@@ -2,7 +2,9 @@
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis.gui.views import icon
+from freecad.toolaxis.document.blade_links import quiet
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.gui.views.icons import icon
 from PySide import QtCore
 
 #: Time between looks whether a document is open as a whole, ms: before, links still forget what they are told to hide.
@@ -10,8 +12,6 @@ _PAUSE = 100
 
 
 def _quiet(name):
-    from freecad.toolaxis.document.blade_links import quiet
-
     document = FreeCAD.listDocuments().get(name)
     if document is not None and document.Restoring:
         QtCore.QTimer.singleShot(_PAUSE, lambda: _quiet(name))
@@ -55,7 +55,6 @@ class WholePlanView:
         """Open the planning panel with what the plan was made with."""
         if FreeCADGui.Control.activeDialog():
             return False
-        from freecad.toolaxis.document.inputs import inputs_of
         from freecad.toolaxis.gui.plan.panel import PlanPanel
 
         plan = view.Object

@@ -1,6 +1,6 @@
 """The tool on its passes in the 3D view: cutter bright, holder see-through."""
 
-from freecad.toolaxis.gui.views import icon
+from freecad.toolaxis.gui.views.icons import icon
 
 _CLEAR = 30
 

@@ -11,10 +11,10 @@ try:
 except ImportError:  # FreeCAD 1.0
     import shiboken2 as shiboken
 
-from freecad.toolaxis import RESOURCES
 from freecad.toolaxis.gui.widgets import palette
 from freecad.toolaxis.gui.widgets.quantity import length_text, value_from_text
 from freecad.toolaxis.gui.widgets.table_entries import data_of, put
+from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import clear_away
 
 translate = FreeCAD.Qt.translate
