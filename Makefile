@@ -26,6 +26,7 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	cd workbench && ../$(BIN)/lint-imports
 
 test: lint tests
 
@@ -42,5 +43,5 @@ docs: setup
 	$(BIN)/python resources/manual/figures.py
 
 clean:
-	rm -rf out build core/*.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	rm -rf out build core/*.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache workbench/.import_linter_cache
 	find core tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} +

@@ -59,7 +59,7 @@ def measured(path, face, tool, scallop):
     end = time.monotonic() + 1.0
     wait(lambda: time.monotonic() > end)
     begin = time.perf_counter()
-    from freecad.toolaxis.panels.planning import PlanPanel
+    from freecad.toolaxis.gui.plan.panel import PlanPanel
 
     panel = PlanPanel(document)
     FreeCADGui.Control.showDialog(panel)

@@ -49,8 +49,10 @@ def measured(path, tool, scallop, regions):
     import FreeCAD
     import FreeCADGui
     import Import
-    from freecad.toolaxis import bridge
-    from freecad.toolaxis.objects import is_operation
+    from freecad.toolaxis.document.inputs import Inputs
+    from freecad.toolaxis.document.kinds import is_operation
+    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
 
     from toolaxis.progress import NO_PROGRESS
 
@@ -62,17 +64,17 @@ def measured(path, tool, scallop, regions):
     part = next(thing for thing in document.Objects if hasattr(thing, "Shape") and thing.Shape.Faces)
     yield "turning, part alone", f"{turned(document):.1f} frames/s"
     yield "memory, part alone", f"{memory():.0f} MB"
-    from freecad.toolaxis.reading import sculptured
+    from freecad.toolaxis.document.read_shapes import sculptured
 
     faces = tuple((part, name) for name in sculptured(part))
-    inputs = bridge.Inputs(faces, tool, scallop=scallop, regions=regions, **SLENDER)
+    inputs = Inputs(faces, tool, scallop=scallop, regions=regions, **SLENDER)
     begin = time.perf_counter()
-    plan = bridge.task(inputs)(NO_PROGRESS)
+    plan = api.task(inputs)(NO_PROGRESS)
     yield "to plan", f"{time.perf_counter() - begin:.1f} s"
     copies = {} if plan.blades is None else plan.blades.copies
     yield "operations, turned copies among them", f"{len(plan.operations)}, {len(copies)} ({plan.outcome})"
     begin = time.perf_counter()
-    made = bridge.apply(document, inputs, plan)
+    made = apply(document, inputs, plan)
     yield "to put into the document", f"{time.perf_counter() - begin:.1f} s"
     links = [thing for thing in document.Objects if thing.TypeId == "App::Link"]
     yield "operations, links, objects in all", f"{len(made)}, {len(links)}, {len(document.Objects)}"

@@ -20,7 +20,7 @@ OTHERS = {"OK"}
 def menu() -> set[str]:
     """All texts of the menu, from the commands' sources."""
     found = set()
-    for path in (ADDON / "commands").glob("*.py"):
+    for path in (ADDON / "gui" / "commands").glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "QT_TRANSLATE_NOOP":
                 found.add(ast.literal_eval(node.args[1]))

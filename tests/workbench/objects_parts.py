@@ -5,8 +5,9 @@ from math import cos, sin
 import FreeCAD
 import Part as FreecadPart
 from FreeCAD import Vector
-from freecad.toolaxis import bridge
-from freecad.toolaxis.reading import Source
+from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.services.write_results import apply
 
 from toolaxis.job.planning.edit_axis import try_axis
 from toolaxis.plan.operation import Operation
@@ -45,7 +46,7 @@ def sculptured_name(thing):
 
 def inputs_for(*faces, **given):
     """Inputs for faces, quickly computed."""
-    return bridge.Inputs(tuple(faces), TOOL, holder=HOLDER, stickout=25.0, **{"scallop": SCALLOP, **given})
+    return Inputs(tuple(faces), TOOL, holder=HOLDER, stickout=25.0, **{"scallop": SCALLOP, **given})
 
 
 def quick_plan(inputs, axis=LEANING):
@@ -61,4 +62,4 @@ def quick_plan(inputs, axis=LEANING):
 def planned(document, *faces, axis=LEANING, **given):
     """The operations for faces, in the tree."""
     inputs = inputs_for(*faces, **given)
-    return bridge.apply(document, inputs, quick_plan(inputs, axis))
+    return apply(document, inputs, quick_plan(inputs, axis))

@@ -3,7 +3,7 @@
 import re
 
 import numpy as np
-from freecad.toolaxis.places import matrix_of
+from freecad.toolaxis.document.placement import matrix_of
 
 WORD = re.compile(r"([XYZF])(-?\d+\.\d+)")
 #: The last digit of the program, mm.

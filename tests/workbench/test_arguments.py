@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import FreeCAD
 import pytest
 from freecad import toolaxis
-from freecad.toolaxis import arguments, bridge
-from freecad.toolaxis.reading import sculptured
+from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.read_shapes import sculptured
+from freecad.toolaxis.services import api, arguments
+from freecad.toolaxis.services.tools import tool_fields
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput, ToolAxisError
@@ -154,8 +156,8 @@ def test_faces_are_written_in_many_ways(document, part, face):
 
 
 def test_bodies_of_the_same_assembly_are_avoided(document, part):
-    from freecad.toolaxis.bodies import bodies_in
-    from freecad.toolaxis.defaults import defaults
+    from freecad.toolaxis.services.defaults import defaults
+    from freecad.toolaxis.services.obstacles import bodies_in
 
     outer, inner = (document.addObject("App::Part", name) for name in ("Outer", "Inner"))
     disc, hidden, apart = (document.addObject("Part::Box", name) for name in ("Disc", "Hidden", "Apart"))
@@ -190,7 +192,7 @@ def test_planned_with_units_and_names(document, parts, face):
 
 def test_a_tool_that_is_none(document, part, face):
     with pytest.raises(ToolAxisError, match="is no tool"):
-        bridge.plan(document, face, tool=part)
+        api.plan(document, face, tool=part)
 
 
 @pytest.mark.parametrize("tool", ["tapered-2x1x3", "torus-10x1", ta.Tool.torus(8, 1, flute_length=5.0, stickout=40.0),
@@ -198,20 +200,20 @@ def test_a_tool_that_is_none(document, part, face):
 def test_a_tool_is_taken_whole(tool):
     """Cutting edge and shank are those of the tool that is given, not of another one."""
     given = load_tool(tool) if isinstance(tool, str) else tool
-    taken = replace(bridge.Inputs(shank=((9, 0), (9, 50)), flute_length=3.0, stickout=50.0),
-                    **bridge.tool_fields(tool)).assembled()
+    taken = replace(Inputs(shank=((9, 0), (9, 50)), flute_length=3.0, stickout=50.0),
+                    **tool_fields(tool)).assembled()
     assert (taken.name, taken.flute_length) == (given.name, given.flute_length)
     for member in ("shank", "holder"):
         theirs = getattr(given, member)
         assert theirs is None or (getattr(taken, member) == theirs).all()
     assert given.shank is not None or taken.shank is None
-    again = replace(bridge.Inputs(), **bridge.tool_fields(taken)).assembled()
+    again = replace(Inputs(), **tool_fields(taken)).assembled()
     assert again.flute_length == given.flute_length
 
 
 def test_the_machining_tolerance_is_that_of_the_library_and_stands_in_macros(document, parts, face):
-    from freecad.toolaxis.inputs import TOLERANCE
-    from freecad.toolaxis.macros import again_lines, plan_line
+    from freecad.toolaxis.document.inputs import TOLERANCE
+    from freecad.toolaxis.services.macros import again_lines, plan_line
 
     from toolaxis.tolerances import MACHINING
 

@@ -8,14 +8,17 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge, cam_jobs, cam_setup
-from freecad.toolaxis.cam import tool_from
-from freecad.toolaxis.cam_jobs import count_jobs, jobs_of, make_jobs
-from freecad.toolaxis.cam_offsets import OFFSETS, shared_of
-from freecad.toolaxis.cam_tools import add_bit
-from freecad.toolaxis.objects.belongings import frame_of
-from freecad.toolaxis.objects.frames import kind_of_frame
-from freecad.toolaxis.places import matrix_of
+from freecad.toolaxis.cam import job_setup
+from freecad.toolaxis.cam import jobs as cam_jobs
+from freecad.toolaxis.cam.jobs import count_jobs, jobs_of, make_jobs
+from freecad.toolaxis.cam.tools import add_bit
+from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
+from freecad.toolaxis.document.cam_probe import tool_from
+from freecad.toolaxis.document.children import frame_of
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.placement import matrix_of
+from freecad.toolaxis.document.work_coordinates import kind_of_frame
+from freecad.toolaxis.services.write_results import apply
 
 from toolaxis.cad.freecad.documents import shape_of
 from toolaxis.errors import Cancelled, InvalidInput
@@ -36,7 +39,7 @@ def planned(document, parts, thing, name, lean=(0.15, 0.1, 0.05), **given):
     inputs = parts.inputs_for((thing, name), **given)
     plan = parts.quick_plan(inputs, Vector(*(np.array(face.normalAt(0.5, 0.5)) + lean)))
     assert plan.operations[0].done, plan.operations[0].orientation.reasons
-    return bridge.apply(document, inputs, plan)[0], plan.operations[0]
+    return apply(document, inputs, plan)[0], plan.operations[0]
 
 
 def turned(document, parts):
@@ -95,7 +98,7 @@ def test_a_program_of_a_tilted_plane_says_so_before_it_moves(document, parts, po
 
 
 def test_a_program_in_the_parts_own_plane_says_nothing_of_tilting():
-    assert cam_setup.plane_comments(Placement()) == []
+    assert job_setup.plane_comments(Placement()) == []
 
 
 def test_each_orientation_is_a_job_and_shares_it(document, parts, posting):
@@ -128,10 +131,10 @@ def test_a_clone_that_shows_something_else_is_refused(document, parts):
     operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
     job, = make_jobs(document, operation)
     model, frame = job.Model.Group[0], frame_of(operation).Placement
-    cam_setup._turn_model(model, thing, frame)
+    job_setup._turn_model(model, thing, frame)
     model.Scale = Vector(1.0, 1.0, 1.001)
     with pytest.raises(InvalidInput, match="makes no true copy of Block"):
-        cam_setup._turn_model(model, thing, frame)
+        job_setup._turn_model(model, thing, frame)
 
 
 def test_the_safe_height_is_above_what_is_avoided(document, parts, posting):
@@ -168,8 +171,8 @@ def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
     operation.Scallop = 0.5
     document.recompute()
     assert operation.Stale
-    inputs = bridge.inputs_of(operation)
-    bridge.apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
+    inputs = inputs_of(operation)
+    apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
     again, = make_jobs(document, [operation])
     assert len(document.Objects) == count and len(again.Operations.Group[0].Gcode) < lines
     assert (again.PostProcessor, again.PostProcessorArgs, again.Fixtures) == ("grbl", "--no-header", ["G58"])
@@ -212,7 +215,7 @@ def test_nothing_half_made_stays(document, parts, monkeypatch):
     def fails(*_):
         raise InvalidInput("the disk is full")
 
-    monkeypatch.setattr(cam_setup, "blocks", fails)
+    monkeypatch.setattr(job_setup, "blocks", fails)
     with pytest.raises(InvalidInput, match="the disk is full"):
         make_jobs(document, operation)
     assert names(document) == before
@@ -280,7 +283,7 @@ def turned_copy(document, operation, face):
 
 
 def test_turned_copies_of_blades_are_machined_too(document, parts, tmp_path, posting):
-    from freecad.toolaxis.exporting import export
+    from freecad.toolaxis.services.export import export
 
     from toolaxis.job.files.plan_folder import read_plan
 
@@ -345,8 +348,8 @@ def test_a_later_call_takes_offsets_that_are_free(document, parts):
     first, second, third = (planned(document, parts, thing, name, (lean, 0.0, 0.0)) for lean in (0.1, 0.1, 0.3))
     job, = make_jobs(document, [first[0], second[0]])
     assert job.Fixtures == ["G54"] and make_jobs(document, third[0])[0].Fixtures == ["G55"]
-    inputs = bridge.inputs_of(second[0])
-    bridge.apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
+    inputs = inputs_of(second[0])
+    apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
     jobs = make_jobs(document, [first[0], second[0]])
     assert [job.Fixtures for job in jobs] == [["G54"], ["G56"]] and not shared_of(jobs)
 

@@ -11,15 +11,16 @@ import FreeCAD
 import numpy as np
 import Part as FreecadPart
 import pytest
-from freecad.toolaxis import bridge, machines
-from freecad.toolaxis.cam_jobs import count_jobs, make_jobs
-from freecad.toolaxis.cam_offsets import OFFSETS, shared_of
-from freecad.toolaxis.exporting import export, plan_task
-from freecad.toolaxis.objects import is_operation, is_plan, plan_of
-from freecad.toolaxis.objects.copies import turned_copies
-from freecad.toolaxis.objects.machine import place_machine
-from freecad.toolaxis.objects.surfaces import CLEAN_UP, is_shown
-from freecad.toolaxis.places import matrix_of
+from freecad.toolaxis.cam.jobs import count_jobs, make_jobs
+from freecad.toolaxis.cam.work_offsets import OFFSETS, shared_of
+from freecad.toolaxis.document import machine_angles, machine_limits
+from freecad.toolaxis.document.blade_links import turned_copies
+from freecad.toolaxis.document.kinds import is_operation, is_plan, plan_of
+from freecad.toolaxis.document.machine import place_machine
+from freecad.toolaxis.document.placement import matrix_of
+from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
+from freecad.toolaxis.services import api
+from freecad.toolaxis.services.export import export, plan_task
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.files.plan_folder import read_plan
@@ -51,14 +52,14 @@ def planned(name):
     given = dict(rest)
     place, machine, faces = given.pop("offset", None), given.pop("machine", None), given.pop("faces", None)
     if machine:
-        given["limits"] = machines.text_of(machine, place)
+        given["limits"] = machine_limits.text_of(machine, place)
     document = FreeCAD.newDocument("Walk")
     document.UndoMode = 1
     thing = document.addObject("Part::Feature", "Imported")
     thing.Shape = FreecadPart.read(str(FOLDER / f"{name}.step"))
     document.recompute()
     begin = time.perf_counter()
-    made = bridge.plan(document, (thing, faces) if faces else thing, tool, scallop,
+    made = api.plan(document, (thing, faces) if faces else thing, tool, scallop,
                        **{"shank": None, "holder": None, **given})
     told(f"{name}: planned in FreeCAD in {time.perf_counter() - begin:.1f} s")
     theirs = json.loads((FOLDER / name / "plan.json").read_text())
@@ -188,10 +189,10 @@ def test_both_solutions_of_a_machine_are_the_commands(walk, machine):
         found = [(list(ours.RotaryAngles), np.degrees(op["rotary"])) for ours, op in rows]
     else:
         numbered = {op.number: op for op in walk.plan.operations}
-        mounted = machines.mounting(f"machine:{machine}@0,0,60", walk.plan.tool)
-        ways = machines.in_order(mounted, [(op.orientation.axis, op.path.cl) for op in
+        mounted = machine_limits.mounting(f"machine:{machine}@0,0,60", walk.plan.tool)
+        ways = machine_angles.in_order(mounted, [(op.orientation.axis, op.path.cl) for op in
                                            (numbered[row["number"]] for _, row in rows)])
-        texts = [machines.texts_of(mounted.machine, *one) for one in ways]
+        texts = [machine_angles.texts_of(mounted.machine, *one) for one in ways]
         place_machine(walk.document, machine, (0, 0, 60), [(ours, text) for (ours, _), text in
                                                            zip(rows, texts, strict=True)])
         held = [mounted.holding(numbered[row["number"]].path.cl, numbered[row["number"]].orientation.axis)

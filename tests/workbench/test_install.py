@@ -66,8 +66,10 @@ def test_an_installed_library_serves_where_the_clone_has_none(tmp_path):
     """The add-on's folder alone, with core somewhere else on the path."""
     copy = tmp_path / "Mod" / "workbench" / "freecad" / "toolaxis"
     copy.mkdir(parents=True)
-    (copy / "__init__.py").write_text((ROOT / "workbench" / "freecad" / "toolaxis" / "__init__.py").read_text())
-    code = ("import freecad\nsys.modules.pop('freecad.toolaxis', None)\nfreecad.__path__.insert(0, sys.argv[1])\n"
+    for path in (ROOT / "workbench" / "freecad" / "toolaxis").glob("*.py"):
+        (copy / path.name).write_text(path.read_text())
+    code = ("import freecad\nfor name in [name for name in sys.modules if name.startswith('freecad.toolaxis')]:\n"
+            "    del sys.modules[name]\nfreecad.__path__.insert(0, sys.argv[1])\n"
             "sys.path[:] = [p for p in sys.path if not p.endswith('/core')] + [sys.argv[2]]\n"
             "import freecad.toolaxis as addon, toolaxis\n"
             "sys.__stdout__.write(f'{addon.__file__} {toolaxis.__file__}')")

@@ -7,10 +7,11 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis import machines, meetings
-from freecad.toolaxis.objects.machine import machine_of, place_machine
-from freecad.toolaxis.panels.machinemotion import Journey, corners, meeting, places
-from freecad.toolaxis.preferences import PLACE
+from freecad.toolaxis.document import machine_angles, machine_limits
+from freecad.toolaxis.document.machine import machine_of, place_machine
+from freecad.toolaxis.document.preferences import PLACE
+from freecad.toolaxis.gui.machine.motion import Journey, corners, meeting, places
+from freecad.toolaxis.services import collisions
 
 import toolaxis as ta
 from toolaxis.errors import Cancelled, InvalidInput
@@ -27,38 +28,40 @@ TIPS = np.array([[5.0, 4.0, 10.0], [15.0, 12.0, 9.0], [8.0, 2.0, 11.0]])
 
 @pytest.fixture(scope="module")
 def mounted():
-    return machines.mounting(TEXT, TOOL)
+    return machine_limits.mounting(TEXT, TOOL)
 
 
 def test_the_library_and_the_users_folder_are_offered(tmp_path):
-    assert set(library()) <= set(machines.available())
+    assert set(library()) <= set(machine_limits.available())
     (tmp_path / "mine.toml").write_text(library()["ab-trunnion"].read_text())
     preferences = FreeCAD.ParamGet(PLACE)
     preferences.SetString("MachinesFolder", str(tmp_path))
     try:
-        assert machines.available()["mine"] == str(tmp_path / "mine.toml")
-        assert machines.mounting(machines.text_of(machines.available()["mine"]), TOOL).machine.name.startswith("A, B")
+        assert machine_limits.available()["mine"] == str(tmp_path / "mine.toml")
+        mine = machine_limits.text_of(machine_limits.available()["mine"])
+        assert machine_limits.mounting(mine, TOOL).machine.name.startswith("A, B")
     finally:
         preferences.RemString("MachinesFolder")
-    assert "mine" not in machines.available()
+    assert "mine" not in machine_limits.available()
 
 
 def test_a_text_comes_back(mounted):
-    assert machines.text_of("bc-table-table", (0, 0, 20)) == TEXT
-    name, offset = machines.read_text(TEXT)
+    assert machine_limits.text_of("bc-table-table", (0, 0, 20)) == TEXT
+    name, offset = machine_limits.read_text(TEXT)
     assert name == "bc-table-table" and list(offset) == [0, 0, 20]
-    assert machines.read_text("machine:x") == ("x", None)
-    assert machines.limits_from("cone:0,0,1,60", TOOL) == "cone:0,0,1,60" and machines.limits_from("", TOOL) is None
-    assert machines.limits_from(TEXT, TOOL).machine.name == mounted.machine.name
+    assert machine_limits.read_text("machine:x") == ("x", None)
+    assert machine_limits.limits_from("cone:0,0,1,60", TOOL) == "cone:0,0,1,60"
+    assert machine_limits.limits_from("", TOOL) is None
+    assert machine_limits.limits_from(TEXT, TOOL).machine.name == mounted.machine.name
     for bad, words in (("machine:", "name no machine"), ("machine:nothing", "neither a file nor"),
                        ("machine:bc-table-table@1,2", "three numbers")):
         with pytest.raises(InvalidInput, match=words):
-            machines.mounting(bad, TOOL)
+            machine_limits.mounting(bad, TOOL)
 
 
 @pytest.mark.parametrize("axis", AXES)
 def test_both_solutions_hold_the_axis(mounted, axis):
-    ways = machines.ways_to_hold(mounted, axis, TIPS)
+    ways = machine_angles.ways_to_hold(mounted, axis, TIPS)
     assert len(ways) == 2 and np.abs(ways[0].rotary - ways[1].rotary).max() > 0.1
     for way in ways:
         assert not way.reason and "B" in way.text(mounted.machine)
@@ -66,23 +69,23 @@ def test_both_solutions_hold_the_axis(mounted, axis):
 
 
 def test_what_speaks_against_a_solution_is_said(mounted):
-    tilted = machines.mounting("machine:ab-trunnion@0,0,20", TOOL)
-    assert "beyond its range" in machines.ways_to_hold(tilted, [0.9, 0.0, 0.4], TIPS)[0].reason
-    far = machines.mounting("machine:bc-table-table@900,0,20", TOOL)
-    assert "leaves its travel by" in machines.ways_to_hold(far, AXES[0], TIPS)[0].reason
+    tilted = machine_limits.mounting("machine:ab-trunnion@0,0,20", TOOL)
+    assert "beyond its range" in machine_angles.ways_to_hold(tilted, [0.9, 0.0, 0.4], TIPS)[0].reason
+    far = machine_limits.mounting("machine:bc-table-table@900,0,20", TOOL)
+    assert "leaves its travel by" in machine_angles.ways_to_hold(far, AXES[0], TIPS)[0].reason
     inside, outside = 20.0, 900.0
     for _ in range(40):
         middle = (inside + outside) / 2
-        one = machines.mounting(f"machine:bc-table-table@{middle!r},0,20", TOOL)
-        said = machines.ways_to_hold(one, AXES[0], TIPS)[0].reason
+        one = machine_limits.mounting(f"machine:bc-table-table@{middle!r},0,20", TOOL)
+        said = machine_angles.ways_to_hold(one, AXES[0], TIPS)[0].reason
         inside, outside = (inside, middle) if said else (middle, outside)
-    near = machines.mounting(f"machine:bc-table-table@{outside!r},0,20", TOOL)
-    assert machines.ways_to_hold(near, AXES[0], TIPS)[0].reason.endswith("leaves its travel by 0.1 mm")
-    deep = machines.mounting("machine:bc-table-table@0,0,-60", TOOL)
-    way = machines.ways_to_hold(deep, AXES[0], TIPS)[0]
+    near = machine_limits.mounting(f"machine:bc-table-table@{outside!r},0,20", TOOL)
+    assert machine_angles.ways_to_hold(near, AXES[0], TIPS)[0].reason.endswith("leaves its travel by 0.1 mm")
+    deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    way = machine_angles.ways_to_hold(deep, AXES[0], TIPS)[0]
     assert "the spindle meets the table by" in way.reason and way.meeting == ("spindle", "table")
-    assert machines.ways_to_hold(machines.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
-    rows = machines.in_order(mounted, [(axis, TIPS) for axis in AXES])
+    assert machine_angles.ways_to_hold(machine_limits.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
+    rows = machine_angles.in_order(mounted, [(axis, TIPS) for axis in AXES])
     assert all(taken >= 0 for _, taken in rows)
     first, second = (ways[taken].rotary for ways, taken in rows)
     others = [np.abs(way.rotary - first).max() for way in rows[1][0]]
@@ -91,7 +94,7 @@ def test_what_speaks_against_a_solution_is_said(mounted):
 
 @pytest.fixture(scope="module")
 def journey(mounted):
-    rotary = [machines.ways_to_hold(mounted, axis, TIPS)[0].rotary for axis in AXES]
+    rotary = [machine_angles.ways_to_hold(mounted, axis, TIPS)[0].rotary for axis in AXES]
     return Journey.through(mounted, list(zip(TIPS[:2], rotary, strict=True)))
 
 
@@ -158,18 +161,19 @@ LIMITS = "machine:ab-trunnion@0,0,20"
 def test_a_plan_for_a_machine_shows_its_angles_and_is_written_for_it(document, parts, tmp_path):
     from dataclasses import replace
 
-    from freecad.toolaxis import bridge
-    from freecad.toolaxis.exporting import Wish, export
+    from freecad.toolaxis.document.inputs import inputs_of
+    from freecad.toolaxis.services.export import Wish, export
+    from freecad.toolaxis.services.write_results import apply
 
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), limits=TEXT)
-    mounted = machines.mounting(TEXT, inputs.assembled())
-    second = machines.ways_to_hold(mounted, parts.LEANING, TIPS)[1]
+    mounted = machine_limits.mounting(TEXT, inputs.assembled())
+    second = machine_angles.ways_to_hold(mounted, parts.LEANING, TIPS)[1]
     assert not second.reason, second.reason
     plan = parts.quick_plan(inputs, Vector(*mounted.axis_at(second.rotary)))
     plan = replace(plan, machine=mounted, operations=(replace(plan.operations[0], rotary=tuple(second.rotary)),))
-    made = bridge.apply(document, inputs, plan)[0]
-    assert made.Limits == TEXT and not made.Stale and bridge.inputs_of(made).limits == TEXT
+    made = apply(document, inputs, plan)[0]
+    assert made.Limits == TEXT and not made.Stale and inputs_of(made).limits == TEXT
     assert len(made.RotaryAngles) == 2 and made.RotaryAngles[0] == second.text(mounted.machine)
     names = export(made, tmp_path / "plan", Wish("linuxcnc", "bc-table-table", (0, 0, 20)))
     written = json.loads((tmp_path / "plan" / "plan.json").read_text())
@@ -181,13 +185,14 @@ def test_a_plan_for_a_machine_shows_its_angles_and_is_written_for_it(document, p
 
 @pytest.mark.long
 def test_planning_for_a_machine_allows_what_it_holds(document, parts):
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
 
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), scallop=0.6, limits=LIMITS)
-    made = bridge.apply(document, inputs, bridge.task(inputs)(parts.NO_PROGRESS))[0]
+    made = apply(document, inputs, api.task(inputs)(parts.NO_PROGRESS))[0]
     assert made.Outcome == "feasible" and len(made.RotaryAngles) == 2, made.Reasons
-    assert machines.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
+    assert machine_limits.mounting(LIMITS, inputs.assembled()).allowed(np.array([made.Axis]))[0]
     assert "machine" not in made.NotChecked
     assert 1 in json.loads(made.AxisMap)["map"]["reason"], "axes that the machine does not hold are grey on the map"
 
@@ -199,7 +204,7 @@ def clamped(document):
 
     for name, size, corner in (("Block", (40, 40, 10), (-20, -20, 0)), ("Post", (10, 10, 60), (12, -5, 0))):
         document.addObject("Part::Feature", name).Shape = Part.makeBox(*size, Vector(*corner))
-    return [meetings.Copy(thing.Name, f"the {thing.Name}", thing.Shape) for thing in document.Objects]
+    return [collisions.Copy(thing.Name, f"the {thing.Name}", thing.Shape) for thing in document.Objects]
 
 
 @pytest.mark.parametrize(("tip", "member", "thing"), [
@@ -207,9 +212,9 @@ def clamped(document):
     ((3, 0, 12), "holder", "Post"), ((1.5, 0, 12), None, None)])
 def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member, thing):
     """The holder of 20 mm begins 30 mm above the tip; the top of the block and the post are where they are."""
-    known = meetings.around(mounted, [TOOL], clamped, NO_PROGRESS)
+    known = collisions.around(mounted, [TOOL], clamped, NO_PROGRESS)
     journey = Journey.through(mounted, [(np.array(tip, dtype=float), np.zeros(2))])
-    found, = meetings.along(known, journey, [0], NO_PROGRESS)
+    found, = collisions.along(known, journey, [0], NO_PROGRESS)
     passes = known.on_passes(0, np.zeros(2), np.array([[-5.0, 0.0, 20.0], tip]))
     if member is None:
         assert found is None and passes is None
@@ -225,7 +230,7 @@ def test_the_tool_may_go_along_the_border_of_a_side(document, mounted):
 
     corners = [Vector(x, -20, z) for x, z in ((-20, 0), (20, 0), (20, 24), (-20, 4), (-20, 0))]
     wedge = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 40, 0))
-    known = meetings.around(mounted, [TOOL], [meetings.Copy("Wedge", "Wedge", wedge)], NO_PROGRESS)
+    known = collisions.around(mounted, [TOOL], [collisions.Copy("Wedge", "Wedge", wedge)], NO_PROGRESS)
     tips = np.array([[-18.0, -19.0, 9.0], [-15.0, -19.0, 10.5]])
     assert known.on_passes(0, np.zeros(2), tips) is None
     low = known.on_passes(0, np.zeros(2), tips - [0, 0, 3.6])
@@ -240,13 +245,13 @@ def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
     rise = journey.joints[1, 2] - journey.joints[0, 2]
     assert rise == pytest.approx(long.gauge_length - TOOL.gauge_length) and rise > 0
     assert [journey.station(way) for way in (0.0, 0.2, 0.21, 0.5, 1.0)] == [0, 0, 1, 1, 1]
-    known = meetings.around(mounted, tools, clamped, NO_PROGRESS)
-    found = meetings.along(known, journey, [0, 1], NO_PROGRESS)
+    known = collisions.around(mounted, tools, clamped, NO_PROGRESS)
+    found = collisions.along(known, journey, [0, 1], NO_PROGRESS)
     assert found[0].member == "holder" and found[-1] is None
-    first, second = machines.in_order(mounted, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
+    first, second = machine_angles.in_order(mounted, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
     assert not first[0][0].reason and not second[0][0].reason
-    deep = machines.mounting("machine:bc-table-table@0,0,-60", TOOL)
-    short, far = machines.in_order(deep, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
+    deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
+    short, far = machine_angles.in_order(deep, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
     assert "the spindle meets the table" in short[0][0].reason and not far[0][0].reason
 
 
@@ -255,9 +260,9 @@ def test_what_meets_on_the_way_is_found_between_stations(mounted, clamped):
     axes = tuple(replace(axis, high=130.0) if axis.name == "Z" else axis for axis in mounted.machine.linear)
     low = replace(mounted, machine=replace(mounted.machine, linear=axes))
     journey = Journey.through(low, [(np.array([x, 0.0, 12.0]), np.zeros(2)) for x in (-5.0, 40.0)])
-    known = meetings.around(low, [TOOL], clamped, NO_PROGRESS)
-    found = meetings.along(known, journey, [0, 0], NO_PROGRESS)
-    assert len(found) == meetings.STEPS + 1 and found[0] is None and found[-1] is None
+    known = collisions.around(low, [TOOL], clamped, NO_PROGRESS)
+    found = collisions.along(known, journey, [0, 0], NO_PROGRESS)
+    assert len(found) == collisions.STEPS + 1 and found[0] is None and found[-1] is None
     assert {one.thing for one in found if one} == {"Post"}
     with pytest.raises(Cancelled):
-        meetings.along(known, journey, [0, 0], Progress(cancelled=lambda: True))
+        collisions.along(known, journey, [0, 0], Progress(cancelled=lambda: True))

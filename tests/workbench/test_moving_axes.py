@@ -9,13 +9,13 @@ import numpy as np
 import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge
-from freecad.toolaxis.cam_jobs import make_jobs
-from freecad.toolaxis.exporting import plan_task
-from freecad.toolaxis.objects.axislines import MOST, is_lines
-from freecad.toolaxis.objects.belongings import child
-from freecad.toolaxis.panels.outcome import touched_once
-from freecad.toolaxis.standing import Standing
+from freecad.toolaxis.cam.jobs import make_jobs
+from freecad.toolaxis.document.axis_lines import MOST, is_lines
+from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.gui.plan.outcome import touched_once
+from freecad.toolaxis.services import api
+from freecad.toolaxis.services.export import plan_task
 
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.post.read_apt import read_apt
@@ -42,7 +42,7 @@ def planned(prepared, theirs):
     thing = document.addObject("Part::Feature", "Imported")
     thing.Shape = Part.read(str(prepared / "part.step"))
     document.recompute()
-    made, = bridge.plan(document, (thing, theirs.face), theirs.tool, theirs.inputs["scallop"],
+    made, = api.plan(document, (thing, theirs.face), theirs.tool, theirs.inputs["scallop"],
                         strategy=theirs.inputs["method"], shank=None, holder=None, limits="machine:bc-table-table",
                         feedrate=theirs.inputs["feedrate"])
     yield made
@@ -130,7 +130,7 @@ def test_what_does_not_go_with_a_strategy_is_told_and_nothing_is_made(document, 
     given = {"tool": parts.TOOL, **given}
     names = [one.Name for one in document.Objects]
     with pytest.raises(ToolAxisError, match=words):
-        bridge.plan(document, (block, parts.sculptured_name(block)), scallop=parts.SCALLOP, shank=None, holder=None,
+        api.plan(document, (block, parts.sculptured_name(block)), scallop=parts.SCALLOP, shank=None, holder=None,
                     **given)
     assert [one.Name for one in document.Objects] == names
 
@@ -155,7 +155,7 @@ def split_blade(document):
 @pytest.mark.parametrize("strategy", [pytest.param("blade", marks=pytest.mark.long), "blade-keys"])
 def test_faces_around_a_blade_are_one_in_the_tree_too(document, strategy):
     thing, name = split_blade(document)
-    made, = bridge.plan(document, (thing, name), "ball:8", 1.0, strategy=strategy, limits="machine:four-axis-a",
+    made, = api.plan(document, (thing, name), "ball:8", 1.0, strategy=strategy, limits="machine:four-axis-a",
                         stickout=100.0, holder=((12.5, 0.0), (12.5, 60.0)), shank=None, direction="climb")
     label = json.loads(made.Details)["label"]
     assert made.AxisMoves and made.Strategy == strategy
@@ -176,7 +176,7 @@ def test_two_point_contact_on_a_convex_face_is_planned_with_one_as_by_the_comman
     thing = document.addObject("Part::Feature", "Convex")
     thing.Shape = surface.toShape()
     document.recompute()
-    made, = bridge.plan(document, (thing, "Face1"), parts.TOOL, 0.3, shank=None, holder=parts.HOLDER, stickout=25.0,
+    made, = api.plan(document, (thing, "Face1"), parts.TOOL, 0.3, shank=None, holder=parts.HOLDER, stickout=25.0,
                         strategy="two-point")
     theirs = ta.plan(thing, ta.Tool.parse(parts.TOOL, stickout=25.0, holder=parts.HOLDER), 0.3, strategy="two-point")
     assert made.AxisMoves and made.Passes == theirs.operations[0].orientation.passes
@@ -188,7 +188,7 @@ def test_a_strategy_that_comes_to_nothing_leaves_the_tree_as_it_is(document, par
     block = parts.block(document)
     names = [one.Name for one in document.Objects]
     with pytest.raises(ToolAxisError, match=r"'multiscale' does not serve face .: refused feed"):
-        bridge.plan(document, (block, parts.sculptured_name(block)), parts.TOOL, parts.SCALLOP, shank=None,
+        api.plan(document, (block, parts.sculptured_name(block)), parts.TOOL, parts.SCALLOP, shank=None,
                     holder=parts.HOLDER, stickout=25.0, strategy="multiscale", limits="machine:bc-table-table")
     assert [one.Name for one in document.Objects] == names
 
@@ -200,7 +200,7 @@ def test_passes_that_keep_a_roughness_stand_in_the_tree_with_what_they_leave(doc
     thing = document.addObject("Part::Feature", "Hill")
     thing.Shape = surface.toShape()
     document.recompute()
-    made, = bridge.plan(document, (thing, "Face1"), "torus:10x3", 0.1, shank=None, holder=None, feedrate=800.0,
+    made, = api.plan(document, (thing, "Face1"), "torus:10x3", 0.1, shank=None, holder=None, feedrate=800.0,
                         strategy="multiscale", roughness=1.6, limits="machine:bc-table-table")
     assert made.AxisMoves and made.Strategy == "multiscale" and made.Roughness == 1.6 and made.Passes >= 5
     ra, wide = (why.split() for why in made.Reasons[:2])

@@ -8,12 +8,14 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge, known, results, staleness
-from freecad.toolaxis.objects import is_operation
-from freecad.toolaxis.objects.frames import kind_of_frame
-from freecad.toolaxis.objects.passes import moves
-from freecad.toolaxis.results import child
-from freecad.toolaxis.staleness import same, signature
+from freecad.toolaxis.document import shape_cache, staleness
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.document.passes import moves
+from freecad.toolaxis.document.staleness import same, signature
+from freecad.toolaxis.document.work_coordinates import kind_of_frame
+from freecad.toolaxis.services import api, write_results
+from freecad.toolaxis.services.write_results import apply, child, keep_verdict
 
 from toolaxis.errors import Cancelled, ToolAxisError
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -48,12 +50,12 @@ def stale(operation, words):
     """Whether an operation is marked stale for one reason, by its properties and by a look at the document."""
     reasons = "; ".join(operation.StaleReasons)
     assert words in reasons, reasons
-    return operation.Stale and bridge.is_stale(operation)
+    return operation.Stale and api.is_stale(operation)
 
 
 def test_nothing_is_stale_after_planning_or_after_a_recompute_of_all(operation, document, part):
     document.recompute(None, True)
-    assert not operation.Stale and not bridge.is_stale(operation)
+    assert not operation.Stale and not api.is_stale(operation)
     part.touch()
     document.recompute()
     assert not operation.Stale and not operation.StaleReasons
@@ -69,30 +71,30 @@ def test_a_changed_part_makes_results_stale(operation, document, parts, part):
 
 
 def test_a_verdict_holds_for_what_was_judged(operation, document, parts, part):
-    bridge.verify(operation)
+    api.verify(operation)
     assert operation.Verdict == "passed"
     document.recompute(None, True)
     assert operation.Verdict == "passed"
     part.Shape = parts.wavy(10.3)
     document.recompute()
     assert operation.Verdict == "out of date" and "verify again" in operation.VerdictReasons[0]
-    bridge.verify(operation)
+    api.verify(operation)
     assert operation.Verdict == "failed" and operation.Stale
     part.Shape = parts.wavy()
     document.recompute()
     assert not operation.Stale and operation.Verdict == "out of date"
     operation.Scallop = 2.0
     document.recompute()
-    assert bridge.verify(operation).passed
+    assert api.verify(operation).passed
     operation.Scallop = 0.3
     document.recompute()
     assert operation.Verdict == "out of date"
 
 
 def test_a_part_changed_while_it_was_judged(operation, document, parts, part):
-    found = bridge.verification(operation)(NO_PROGRESS).operations
+    found = api.verification(operation)(NO_PROGRESS).operations
     part.Shape = parts.wavy(10.3)
-    bridge.keep_verdict(operation, found)
+    keep_verdict(operation, found)
     document.recompute()
     assert operation.Verdict == "out of date"
 
@@ -124,7 +126,7 @@ def test_one_pole_a_hundredth_of_a_millimetre_off_is_a_change(document, parts):
 def test_a_shape_is_looked_at_once_and_anew_where_it_stands_elsewhere(clamp, monkeypatch):
     looks, points = [], staleness._points
     monkeypatch.setattr(staleness, "_points", lambda shape: looks.append(shape) or points(shape))
-    monkeypatch.setattr(known, "_SEEN", [])
+    monkeypatch.setattr(shape_cache, "_SEEN", [])
     assert bridge_signature(clamp) == bridge_signature(clamp) and len(looks) == 1
     clamp.Placement.Base = Vector(10, 0, 0)
     bridge_signature(clamp)
@@ -169,7 +171,7 @@ def test_limits_stand_in_the_document_so_a_turned_part_is_stale(document, parts,
     made = parts.planned(document, (part, parts.sculptured_name(part)), limits="cone:0,0,1,60")[0]
     part.Placement.Base = Vector(1, 2, 3)
     document.recompute()
-    assert bool(made.Stale) == bool(bridge.is_stale(made))
+    assert bool(made.Stale) == bool(api.is_stale(made))
     part.Placement = Placement(Vector(), Rotation(Vector(1, 0, 0), 20))
     document.recompute()
     assert stale(made, "turned")
@@ -177,13 +179,13 @@ def test_limits_stand_in_the_document_so_a_turned_part_is_stale(document, parts,
 
 def test_recompute_mends_the_same_objects(document, parts, part):
     made = parts.planned(document, (part, parts.sculptured_name(part)), limits=LIMITS)[0]
-    bridge.verify(made)
+    api.verify(made)
     part.Shape = parts.wavy(12.0)
     document.recompute()
     assert made.Stale
     before, old = names(document), moves(child(made, "Path::Feature"))[0]
-    again = bridge.recompute(made)
-    assert again == [made] and not made.Stale and not bridge.is_stale(made)
+    again = api.recompute(made)
+    assert again == [made] and not made.Stale and not api.is_stale(made)
     maps = [name for name in before if name.startswith(("Scallops", "Gouges"))]
     assert len(maps) == 2 and names(document) == sorted(set(before) - set(maps)), "an old verdict does not stay"
     assert made.Verdict == "not verified"
@@ -195,7 +197,7 @@ def test_a_deleted_part_is_said_and_refused(operation, document, part):
     document.removeObject(part.Name)
     document.recompute()
     assert stale(operation, "the part was deleted")
-    for act in (bridge.recompute, bridge.verify, bridge.verification):
+    for act in (api.recompute, api.verify, api.verification):
         with pytest.raises(ToolAxisError, match="was deleted"):
             act(operation)
     assert child(operation, "Path::Feature").Path.Size > 0, "what was there stays"
@@ -213,7 +215,7 @@ def test_one_undo_takes_all_back_and_redo_brings_it(document, parts, part):
     document.redo()
     assert names(document) == after
     again = document.getObject(name)
-    assert is_operation(again) and again.Passes > 1 and not bridge.is_stale(again)
+    assert is_operation(again) and again.Passes > 1 and not api.is_stale(again)
     assert child(again, "Part::FeaturePython").Passes == child(again, "Path::Feature")
 
 
@@ -224,7 +226,7 @@ def test_undo_of_a_recompute_brings_the_old_results_back(document, parts, part):
     old = moves(passes)[0]
     part.Shape = parts.wavy(12.0)
     document.recompute()
-    bridge.recompute(made)
+    api.recompute(made)
     document.undo()
     assert np.array_equal(moves(passes)[0], old)
 
@@ -238,7 +240,7 @@ def test_a_failure_leaves_no_half_made_tree(document, parts, part, monkeypatch, 
     def broken(*_):
         raise RuntimeError("planted")
 
-    monkeypatch.setattr(results, step, broken)
+    monkeypatch.setattr(write_results, step, broken)
     with pytest.raises(RuntimeError, match="planted"):
         parts.planned(document, (part, parts.sculptured_name(part)))
     assert names(document) == before
@@ -248,7 +250,7 @@ def test_a_failure_leaves_no_half_made_tree(document, parts, part, monkeypatch, 
 def test_a_cancelled_computation_leaves_the_document(document, parts, part):
     before = names(document)
     with pytest.raises(Cancelled):
-        bridge.plan(document, (part, parts.sculptured_name(part)), parts.TOOL, parts.SCALLOP,
+        api.plan(document, (part, parts.sculptured_name(part)), parts.TOOL, parts.SCALLOP,
                     progress=Progress(None, lambda: True))
     assert names(document) == before
 
@@ -256,7 +258,7 @@ def test_a_cancelled_computation_leaves_the_document(document, parts, part):
 def test_a_task_does_not_need_the_document_any_more(document, parts):
     other = FreeCAD.newDocument("Closed")
     thing = parts.block(other)
-    task = bridge.task(parts.inputs_for((thing, parts.sculptured_name(thing)), limits=LIMITS))
+    task = api.task(parts.inputs_for((thing, parts.sculptured_name(thing)), limits=LIMITS))
     FreeCAD.closeDocument(other.Name)
     plan = task(Progress())
     assert plan.operations[0].done
@@ -270,7 +272,7 @@ def test_the_part_changed_while_it_was_planned(document, parts, part):
     part.Shape = FreecadPart.makeSphere(5)
     before = names(document)
     with pytest.raises(ToolAxisError, match="changed"):
-        bridge.apply(document, inputs, plan)
+        apply(document, inputs, plan)
     assert names(document) == before
 
 
@@ -290,7 +292,7 @@ def test_two_documents_do_not_mix(document, parts, part):
 def saved(document, parts, part, clamp, tmp_path):
     """A document that was saved after planning and judging, and the file."""
     made = parts.planned(document, (part, parts.sculptured_name(part)), obstacles=(clamp,))[0]
-    bridge.verify(made)
+    api.verify(made)
     path = tmp_path / "Saved.FCStd"
     document.recompute()
     document.saveAs(str(path))
@@ -304,7 +306,7 @@ def test_everything_is_there_after_saving_and_opening(saved, document):
     gouge = made.Gouge.Value
     points = moves(child(made, "Path::Feature"))[0]
     kinds = [thing.TypeId for thing in made.Group]
-    inputs = bridge.inputs_of(made)
+    inputs = inputs_of(made)
     FreeCAD.closeDocument(document.Name)
     opened = FreeCAD.openDocument(str(path))
     try:
@@ -314,9 +316,9 @@ def test_everything_is_there_after_saving_and_opening(saved, document):
         assert again.Gouge.Value == pytest.approx(gouge, rel=1e-12)
         assert [thing.TypeId for thing in again.Group] == kinds
         assert np.abs(moves(child(again, "Path::Feature"))[0] - points).max() < 1e-6
-        back = bridge.inputs_of(again)
+        back = inputs_of(again)
         assert (back.tool, back.scallop, back.holder, back.limits) == (inputs.tool, inputs.scallop, inputs.holder, "")
-        assert not again.Stale and not bridge.is_stale(again)
+        assert not again.Stale and not api.is_stale(again)
         opened.recompute(None, True)
         assert not again.Stale, again.StaleReasons
         again.Faces[0][0].Placement.Base = Vector(3, 4, 5)
@@ -326,7 +328,7 @@ def test_everything_is_there_after_saving_and_opening(saved, document):
         before = standing.Placement.Base
         standing.Position = 0.8
         assert standing.Placement.Base.distanceToPoint(before) > 1
-        assert bridge.verify(again).scallop_limit == 0.3
+        assert api.verify(again).scallop_limit == 0.3
     finally:
         FreeCAD.closeDocument(opened.Name)
 

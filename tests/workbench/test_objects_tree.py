@@ -6,13 +6,14 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge
-from freecad.toolaxis.objects import is_operation
-from freecad.toolaxis.objects.frames import kind_of_frame
-from freecad.toolaxis.objects.passes import moves, read_back
-from freecad.toolaxis.objects.tool import tool_shape
-from freecad.toolaxis.places import matrix_of
-from freecad.toolaxis.results import child
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.document.passes import moves, read_back
+from freecad.toolaxis.document.placement import matrix_of
+from freecad.toolaxis.document.tool_on_path import tool_shape
+from freecad.toolaxis.document.work_coordinates import kind_of_frame
+from freecad.toolaxis.services import api
+from freecad.toolaxis.services.write_results import apply, child
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.tools.tool import Tool
@@ -103,11 +104,11 @@ def stand(request, document, parts):
     normal = part.face(selected(inputs)).normal(np.array([[0.5, 0.5]]))[0]
     plan = parts.quick_plan(inputs, Vector(*(normal + np.array([0.15, 0.1, 0.05]))))
     assert plan.operations[0].done, plan.operations[0].orientation.reasons
-    return mover, bridge.apply(document, inputs, plan)[0], plan
+    return mover, apply(document, inputs, plan)[0], plan
 
 
 def bridge_source(inputs):
-    from freecad.toolaxis.reading import Source
+    from freecad.toolaxis.document.read_shapes import Source
 
     from toolaxis.progress import NO_PROGRESS
 
@@ -115,7 +116,7 @@ def bridge_source(inputs):
 
 
 def selected(inputs):
-    from freecad.toolaxis.reading import Source
+    from freecad.toolaxis.document.read_shapes import Source
 
     return Source.of(inputs).numbers[0]
 
@@ -136,13 +137,13 @@ def test_frames_and_passes_stand_on_the_part_and_follow_it(stand, document):
     mover, operation, plan = stand
     op = plan.operations[0]
     check_on_cl(operation, op.path.cl, op.orientation.axis)
-    assert not bridge.is_stale(operation)
+    assert not api.is_stale(operation)
     before = mover.Placement
     mover.Placement = Placement(Vector(-7, 30, 11), Rotation(Vector(0, 1, 2), 75)).multiply(before)
     document.recompute()
     motion = matrix_of(mover.Placement.multiply(before.inverse()))
     check_on_cl(operation, op.path.cl @ motion[:3, :3].T + motion[:3, 3], motion[:3, :3] @ op.orientation.axis)
-    assert not bridge.is_stale(operation) and not operation.Stale, operation.StaleReasons
+    assert not api.is_stale(operation) and not operation.Stale, operation.StaleReasons
     standing = child(operation, "Part::FeaturePython")
     assert standing.Placement.Rotation.isSame(frame_of(operation).Placement.Rotation, 1e-9)
     assert not [thing.Name for thing in document.Objects if "Invalid" in thing.State]
@@ -158,7 +159,7 @@ def test_the_frame_stands_by_the_mean_feed(document, parts):
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)))
     plan = parts.quick_plan(inputs)
-    made = bridge.apply(document, inputs, plan)[0]
+    made = apply(document, inputs, plan)[0]
     matrix, op = matrix_of(frame_of(made).Placement), plan.operations[0]
     assert np.allclose(matrix[:3, 0], op.frame.x, atol=1e-12)
     steps = np.diff(op.path.cl, axis=0)[op.path.kind[1:] == Motion.CUT]
@@ -178,8 +179,8 @@ def test_an_operation_tells_what_was_found(operation):
 
 def test_what_is_not_checked_has_no_clearance(document, parts):
     thing = parts.block(document)
-    inputs = bridge.Inputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
-    made = bridge.apply(document, inputs, parts.quick_plan(inputs))[0]
+    inputs = Inputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
+    made = apply(document, inputs, parts.quick_plan(inputs))[0]
     assert "holder" in made.NotChecked and not hasattr(made, "HolderClearance")
 
 
@@ -190,8 +191,8 @@ def test_inputs_come_back_from_the_operation(document, parts):
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), obstacles=(other,), limits="cone:0,0,1,60",
                               tolerance=0.004, allowance=0.1, direction="climb", objective="passes", feedrate=777.0,
                               spindle=5400.0)
-    made = bridge.apply(document, inputs, parts.quick_plan(inputs))[0]
-    back = bridge.inputs_of(made)
+    made = apply(document, inputs, parts.quick_plan(inputs))[0]
+    back = inputs_of(made)
     assert back == inputs, (back, inputs)
 
 
@@ -199,7 +200,7 @@ def test_passes_come_back_as_they_were_planned(document, parts):
     thing = parts.block(document)
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), feedrate=600.0)
     plan = parts.quick_plan(inputs)
-    made = bridge.apply(document, inputs, plan)[0]
+    made = apply(document, inputs, plan)[0]
     passes, path = child(made, "Path::Feature"), plan.operations[0].path
     back = read_back(passes, made.Motions, made.Starts)
     assert np.abs(back.cl - path.cl).max() < 1e-6 and np.array_equal(back.kind, path.kind)
@@ -251,7 +252,7 @@ def test_a_face_without_an_axis_has_its_reasons_and_no_objects(document, parts):
     thing = parts.block(document)
     made = parts.planned(document, (thing, parts.sculptured_name(thing)), axis=Vector(0, 0, -1))[0]
     assert made.Outcome == "infeasible" and made.Reasons and not made.Group
-    assert not bridge.is_stale(made)
+    assert not api.is_stale(made)
 
 
 def test_faces_of_two_parts_are_planned_at_once(document, parts):
@@ -265,7 +266,7 @@ def test_faces_of_two_parts_are_planned_at_once(document, parts):
     assert frame_of(made[1]).Placement.isSame(made[1].Group[1].Placement, 1e-9)
     assert frame_of(made[1]).AttachmentSupport[0][0] == second
     assert made[0].Label != made[1].Label
-    assert bridge.verify(made[1]).passed
+    assert api.verify(made[1]).passed
 
 
 def test_a_whole_plan_from_one_call(document, parts):

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis import bridge
+from freecad.toolaxis.services import api
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def stale(operation, words):
     """Whether an operation is marked stale for one reason, by its properties and by a look at the document."""
     reasons = "; ".join(operation.StaleReasons)
     assert words in reasons, reasons
-    return operation.Stale and bridge.is_stale(operation)
+    return operation.Stale and api.is_stale(operation)
 
 
 def renumbered(part, order):

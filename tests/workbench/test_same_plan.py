@@ -121,12 +121,12 @@ def test_the_search_through_freecad_comes_to_the_same_plan(commands, again):
 
 def test_a_division_comes_to_the_same_through_the_document(prepared):
     """Sub-surfaces in the tree against the command's: labels, axes and lengths."""
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.services import api
 
     theirs = json.loads((FOLDER / "divided" / "out" / "plan.json").read_text())
     asked = theirs["inputs"]
     with imported("freeform") as thing:
-        made = bridge.plan(thing.Document, (thing, theirs["operations"][0]["face"]), theirs["tool"]["name"],
+        made = api.plan(thing.Document, (thing, theirs["operations"][0]["face"]), theirs["tool"]["name"],
                            asked["scallop"], regions=2, method=asked["method"], shank=None, holder=None,
                            feedrate=asked["feedrate"])
         assert len(made) == len(theirs["operations"]) == 2

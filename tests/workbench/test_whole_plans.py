@@ -6,12 +6,12 @@ from pathlib import Path
 
 import FreeCAD
 import pytest
-from freecad.toolaxis import bridge
-from freecad.toolaxis.inputs import inputs_of
-from freecad.toolaxis.objects import is_operation, operations_in, plan_of
-from freecad.toolaxis.objects.belongings import frame_of
-from freecad.toolaxis.objects.surfaces import CLEAN_UP, SURFACE, is_shown
-from freecad.toolaxis.reading import Source
+from freecad.toolaxis.document.children import frame_of
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.kinds import is_operation, operations_in, plan_of
+from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, SURFACE, is_shown
+from freecad.toolaxis.services import api
 
 import toolaxis as ta
 from toolaxis.progress import NO_PROGRESS
@@ -35,8 +35,8 @@ def divided(whole_parts):
     document = FreeCAD.newDocument("Divided")
     document.UndoMode = 1
     thing, name = whole_parts.roof(document)
-    made = bridge.plan(document, (thing, name), TOOL, 0.4, regions=2, method="normal")
-    theirs = ta.plan(thing, bridge.inputs_of(made[0]).assembled(), 0.4, faces=[int(name[4:])], regions=2,
+    made = api.plan(document, (thing, name), TOOL, 0.4, regions=2, method="normal")
+    theirs = ta.plan(thing, inputs_of(made[0]).assembled(), 0.4, faces=[int(name[4:])], regions=2,
                      method="normal", feedrate=made[0].FeedRate.Value * 60)
     yield made, theirs
     FreeCAD.closeDocument(document.Name)
@@ -48,7 +48,7 @@ def bladed(whole_parts):
     document = FreeCAD.newDocument("Bladed")
     document.UndoMode = 1
     thing = whole_parts.wheel(document)
-    made = bridge.plan(document, thing, regions=1, **whole_parts.BLADE_TOOL)
+    made = api.plan(document, thing, regions=1, **whole_parts.BLADE_TOOL)
     yield thing, made
     FreeCAD.closeDocument(document.Name)
 
@@ -76,7 +76,7 @@ def test_the_figures_are_the_librarys(divided):
 
 def test_the_judge_takes_a_sub_surface_from_the_document(divided):
     made, theirs = divided
-    verdict = bridge.verify(made[0])
+    verdict = api.verify(made[0])
     expected = ta.verify(theirs).operations[0]
     assert verdict.passed == expected.passed
     assert verdict.share_within == pytest.approx(expected.share_within, abs=0.02)
@@ -87,7 +87,7 @@ def test_one_sub_surface_is_planned_again_with_its_own_border(divided):
     first, region = made[0], json.loads(made[0].Details)["region"]
     others, plan = [one.Name for one in made], plan_of(made[0])
     asked, figures = inputs_of(plan), [getattr(plan, name).Value for name in LENGTHS]
-    again = bridge.recompute(first)
+    again = api.recompute(first)
     assert again == [first] and json.loads(first.Details)["region"] == region
     assert [one.Name for one in operations_in(plan)] == others
     assert inputs_of(plan) == asked and plan.SubSurfaces == 2 and plan.Outcome == "complete"
@@ -101,7 +101,7 @@ def test_locks_are_kept_and_the_plan_is_planned_again_in_the_same_objects(divide
     axis, feed = made[1].Axis, made[1].FeedParameter
     inputs = inputs_of(plan)
     assert [piece.locked for piece in inputs.pieces] == [False, True] and inputs.pieces[1].feed == feed
-    again = bridge.recompute(plan)
+    again = api.recompute(plan)
     assert again == made and made[1].AxisLocked and not made[0].AxisLocked and not plan.Stale
     assert made[1].Axis.isEqual(axis, 1e-9) and made[1].FeedParameter == feed
     made[1].AxisLocked = made[1].FeedLocked = False
@@ -142,7 +142,7 @@ def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change,
     assert plan.Stale and list(plan.StaleReasons) == [words]
     assert not [one.Name for one in document.Objects if "Invalid" in one.State]
     if reason == "the part was deleted":
-        for act in (lambda: bridge.recompute(plan), lambda: bridge.split(made[0]), lambda: bridge.merge(made)):
+        for act in (lambda: api.recompute(plan), lambda: api.split(made[0]), lambda: api.merge(made)):
             with pytest.raises(ta.InvalidInput, match="deleted"):
                 act()
     document.undo()
@@ -155,7 +155,7 @@ def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change,
 def test_faces_left_to_clean_up_are_told_apart_from_those_without_an_axis(divided):
     from dataclasses import replace
 
-    from freecad.toolaxis.panels.outcome import left_to_clean_up, outcome_sentence
+    from freecad.toolaxis.gui.plan.outcome import left_to_clean_up, outcome_sentence
 
     from toolaxis.plan.zone import Zone
 
@@ -254,15 +254,15 @@ def test_one_undo_takes_blades_and_links(bladed):
 
 def test_clean_up_zones_are_hatched(document, whole_parts):
     """A zone drawn as lines: as long as its area over their pitch, and on the face."""
-    from freecad.toolaxis.objects.surfaces import show_surface
-    from freecad.toolaxis.places import chain_of
+    from freecad.toolaxis.document.placement import chain_of
+    from freecad.toolaxis.document.sub_surface_shape import show_surface
 
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
     from toolaxis.plan.zone import Zone
 
     thing, name = whole_parts.roof(document)
-    inputs = bridge.Inputs(((thing, name),))
+    inputs = Inputs(((thing, name),))
     part, _ = Source.of(inputs).read(NO_PROGRESS)
     face = part.face(int(name[4:]))
     group = document.addObject("App::DocumentObjectGroupPython", "Group")
@@ -291,7 +291,7 @@ def test_what_cannot_be_is_a_sentence_and_leaves_nothing(document, whole_parts, 
     thing, name = whole_parts.roof(document)
     before = [one.Name for one in document.Objects]
     with pytest.raises(ta.InvalidInput, match=words):
-        bridge.plan(document, (thing, name), TOOL, 0.4, **given)
+        api.plan(document, (thing, name), TOOL, 0.4, **given)
     assert [one.Name for one in document.Objects] == before
 
 
@@ -304,7 +304,7 @@ def test_sub_surfaces_are_merged_split_and_drawn_by_hand(document, whole_parts):
     document.UndoMode = 1
     thing, name = whole_parts.roof(document)
     number, area = name[4:], thing.Shape.Faces[int(name[4:]) - 1].Area
-    made = bridge.plan(document, (thing, name), TOOL, 0.4, method="normal")
+    made = api.plan(document, (thing, name), TOOL, 0.4, method="normal")
     plan = plan_of(made[0])
     line = document.addObject("Part::Feature", "Line")
     line.Shape = polygon([(9, -2, 40), (12, 8, 40), (9, 18, 40)])
@@ -313,12 +313,12 @@ def test_sub_surfaces_are_merged_split_and_drawn_by_hand(document, whole_parts):
     def meshes():
         return sum(mesh.Mesh.Area for one in operations_in(plan) for mesh in shown(one, SURFACE))
 
-    bridge.split(operations_in(plan)[0], line)
+    api.split(operations_in(plan)[0], line)
     assert sub_surfaces(plan) == [f"{number}a", f"{number}b"] and meshes() == pytest.approx(area, rel=0.02)
     assert all(one.DrawnByHand for one in operations_in(plan))
     left, right = operations_in(plan)
     borders = [json.loads(one.Details)["region"] for one in (left, right)]
-    bridge.recompute(plan)
+    api.recompute(plan)
     assert [json.loads(one.Details)["region"] for one in operations_in(plan)] == borders
     document.undo()
     document.undo()
@@ -326,14 +326,14 @@ def test_sub_surfaces_are_merged_split_and_drawn_by_hand(document, whole_parts):
     document.redo()
     document.redo()
     line.Shape = polygon([(6, 4, 40), (20, 4, 40), (20, 12, 40), (6, 12, 40), (6, 4, 40)])
-    bridge.split(operations_in(plan)[0], line)
+    api.split(operations_in(plan)[0], line)
     assert len(sub_surfaces(plan)) == 3 and meshes() == pytest.approx(area, rel=0.02)
-    bridge.merge(operations_in(plan))
+    api.merge(operations_in(plan))
     assert sub_surfaces(plan) == [number] and operations_in(plan)[0].DrawnByHand
-    bridge.split(operations_in(plan)[0])
+    api.split(operations_in(plan)[0])
     assert len(sub_surfaces(plan)) == 2
-    for wrong, words in ((lambda: bridge.merge(operations_in(plan)[:1]), "two or more of one face"),
-                         (lambda: bridge.split(operations_in(plan)[0], thing), "separate lines")):
+    for wrong, words in ((lambda: api.merge(operations_in(plan)[:1]), "two or more of one face"),
+                         (lambda: api.split(operations_in(plan)[0], thing), "separate lines")):
         before = {one.Name for one in document.Objects}
         with pytest.raises(ta.InvalidInput, match=words):
             wrong()

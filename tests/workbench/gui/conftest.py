@@ -120,8 +120,8 @@ class Desk:
 
     def _record(self):
         """Let task panels and windows of pictures be known from when they are made until Qt deletes their forms."""
-        from freecad.toolaxis.panels.panel import Panel
-        from freecad.toolaxis.panels.pictures import PictureWindow
+        from freecad.toolaxis.gui.pictures.window import PictureWindow
+        from freecad.toolaxis.gui.widgets.panel import Panel
 
         def recorded(usual):
             def __init__(one, *given):
@@ -307,7 +307,7 @@ class Desk:
 
     def operation_in(self, document):
         """The first operation of a document, or None."""
-        from freecad.toolaxis.objects import is_operation
+        from freecad.toolaxis.document.kinds import is_operation
 
         return next(filter(is_operation, document.Objects), None)
 
@@ -357,7 +357,7 @@ class Desk:
     def tidy(self):
         """Close the panel and all documents, unsaved as they are."""
         import FreeCAD
-        from freecad.toolaxis.tasks import clear_away
+        from freecad.toolaxis.services.background import clear_away
 
         if self.gui.Control.activeDialog():
             self.gui.Control.closeDialog()
@@ -428,9 +428,9 @@ def wavy(desk, part_file):
 @pytest.fixture(scope="session")
 def _recalling(_desk):
     """Where this is entered, the same inputs for the same shapes are computed once in a session."""
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.services import api
 
-    plans, task = {}, bridge.task
+    plans, task = {}, api.task
 
     def recalled(inputs):
         compute = task(inputs)
@@ -440,11 +440,11 @@ def _recalling(_desk):
 
     @contextmanager
     def recalling():
-        bridge.task = recalled
+        api.task = recalled
         try:
             yield
         finally:
-            bridge.task = task
+            api.task = task
 
     return recalling
 

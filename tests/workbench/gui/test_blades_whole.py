@@ -47,7 +47,7 @@ def say(text):
 @pytest.mark.long
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_with_blades_is_planned_whole(desk, name):
-    from freecad.toolaxis.objects import is_plan, operations_in
+    from freecad.toolaxis.document.kinds import is_plan, operations_in
 
     path, tool, regions, blades, outcome = PARTS[name]
     if not path.exists():

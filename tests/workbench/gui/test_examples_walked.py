@@ -73,13 +73,13 @@ class Walk:
 
     @property
     def plan(self):
-        from freecad.toolaxis.objects import is_plan
+        from freecad.toolaxis.document.kinds import is_plan
 
         return next(filter(is_plan, self.document.Objects), None)
 
     @property
     def operations(self):
-        from freecad.toolaxis.objects import operations_in
+        from freecad.toolaxis.document.kinds import operations_in
 
         return operations_in(self.plan)
 

@@ -5,7 +5,7 @@ import pytest
 
 @pytest.mark.parametrize("spoilt", ["slide", "mapLayout"])
 def test_a_widget_or_layout_of_a_wrong_class_is_loaded_again(desk, monkeypatch, spoilt):
-    from freecad.toolaxis.panels import fields
+    from freecad.toolaxis.gui.widgets import fields
     from PySide import QtWidgets
 
     loaded = []
@@ -28,7 +28,7 @@ def test_a_widget_or_layout_of_a_wrong_class_is_loaded_again(desk, monkeypatch, 
 
 
 def test_a_form_that_is_dead_is_loaded_again(desk, monkeypatch):
-    from freecad.toolaxis.panels import fields
+    from freecad.toolaxis.gui.widgets import fields
 
     loaded = []
 
@@ -49,7 +49,7 @@ def test_a_form_that_is_dead_is_loaded_again(desk, monkeypatch):
 
 @pytest.mark.parametrize("whole", [True, False], ids=["form", "widget"])
 def test_a_form_with_objects_of_dead_widgets_is_loaded_again_without_touching_them(desk, monkeypatch, whole):
-    from freecad.toolaxis.panels import fields
+    from freecad.toolaxis.gui.widgets import fields
 
     first, loaded = fields.FreeCADGui.PySideUic.loadUi(str(fields.RESOURCES / "ui" / "verify.ui")), []
 
@@ -68,7 +68,7 @@ def test_a_form_with_objects_of_dead_widgets_is_loaded_again_without_touching_th
 
 
 def test_a_form_that_is_spoilt_each_time_is_not_shown(desk, monkeypatch):
-    from freecad.toolaxis.panels import fields
+    from freecad.toolaxis.gui.widgets import fields
 
     form = fields.FreeCADGui.PySideUic.loadUi(str(fields.RESOURCES / "ui" / "verify.ui"))
     monkeypatch.setattr(fields.FreeCADGui, "PySideUic", type("Loader", (), {"loadUi": staticmethod(lambda _: form)}))
@@ -77,7 +77,7 @@ def test_a_form_that_is_spoilt_each_time_is_not_shown(desk, monkeypatch):
 
 
 def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
-    from freecad.toolaxis.panels import fields
+    from freecad.toolaxis.gui.widgets import fields
     from PySide import QtWidgets
 
     loaded = []
@@ -112,7 +112,7 @@ def layouts():
 
 def test_every_widget_tells_what_it_is_for(desk):
     """Tooltips, and the same or more for "What's this?"; the preferences' page is loaded by FreeCAD itself."""
-    from freecad.toolaxis.panels.fields import load_form
+    from freecad.toolaxis.gui.widgets.fields import load_form
 
     for layout, widgets in layouts():
         form = None if layout == "preferences" else load_form(layout)

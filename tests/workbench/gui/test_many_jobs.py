@@ -50,9 +50,9 @@ def answered(desk):
 
 
 def test_many_jobs_are_asked_for_and_can_be_stopped(desk, crowded, answered, monkeypatch):
-    from freecad.toolaxis import cam_jobs
+    from freecad.toolaxis.cam import jobs
 
-    document, plain = crowded.Document, cam_jobs._job
+    document, plain = crowded.Document, jobs._job
     names = {thing.Name for thing in document.Objects}
 
     def make():
@@ -66,10 +66,10 @@ def test_many_jobs_are_asked_for_and_can_be_stopped(desk, crowded, answered, mon
         desk.pump(0.4)
         return plain(*given)
 
-    monkeypatch.setattr(cam_jobs, "_job", slow)
+    monkeypatch.setattr(jobs, "_job", slow)
     _, label = answered(make, "Yes", "stop")
     assert "/ 11, about" in label and {thing.Name for thing in document.Objects} == names
-    monkeypatch.setattr(cam_jobs, "_job", plain)
+    monkeypatch.setattr(jobs, "_job", plain)
     _, text = answered(make, "Yes", "Ok")
     assert text.startswith("4 of 11 jobs have a work offset that other jobs have too")
     document.undo()

@@ -1,6 +1,6 @@
 """Axes that move, from the panel: chosen, refused where they do not apply, computed, drawn, and put into the tree."""
 
-from freecad.toolaxis.strategies import STRATEGIES
+from freecad.toolaxis.document.strategies import STRATEGIES
 
 
 def choose(form, name):

@@ -1,6 +1,7 @@
 """What comes of operations, from the menu: CAM jobs, files, macros, and the machine that carries them out."""
 
 import json
+import shutil
 from dataclasses import replace
 
 import FreeCAD
@@ -75,7 +76,7 @@ def written(desk, form):
     desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is written")
 
 
-def test_plan_and_program_are_written(desk, operation, tmp_path):
+def test_plan_and_program_are_written(desk, operation, recorded, tmp_path):
     form = export_panel(desk)
     assert form.folder.text().endswith("-plan") and not form.machine.isVisible()
     desk.type(form.folder, str(tmp_path / "plan"))
@@ -86,6 +87,9 @@ def test_plan_and_program_are_written(desk, operation, tmp_path):
     names = {path.name for path in (tmp_path / "plan").iterdir()}
     assert {"plan.json", "program-linuxcnc.ngc", "setup-linuxcnc.md", "part.json"} <= names, form.message.text()
     assert {desk.text(form.files, k) for k in range(form.files.count())} == names
+    shutil.rmtree(tmp_path / "plan")
+    exec("import FreeCAD\n" + "\n".join(recorded[-2:]), {})
+    assert {path.name for path in (tmp_path / "plan").iterdir()} == names, "the macro writes the same"
     assert json.loads((tmp_path / "plan" / "plan.json").read_text())["outcome"] == "complete"
     desk.shot("80-export")
 
@@ -109,17 +113,19 @@ def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
 @pytest.fixture
 def leaning(desk, operation, _recalling):
     """A second operation, on a turned copy of the part, so that the machine has to index."""
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.document.inputs import inputs_of
+    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
 
     document, part = operation.Document, operation.Faces[0][0]
     other = document.addObject("Part::Feature", "Other")
     other.Shape = part.Shape.copy()
     other.Placement = FreeCAD.Placement(Vector(0, 40, 0), FreeCAD.Rotation(Vector(1, 0, 0), 25))
     document.recompute()
-    inputs = bridge.inputs_of(operation)
+    inputs = inputs_of(operation)
     inputs = replace(inputs, faces=((other, inputs.faces[0][1]),), limits=f"cone:0,{-0.42},{0.9},2")
     with _recalling():
-        made = bridge.apply(document, inputs, bridge.task(inputs)(_silent()))[0]
+        made = apply(document, inputs, api.task(inputs)(_silent()))[0]
     assert made.Motions, made.Reasons
     return operation, made
 
@@ -285,6 +291,8 @@ def test_freecads_own_recorder_keeps_what_the_panel_did(desk, wavy, remembered, 
     text = (tmp_path / "Recorded.FCMacro").read_text()
     lines = [line.strip() for line in text.splitlines()]
     assert any(line.startswith("freecad.toolaxis.plan(") for line in lines), text
+    assert [line for line in lines if line.startswith("import ")] == [
+        "import FreeCAD", "import freecad", "import freecad.toolaxis"], text
     document, passes = part.Document, desk.operation_in(part.Document).Passes
     document.undo()
     assert desk.operation_in(document) is None

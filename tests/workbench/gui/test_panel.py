@@ -62,9 +62,9 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
     from types import SimpleNamespace
 
     import numpy as np
-    from freecad.toolaxis.panels.axispicture import SIDE, AxisPicture
-    from freecad.toolaxis.panels.axisview import AxisView
-    from freecad.toolaxis.panels.fields import load_form
+    from freecad.toolaxis.gui.axis_map.raster import SIDE, AxisPicture
+    from freecad.toolaxis.gui.plan.result_tab import AxisView
+    from freecad.toolaxis.gui.widgets.fields import load_form
 
     def picture():
         up = np.array([[0.0, 0.0, 1.0]])

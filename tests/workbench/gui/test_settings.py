@@ -7,7 +7,7 @@ import pytest
 @pytest.fixture
 def kept():
     """Where preferences are kept, empty before and after."""
-    from freecad.toolaxis.preferences import PLACE
+    from freecad.toolaxis.document.preferences import PLACE
 
     group = FreeCAD.ParamGet(PLACE)
     group.Clear()
@@ -44,7 +44,7 @@ def on_page(desk, act):
 
 
 def test_the_page_keeps_what_is_set(desk, kept, tmp_path):
-    from freecad.toolaxis.preferences import threads
+    from freecad.toolaxis.document.preferences import threads
 
     def fill(page):
         page.findChild(desk.widgets.QWidget, "tool").setText("ball:4")
@@ -62,23 +62,23 @@ def test_the_page_keeps_what_is_set(desk, kept, tmp_path):
 
 
 def test_new_plans_begin_with_what_is_preferred(desk, kept, wavy):
-    from freecad.toolaxis import bridge
+    from freecad.toolaxis.services.defaults import defaults
 
     part, face = wavy
-    usual = bridge.defaults(part.Document, ((part, face),))
+    usual = defaults(part.Document, ((part, face),))
     assert usual.tool.startswith("torus:")
     kept.SetString("Tool", "ball:4")
     kept.SetFloat("Scallop", 0.03)
     kept.SetFloat("FeedRate", 640.0)
-    found = bridge.defaults(part.Document, ((part, face),))
+    found = defaults(part.Document, ((part, face),))
     assert (found.tool, found.scallop, found.feedrate, found.spindle) == ("ball:4", 0.03, 640.0, usual.spindle)
     assert found.stickout == 20.0 and found.assembled().kind == "ball"
     kept.SetString("Tool", "ball")
-    assert bridge.defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"
+    assert defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"
 
 
 def test_colours_are_those_of_the_preferences(kept):
-    from freecad.toolaxis.preferences import colours
+    from freecad.toolaxis.document.preferences import colours
 
     assert colours()[0] == pytest.approx((0.9, 0.38, 0.0), abs=0.005)
     kept.SetUnsigned("CutColour", 0x0000FFFF)
@@ -86,7 +86,7 @@ def test_colours_are_those_of_the_preferences(kept):
 
 
 def test_every_example_of_the_menu_is_there_and_opens(desk):
-    from freecad.toolaxis.commands.examples import PARTS, Example
+    from freecad.toolaxis.gui.commands.examples import PARTS, Example
 
     assert all(Example(name).file.is_file() for name in PARTS)
     menus = desk.children(desk.widgets.QMenu, desk.window.menuBar())

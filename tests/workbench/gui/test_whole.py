@@ -49,13 +49,13 @@ def put(desk):
 
 
 def plan_in(document):
-    from freecad.toolaxis.objects import is_plan
+    from freecad.toolaxis.document.kinds import is_plan
 
     return next(filter(is_plan, document.Objects), None)
 
 
 def operations(document):
-    from freecad.toolaxis.objects import operations_in
+    from freecad.toolaxis.document.kinds import operations_in
 
     return operations_in(plan_in(document))
 

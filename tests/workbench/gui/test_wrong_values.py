@@ -141,7 +141,7 @@ def test_machine_files_that_are_none(desk, operation, tmp_path):
     """In the panel Machine, in Export, and as limits of a plan; the document stays as it is."""
     document = operation.Document
     before = names(document)
-    from freecad.toolaxis.preferences import PLACE
+    from freecad.toolaxis.document.preferences import PLACE
 
     folder = tmp_path / "machines"
     folder.mkdir()
@@ -475,7 +475,7 @@ def test_a_folder_of_machines_that_is_none(desk, wavy, kept_folder):
 
 @pytest.fixture
 def kept_folder():
-    from freecad.toolaxis.preferences import PLACE
+    from freecad.toolaxis.document.preferences import PLACE
 
     preferences = FreeCAD.ParamGet(PLACE)
     yield lambda folder: preferences.SetString("MachinesFolder", folder)

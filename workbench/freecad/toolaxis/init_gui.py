@@ -2,8 +2,8 @@
 
 import FreeCAD
 import FreeCADGui
-
-from . import RESOURCES
+from freecad.toolaxis.document.view_providers import bring_views
+from freecad.toolaxis.paths import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -22,9 +22,10 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from .commands import examples, register
-        from .panels.report import offer_report
-        from .tasks import hear_errors
+        from freecad.toolaxis.gui.commands import examples
+        from freecad.toolaxis.gui.commands.toolbar import register
+        from freecad.toolaxis.gui.widgets.error_report import offer_report
+        from freecad.toolaxis.services.background import hear_errors
 
         hear_errors(offer_report)
         names = register()
@@ -50,4 +51,11 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
         return "Gui::PythonWorkbench"
 
 
+def _attach_view(thing):
+    from freecad.toolaxis.gui.views.attach import attach
+
+    attach(thing)
+
+
+bring_views(_attach_view)
 FreeCADGui.addWorkbench(ToolAxisWorkbench())

@@ -1,0 +1,55 @@
+"""View providers: of objects that are made, and of those saved when the classes of views stood elsewhere."""
+
+import shutil
+from pathlib import Path
+
+import FreeCAD
+import pytest
+from freecad.toolaxis.document.children import child
+from freecad.toolaxis.document.machine import place_machine
+
+SAVED = Path(__file__).resolve().parents[1] / "saved" / "before-layers.FCStd"
+VIEWS = {"ToolAxisMachine": "machine", "ToolAxisOperation": "operation", "ToolAxisTool": "tool_on_path",
+         "ToolAxisPlan": "plan_group"}
+
+
+@pytest.fixture
+def opened(desk, tmp_path):
+    shutil.copy(SAVED, tmp_path)
+    document = FreeCAD.openDocument(str(tmp_path / SAVED.name))
+    desk.pump(0.5)
+    return document
+
+
+def view_of(thing):
+    return type(thing.ViewObject.Proxy).__module__
+
+
+def test_what_is_made_gets_its_view(desk, operation):
+    machine = place_machine(operation.Document, "bc-table-table", (0, 0, 0), [])
+    for thing in (operation, child(operation, "Part::FeaturePython"), machine):
+        assert view_of(thing) == f"freecad.toolaxis.gui.views.{VIEWS[thing.Proxy.Type]}"
+
+
+def test_saved_views_are_todays_and_open_their_panels(desk, opened):
+    kinds = {thing: getattr(getattr(thing, "Proxy", None), "Type", "") for thing in opened.Objects}
+    ours = {thing: kind for thing, kind in kinds.items() if kind.startswith("ToolAxis")}
+    assert set(ours.values()) == set(VIEWS)
+    for thing, kind in ours.items():
+        assert view_of(thing) == f"freecad.toolaxis.gui.views.{VIEWS[kind]}"
+    for kind, form in (("ToolAxisOperation", "ToolAxisOperation"), ("ToolAxisPlan", "ToolAxisPlan"),
+                       ("ToolAxisMachine", "ToolAxisMachine")):
+        thing = next(thing for thing in ours if ours[thing] == kind)
+        assert thing.ViewObject.Proxy.doubleClicked(thing.ViewObject)
+        desk.wait(lambda form=form: desk.form(form), f"{form} opens")
+        desk.shot(f"80-saved-{form}")
+        desk.gui.Control.closeDialog()
+        desk.pump(0.2)
+
+
+def test_an_operation_looks_stale_when_it_is(desk, opened):
+    operation = next(thing for thing in opened.Objects if getattr(thing, "Stale", None) is False)
+    fresh = operation.ViewObject.Proxy.getIcon()
+    operation.Scallop = 0.2
+    opened.recompute()
+    assert operation.Stale and operation.ViewObject.Proxy.getIcon() != fresh

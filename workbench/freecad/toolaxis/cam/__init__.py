@@ -1,0 +1,1 @@
+"""Operations as jobs of FreeCAD's CAM workbench."""

@@ -1,0 +1,1 @@
+"""The window: commands, what objects look like, and task panels."""

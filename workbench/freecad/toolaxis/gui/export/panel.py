@@ -1,0 +1,149 @@
+"""The task panel of Export: a folder, and what is written into it besides the plan."""
+
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui
+from freecad.toolaxis.document.machine import machine_of
+from freecad.toolaxis.document.machine_limits import available
+from freecad.toolaxis.gui.widgets.fields import load_form, tell
+from freecad.toolaxis.gui.widgets.panel import Panel
+from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.export import Wish, task
+from freecad.toolaxis.services.macros import list_of, record
+from PySide import QtWidgets
+
+translate = FreeCAD.Qt.translate
+
+
+class ExportPanel(Panel):
+    """FreeCAD calls getStandardButtons.
+
+    Parameters
+    ----------
+    document : App.Document
+    operations : sequence of App.DocumentObject
+    """
+
+    def __init__(self, document, operations):
+        super().__init__(document, load_form("export"))
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "export.svg")))
+        self.operations = list(operations)
+        self._fill()
+        form = self.form
+        form.browse.clicked.connect(self._browse)
+        form.write.clicked.connect(self.write)
+        form.stop.clicked.connect(self.stop)
+        form.dialect.currentIndexChanged.connect(self._show)
+        self._follow()
+        tell(form.message, translate("ToolAxis", "{} operations: plan.json and their CL files are written.").format(
+            len(self.operations)))
+        self._show()
+
+    def getStandardButtons(self):
+        """Close."""
+        return QtWidgets.QDialogButtonBox.Close
+
+    @property
+    def _spins(self):
+        return self.form.offsetX, self.form.offsetY, self.form.offsetZ
+
+    def _fill(self):
+        from toolaxis.post.dialects.registry import DIALECTS
+
+        form = self.form
+        file = Path(self.document.FileName) if self.document.FileName else Path.home() / self.document.Label
+        form.folder.setText(str(file.with_name(f"{file.stem}-plan")))
+        form.dialect.addItem(translate("ToolAxis", "none"), "")
+        for name, dialect in DIALECTS.items():
+            form.dialect.addItem(dialect.title, name)
+        for combo in (form.machine, form.dialect):
+            combo.setMinimumContentsLength(12)
+            combo.setSizeAdjustPolicy(QtWidgets.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        for spin in self._spins:
+            spin.setMinimumWidth(50)
+            spin.setSizePolicy(QtWidgets.QSizePolicy.Ignored, QtWidgets.QSizePolicy.Fixed)
+        for shown, name in available().items():
+            form.machine.addItem(shown, name)
+        standing = machine_of(self.document)
+        if standing is not None:
+            index = form.machine.findData(standing.Machine)
+            if index < 0:
+                form.machine.addItem(standing.Machine, standing.Machine)
+                index = form.machine.count() - 1
+            form.machine.setCurrentIndex(index)
+            for spin, value in zip(self._spins, standing.Offset, strict=True):
+                spin.setValue(value)
+
+    def _browse(self):
+        name = QtWidgets.QFileDialog.getExistingDirectory(self.form, translate("ToolAxis", "Folder"),
+                                                          str(Path(self.form.folder.text()).parent))
+        if name:
+            self.form.folder.setText(name)
+
+    def write(self):
+        """Write off the GUI thread; what stands in the document is read here and now."""
+        form = self.form
+        if self.work is not None:
+            return
+        form.files.clear()
+        if not form.folder.text().strip():
+            tell(form.message, translate("ToolAxis", "Give a folder."), bad=True)
+            return
+        dialect = form.dialect.currentData()
+        machine = form.machine.currentData() if dialect else ""
+        wish = Wish(dialect, machine, tuple(spin.value() for spin in self._spins), form.report.isChecked())
+        try:
+            folder = Path(form.folder.text().strip()).expanduser()
+            compute = task(self.operations, folder, wish)
+        except Exception as reason:
+            tell(form.message, sentence(reason), bad=True)
+            return
+        self.work = Work(compute)
+        self.work.progressed.connect(lambda stage, share: self._progressed(stage, share))
+        self.work.done.connect(lambda names: self._done(folder, wish, names))
+        self.work.failed.connect(lambda text: self._ended(text, True))
+        self.work.cancelled.connect(lambda: self._ended(translate("ToolAxis", "Stopped; the folder is as it was."),
+                                                        True))
+        form.progress.setMaximum(0)
+        self._show()
+        self.work.start()
+
+    def stop(self):
+        """Ask to stop."""
+        if self.work is not None:
+            self.work.cancel()
+
+    def _progressed(self, stage, share):
+        self.form.progress.setMaximum(1000 if share >= 0 else 0)
+        self.form.progress.setValue(int(1000 * max(share, 0.0)))
+        tell(self.form.message, f"{stage[:1].upper()}{stage[1:]}")
+
+    def _done(self, folder, wish, names):
+        record(f"freecad.toolaxis.export({list_of(self.operations)}, {str(folder)!r}, freecad.toolaxis.{wish!r})")
+        self.form.files.addItems(names)
+        self._ended(translate("ToolAxis", "{} files in {}").format(len(names), folder), False)
+
+    def _ended(self, text, bad):
+        self.work = None
+        tell(self.form.message, text, bad)
+        self._show()
+
+    def _show(self, *_):
+        form, writing = self.form, self.work is not None
+        form.progress.setVisible(writing)
+        form.stop.setEnabled(writing)
+        form.write.setEnabled(not writing and bool(self.operations))
+        form.files.setVisible(bool(form.files.count()))
+        for widget in (form.machine, form.machineLabel, form.offsetLabel, *self._spins):
+            widget.setVisible(bool(form.dialect.currentData()))
+
+    def object_deleted(self, name):
+        """An operation is about to be deleted: it is not written."""
+        left = [operation for operation in self.operations if operation.Name != name]
+        if self.operations and not left:
+            tell(self.form.message, translate("ToolAxis", "The operations were deleted: there is nothing to write"),
+                 bad=True)
+        self.operations = left
+        self._show()

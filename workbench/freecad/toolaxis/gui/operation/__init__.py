@@ -1,0 +1,1 @@
+"""An operation's panel: its result, and what its tool meets."""

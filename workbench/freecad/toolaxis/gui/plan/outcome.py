@@ -1,0 +1,65 @@
+"""How a plan that was just made turned out, in one sentence."""
+
+import FreeCAD
+from freecad.toolaxis.document.strategies import TWICE
+
+translate = FreeCAD.Qt.translate
+
+
+def outcome_sentence(plan):
+    """What came of a plan, and whether it is bad.
+
+    Sub-surfaces that are left to a clean-up tool, and fillets at the roots of blades, have no axis and need none: they
+    are told apart from those for which none was found.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+        With operations.
+
+    Returns
+    -------
+    (str, bool)
+    """
+    count = len(plan.operations)
+    if plan.outcome == "cancelled":
+        return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
+            count), True
+    done, left = sum(op.done for op in plan.operations), len(left_to_clean_up(plan))
+    if done == count and touched_once(plan):
+        return translate("ToolAxis", "Every face has an axis, but two-point contact has one contact everywhere; the "
+                                     "reasons are on the tab Axis. OK puts them into the document."), True
+    if done == count:
+        return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
+    if done and done + left == count:
+        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into "
+                                     "the document.").format(done, count, left), False
+    if left:
+        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the "
+                                     "reasons are on the tab Axis.").format(done, count, left,
+                                                                            count - done - left), True
+    return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(
+        done, count), True
+
+
+def touched_once(plan):
+    """Whether two-point contact was asked for and no sub-surface has any.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+    """
+    return plan.inputs.method == "two-point" and not any(
+        why.startswith(TWICE) for op in plan.operations for why in op.orientation.reasons)
+
+
+def left_to_clean_up(plan):
+    """Numbers of the operations that have no axis and do not miss one.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+    """
+    from toolaxis.plan.plan import outcome_of
+
+    return {op.number for op in plan.operations if not op.done and outcome_of([op], plan.blades) == "complete"}

@@ -1,0 +1,374 @@
+"""The task panel of Plan Orientations: fields, Compute, the map, and OK as one undo step."""
+
+from contextlib import suppress
+from dataclasses import replace
+
+import FreeCAD
+import FreeCADGui
+from freecad.toolaxis.document.cam_probe import speeds
+from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.document.machine_limits import offered
+from freecad.toolaxis.document.placement import chain_of
+from freecad.toolaxis.document.read_shapes import titles_of
+from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
+from freecad.toolaxis.gui.pictures.window import show_pictures
+from freecad.toolaxis.gui.plan.form import PlanForm
+from freecad.toolaxis.gui.plan.locks import Locks
+from freecad.toolaxis.gui.plan.outcome import outcome_sentence
+from freecad.toolaxis.gui.plan.preview import Preview
+from freecad.toolaxis.gui.plan.result_tab import AxisView
+from freecad.toolaxis.gui.plan.selection import selected_faces, tools_in
+from freecad.toolaxis.gui.widgets.fields import load_form, tell
+from freecad.toolaxis.gui.widgets.panel import Panel
+from freecad.toolaxis.gui.widgets.progress_line import Ongoing
+from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services import api
+from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.defaults import defaults
+from freecad.toolaxis.services.macros import again_lines, plan_line, record
+from freecad.toolaxis.services.obstacles import bodies_in
+from freecad.toolaxis.services.pictures import drawn
+from freecad.toolaxis.services.tools import cutter_of
+from freecad.toolaxis.services.write_results import apply
+from PySide import QtCore, QtWidgets
+
+translate = FreeCAD.Qt.translate
+
+_TYPED = 0
+#: Axes that make a map worth showing.
+_ENOUGH = 40
+
+
+class PlanPanel(Panel):
+    """FreeCAD calls accept and the functions about buttons; everything else is the panel's own.
+
+    Parameters
+    ----------
+    document : App.Document
+    inputs : freecad.toolaxis.document.inputs.Inputs, optional
+        What the fields show at first; sensible defaults for the selection unless given.
+    operation : object, optional
+        The operation that is planned again.
+    """
+
+    def __init__(self, document, inputs=None, operation=None):
+        super().__init__(document, load_form("plan"))
+        self.operation = operation
+        self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "plan.svg")))
+        self.fields = PlanForm(self.form)
+        self.preview = Preview(document)
+        self.view = AxisView(self.form, self.preview)
+        self.ongoing = Ongoing(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
+        self.computed = None
+        self.outrun = False
+        self._fill(inputs)
+        self._connect()
+        self._follow()
+        self._changed()
+
+    # what FreeCAD calls
+
+    def getStandardButtons(self):
+        """OK and Cancel."""
+        return QtWidgets.QDialogButtonBox.Ok | QtWidgets.QDialogButtonBox.Cancel
+
+    def modifyStandardButtons(self, box):
+        """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan, and `accept` refuses."""
+        super().modifyStandardButtons(box)
+        self._show_state()
+
+    def accept(self):
+        """Put the plan into the document, as one undo step; refused without a plan."""
+        if not self.ready:
+            return False
+        plan = self.view.plan
+        inputs = replace(self.computed, pieces=self._pieces())
+        before = None if self.operation is None else inputs_of(self.operation)
+        try:
+            apply(self.document, inputs, plan, self.operation)
+        except Exception as reason:
+            self._tell(sentence(reason), bad=True)
+            FreeCAD.Console.PrintLog(f"{reason!r}\n")
+            return False
+        record(*([plan_line(inputs)] if before is None else again_lines(self.operation, before, inputs)))
+        self._close()
+        return True
+
+    # state
+
+    @property
+    def ready(self):
+        """Whether there is a plan for what the fields hold, with an axis for at least one face."""
+        plan = self.view.plan
+        return (plan is not None and self.work is None and self.computed is not None
+                and any(op.done for op in plan.operations))
+
+    def _fill(self, inputs):
+        faces, problems = selected_faces(self.document)
+        if inputs is None:
+            inputs = defaults(self.document, faces)
+        self.tools = tools_in(self.document)
+        self.form.tool.addItem(translate("ToolAxis", "typed in below"))
+        self.form.tool.addItems([name for name, _ in self.tools])
+        self.given = inputs.pieces
+        self.keeps = self.operation is not None and is_operation(self.operation) and bool(self.given)
+        self.fields.offer_machines(offered(self.document))
+        self.fields.fill(inputs)
+        bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
+        self.fields.avoid.offer(bodies, inputs.obstacles)
+        if self.operation is not None and not inputs.faces:
+            problems = [translate("ToolAxis", "The part was deleted: select other faces")]
+        self.problem = "; ".join(problems)
+
+    def _connect(self):
+        form = self.form
+        self.fields.on_change(self._edited)
+        form.addFaces.clicked.connect(self._add_faces)
+        form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
+        form.faces.itemSelectionChanged.connect(self._point_out)
+        form.tool.activated.connect(self._tool_chosen)
+        form.compute.clicked.connect(self.compute)
+        form.stop.clicked.connect(self.stop)
+        form.pictures.clicked.connect(self.draw)
+        self.view.changed.connect(self._show_state)
+        self.view.told.connect(self._warn)
+        self.view.curve.picked.connect(self.compute_with)
+
+    def _add_faces(self):
+        faces, problems = selected_faces(self.document)
+        nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
+        self.problem = "; ".join(problems) or ("" if faces else nothing)
+        self.fields.faces.add(faces)
+        parts = [thing for thing, _ in self.fields.faces.faces]
+        self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
+        self._changed()
+
+    def _point_out(self):
+        """Select in the 3D view what is marked in the list."""
+        FreeCADGui.Selection.clearSelection(self.document.Name)
+        for index in self.form.faces.selectedIndexes():
+            thing, name = index.data(QtCore.Qt.UserRole)
+            FreeCADGui.Selection.addSelection(self.document.Name, thing.Name, name)
+
+    def _tool_chosen(self, index):
+        if index == _TYPED:
+            return
+        try:
+            found = self.tools[index - 1][1]
+            self.fields.take_tool(cutter_of(found), (None, None) if isinstance(found, str) else speeds(found))
+        except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
+            self.form.tool.setCurrentIndex(_TYPED)
+            self.problem = sentence(reason)
+        self._changed()
+
+    def _edited(self):
+        """The user has changed a field: what no field could show is given up."""
+        self.fields.unshown = ""
+        self._changed()
+
+    def _changed(self):
+        """Something in the fields is different: check it, and lock OK until it is computed again."""
+        if self.work is None:
+            self.computed = None
+        self.refusal = self.fields.refusal()
+        self._show_state()
+
+    def _show_state(self):
+        form, computing = self.form, self.work is not None
+        form.compute.setEnabled(not computing and not self.refusal)
+        form.stop.setEnabled(computing)
+        form.progress.setVisible(computing)
+        for tab in (form.jobTab, form.toolTab, form.limitsTab, self.view.map, self.view.curve):
+            tab.setEnabled(not computing)
+        if self.buttons is not None:
+            with suppress(RuntimeError):
+                self.buttons.button(QtWidgets.QDialogButtonBox.Ok).setEnabled(self.ready)
+        if not computing:
+            self._tell(*self._state())
+
+    def _state(self):
+        """The sentence that tells how things stand, and whether it is bad."""
+        if self.problem:
+            return self.problem, True
+        if self.refusal:
+            return self.refusal, bool(self.fields.faces.faces)
+        plan = self.view.plan
+        if plan is None:
+            return translate("ToolAxis", "Press Compute to find the axes."), False
+        if self.computed is None:
+            return translate("ToolAxis", "Something has changed: compute again."), True
+        return outcome_sentence(plan)
+
+    def _tell(self, text, bad=False):
+        tell(self.form.message, text, bad)
+
+    def _warn(self, text):
+        """A slot of its own: the bindings hold a function without a name, and with it the panel, to the end."""
+        self._tell(text, bad=True)
+
+    # computing
+
+    def compute(self):
+        """Compute off the GUI thread; refused while the fields are not right."""
+        self.refusal = self.fields.refusal()
+        if self.refusal or self.work is not None:
+            self._show_state()
+            return
+        self.problem, self.outrun = "", False
+        inputs = Inputs(**self.fields.read(), pieces=self._pieces())
+        self.view.leave()
+        self.preview.clear()
+        try:
+            task = api.task(inputs)
+        except Exception as reason:
+            self.problem = sentence(reason)
+            self._show_state()
+            return
+        titles = titles_of(inputs)
+        self.work = Work(lambda progress: _planned(task, progress), None, _growing)
+        self.work.interim.connect(lambda found: self._growing(*found, titles))
+        self.work.progressed.connect(self.ongoing.report)
+        self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
+        self.work.failed.connect(self._not_computed)
+        self.work.cancelled.connect(lambda: self._not_computed(""))
+        self._show_state()
+        self.ongoing.begin(translate("ToolAxis", "Reading the part"))
+        self.work.start()
+
+    def draw(self):
+        """Draw the plan that is shown, off the GUI thread, and open the window with its pictures."""
+        plan = self.view.plan
+        if plan is None or self.work is not None:
+            return
+        self.view.leave()
+        self.work = Work(lambda progress: drawn(plan, progress))
+        self.work.progressed.connect(self.ongoing.report)
+        self.work.done.connect(self._drawn)
+        self.work.failed.connect(self._not_computed)
+        self.work.cancelled.connect(lambda: self._drawn(()))
+        self._show_state()
+        self.ongoing.begin(translate("ToolAxis", "Drawing"))
+        self.work.start()
+
+    def _drawn(self, pictures):
+        self.work = None
+        self._show_state()
+        if pictures:
+            show_pictures(pictures)
+
+    def compute_with(self, count):
+        """Compute again with a number of different axes.
+
+        Parameters
+        ----------
+        count : int
+        """
+        if self.work is None:
+            self.fields.set_count("orientations", count)
+            self.compute()
+
+    def _pieces(self):
+        """The sub-surfaces that are kept: those of the plan that is shown, else those that the panel began with."""
+        if self.view.plan is not None and self.view.locks.owners:
+            found = self.view.locks.pieces(self.view.plan, every=self.keeps)
+        else:
+            found = self.given
+        chosen = {(thing.Name, name) for thing, name in self.fields.faces.faces}
+        return tuple(piece for piece in found if (piece.thing.Name, piece.name) in chosen)
+
+    def stop(self):
+        """Ask the computation to stop."""
+        if self.work is not None:
+            self.form.stop.setEnabled(False)
+            self._tell(translate("ToolAxis", "Stopping"))
+            self.work.cancel()
+
+    def _growing(self, picture, face, titles):
+        """The map of the axes looked at so far for one of the faces."""
+        if self.work is not None:
+            if not self.view.growing:
+                self.form.tabs.setCurrentWidget(self.form.resultTab)
+            self.view.show_growing(picture, face, titles)
+
+    def _computed(self, inputs, plan, pictures, titles):
+        self.work = None
+        if not plan.operations:
+            self._not_computed("")
+            return
+        self.computed = None if self.outrun else inputs
+        FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
+        self.view.show(plan, pictures, titles, Locks(inputs, plan))
+        self.form.tabs.setCurrentWidget(self.form.resultTab)
+        self._show_state()
+
+    def _not_computed(self, message):
+        self.work = None
+        self.problem = message
+        if self.view.plan is None:
+            self.view.clear()
+        self.view.show_tool()
+        self._show_state()
+        if not message:
+            self._tell(translate("ToolAxis", "Stopped; the document is unchanged."))
+
+    # what happens to the document meanwhile
+
+    def object_deleted(self, name):
+        """A part is about to be deleted: take its faces off the list, and stop what is computed for them."""
+        if self.operation is not None and self.operation.Name == name:
+            self.operation = None  # what is planned again becomes a new one
+        self._forget_tool(name)
+        if self.fields.faces.remove_object(name):
+            self.problem = translate("ToolAxis", "The part was deleted: select other faces")
+        elif self.fields.avoid.remove_object(name):
+            self.problem = translate("ToolAxis", "A body to avoid was deleted: compute again without it")
+        else:
+            return
+        self._leave()
+        self.computed = None
+        self.view.clear()
+        self._changed()
+
+    def _forget_tool(self, name):
+        """Take a tool of the document that is about to be deleted off the choice."""
+        for k, (_, thing) in reversed(list(enumerate(self.tools))):
+            if getattr(thing, "Name", None) == name:  # a name of the library of tools has none
+                del self.tools[k]
+                self.form.tool.removeItem(k + 1)
+
+    def object_changed(self, name):
+        """A part, a body to avoid, or what carries one has changed: what was computed for it no longer counts."""
+        things = {thing.Name: thing for thing, _ in self.fields.faces.faces}
+        things |= {body.Name: body for body in self.fields.avoid.ticked}
+        if any(one.Name == name for thing in things.values() for one in (thing, *chain_of(thing))):
+            self.outrun = True
+            if self.work is None:
+                self._changed()
+
+    def _forget_view(self):
+        self.preview.forget()
+
+    def _let_go(self):
+        self.view.leave()
+        self.preview.clear()
+
+
+def _growing(offered):
+    """Picture and face of an intermediate result, None while it is too coarse; runs off the GUI thread."""
+    face, found = offered
+    picture = picture_of(face, found) if len(found.axis) >= _ENOUGH else None
+    return None if picture is None else (picture, face)
+
+
+def _planned(task, progress):
+    """Plan and pictures; runs off the GUI thread."""
+    from toolaxis.progress import NO_PROGRESS
+
+    plan = task(progress)
+    pictures = {}
+    for op in plan.operations:
+        if plan.outcome != "cancelled":
+            progress.report(translate("ToolAxis", "drawing the map"), op.number - 1, len(plan.operations))
+        pictures[op.number] = axis_picture(plan, op, NO_PROGRESS)
+    return plan, pictures

@@ -1,0 +1,252 @@
+"""What the panel shows in the 3D view before anything is in the document: passes, tool with holder, and frame."""
+
+from contextlib import suppress
+from functools import partial
+from itertools import pairwise
+
+import FreeCADGui
+import numpy as np
+from freecad.toolaxis.document.axis_lines import COLOUR, SHARE, ends_of
+from freecad.toolaxis.document.preferences import colours
+from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
+from PySide import QtCore
+
+_COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder": (0.35, 0.45, 0.60)}
+_CLEAR = {"cutter": 0.0, "shank": 0.15, "holder": 0.35}
+_TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.35, 0.90)))
+_AROUND = 48
+#: Time between the parts that are put into the view, ms: the first drawing of each is slow.
+_STEP = 20
+
+
+class Preview:
+    """Things in the scene of a document's 3D view that are no objects; gone when the panel closes.
+
+    They appear one by one, so that the window answers in between.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+
+    def __init__(self, document):
+        self.name = document.Name
+        self.root = self.transform = None
+        self.view = None
+        self.stations = None
+        self._left = []
+        self._timer = QtCore.QTimer()
+        self._timer.setInterval(_STEP)
+        self._timer.timeout.connect(self._grow)
+
+    def show(self, plan, op):
+        """Show an operation that has passes.
+
+        Parameters
+        ----------
+        plan : toolaxis.plan.plan.Plan
+        op : toolaxis.plan.operation.Operation
+        """
+        self.clear()
+        view = view_of(self.name)
+        if view is None:
+            return
+        root = coin.SoSeparator()
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        root.addChild(style)
+        tool = coin.SoSeparator()
+        self.transform = coin.SoTransform()
+        tool.addChild(self.transform)
+        root.addChild(tool)
+        self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
+                      *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
+                      *((tool, partial(_revolved, *solid)) for solid in solids(plan.tool))]
+        self.stations = Stations(op.path)
+        self.root, self.view = root, view
+        view.getSceneGraph().addChild(root)
+        self._timer.start()
+
+    def _grow(self):
+        """Add one part; called until none is left."""
+        if not self._left:
+            self._timer.stop()
+            return
+        above, make = self._left.pop(0)
+        above.addChild(make())
+
+    def move(self, share):
+        """Move the tool along the passes.
+
+        Parameters
+        ----------
+        share : float
+            0 at the first point of the first pass, 1 at the last of the last.
+        """
+        if self.root is None:
+            return
+        tip, axis = self.stations.at(share)
+        self.transform.translation.setValue(*(float(x) for x in tip))
+        self.transform.rotation.setValue(coin.SbRotation(coin.SbVec3f(0, 0, 1), coin.SbVec3f(*map(float, axis))))
+
+    def clear(self):
+        """Take everything out of the view."""
+        if self.root is not None:
+            with suppress(Exception):  # the view may be gone already, and its scene with it
+                self.view.getSceneGraph().removeChild(self.root)
+        self.forget()
+
+    def forget(self):
+        """Let go without touching the view."""
+        self.root = self.transform = self.view = self.stations = None
+        self._left = []
+
+
+def view_of(name):
+    """The 3D view of a document; None where it has none.
+
+    Parameters
+    ----------
+    name : str
+        Of the document.
+    """
+    try:
+        document = FreeCADGui.getDocument(name)
+    except NameError:  # it is just being closed
+        document = None
+    view = document.ActiveView if document is not None else None
+    if hasattr(view, "getSceneGraph"):
+        return view
+    found = document.mdiViewsOfType("Gui::View3DInventor") if document is not None else []
+    return found[0] if found else None
+
+
+class Stations:
+    """Places of the tool along the motions that are no links, by their share of the length.
+
+    Parameters
+    ----------
+    path : toolaxis.cldata.toolpath.ToolPath
+    """
+
+    def __init__(self, path):
+        from toolaxis.cldata.toolpath import Motion
+
+        self.path = path
+        steps = np.linalg.norm(np.diff(path.cl, axis=0), axis=1)
+        steps[path.kind[1:] == Motion.LINK] = 0.0
+        self.along = np.concatenate([[0.0], np.cumsum(steps)])
+
+    def at(self, share):
+        """Tip and axis of the tool, each (3,).
+
+        Parameters
+        ----------
+        share : float
+            0 to 1.
+        """
+        s = min(max(share, 0.0), 1.0) * self.along[-1]
+        k = int(np.clip(np.searchsorted(self.along, s, side="left"), 1, len(self.along) - 1))
+        step = self.along[k] - self.along[k - 1]
+        part = (s - self.along[k - 1]) / step if step > 0 else 1.0
+        axis = self.path.axis[k]
+        return self.path.cl[k - 1] + part * (self.path.cl[k] - self.path.cl[k - 1]), axis / np.linalg.norm(axis)
+
+
+def solids(tool):
+    """Closed outlines of cutter, shank and holder, (name, (k, 2) array of radius and z from the tip).
+
+    Parameters
+    ----------
+    tool : toolaxis.tools.tool.Tool
+    """
+    from toolaxis.report.figures.splat_renderer import tool_outlines
+
+    return [(name.split(" ")[0], line) for name, line in tool_outlines(tool, 6 * tool.radius).items()]
+
+
+def _coloured(colour, clear=0.0, lit=True):
+    node = coin.SoSeparator()
+    model = coin.SoLightModel()
+    model.model = coin.SoLightModel.PHONG if lit else coin.SoLightModel.BASE_COLOR
+    material = coin.SoMaterial()
+    material.diffuseColor.setValue(*colour)
+    material.specularColor.setValue(0.3, 0.3, 0.3)
+    material.shininess.setValue(0.4)
+    material.transparency.setValue(clear)
+    node.addChild(model)
+    node.addChild(material)
+    return node
+
+
+def _polylines(colour, lines, width):
+    node = _coloured(colour, lit=False)
+    style = coin.SoDrawStyle()
+    style.lineWidth = width
+    points = coin.SoCoordinate3()
+    rows = np.concatenate(lines).astype(float)
+    points.point.setValues(0, len(rows), rows.tolist())
+    lineset = coin.SoLineSet()
+    lineset.numVertices.setValues(0, len(lines), [len(line) for line in lines])
+    for child in (style, points, lineset):
+        node.addChild(child)
+    return node
+
+
+def _lines(path):
+    """The way of the tool's tip, in one colour where it cuts and in another between the passes."""
+    from toolaxis.cldata.toolpath import Motion
+
+    node = coin.SoSeparator()
+    cut = np.asarray(path.kind[1:]) == Motion.CUT
+    bounds = np.concatenate([[0], np.flatnonzero(np.diff(cut)) + 1, [len(cut)]])
+    for flag, colour, width in zip((True, False), colours(), (1.6, 1.0), strict=True):
+        lines = [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == flag]
+        if lines:
+            node.addChild(_polylines(colour, lines, width))
+    return node
+
+
+def _axes(op):
+    """The axis that moves, as short lines along the passes."""
+    from toolaxis.cldata.toolpath import Motion
+
+    lines, _ = ends_of(op.path.cl, op.path.axis, op.path.kind == Motion.CUT, SHARE * op.face.diagonal)
+    return _polylines(COLOUR, list(lines), 1.2)
+
+
+def _frame(frame, size):
+    node = coin.SoAnnotation()  # drawn over everything: part of it may lie inside the part
+    for (name, colour), way in zip(_TRIAD, (frame.x, frame.y, frame.z), strict=True):
+        tip = frame.shown_at + size * way
+        node.addChild(_polylines(colour, [np.array([frame.shown_at, tip])], 3.0))
+        label = _coloured(colour, lit=False)
+        move = coin.SoTranslation()
+        move.translation.setValue(*(float(x) for x in tip + 0.06 * size * way))
+        font = coin.SoFont()
+        font.size = 16
+        text = coin.SoText2()
+        text.string = name
+        for child in (move, font, text):
+            label.addChild(child)
+        node.addChild(label)
+    return node
+
+
+def _revolved(name, outline):
+    node = _coloured(_COLOURS.get(name, _COLOURS["shank"]), _CLEAR.get(name, 0.3))
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+    hints.creaseAngle = 0.5
+    turn = np.linspace(0, 2 * np.pi, _AROUND + 1)
+    radius, z = np.asarray(outline, dtype=float).T
+    rows = np.stack([radius[:, None] * np.cos(turn), radius[:, None] * np.sin(turn),
+                     np.broadcast_to(z[:, None], (len(z), len(turn)))], axis=-1)
+    points = coin.SoCoordinate3()
+    points.point.setValues(0, rows.size // 3, rows.reshape(-1, 3).tolist())
+    mesh = coin.SoQuadMesh()
+    mesh.verticesPerRow = len(turn)
+    mesh.verticesPerColumn = len(outline)
+    for child in (hints, points, mesh):
+        node.addChild(child)
+    return node

@@ -1,0 +1,1 @@
+"""The panel that verifies, and maps of its verdict on the faces."""

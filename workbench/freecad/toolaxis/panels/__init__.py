@@ -1,1 +1,0 @@
-"""Task panels and their widgets; nothing here is imported before a command runs."""

@@ -1,0 +1,1 @@
+"""What is done with documents: planning, verifying, editing and exporting, for scripts and panels alike."""

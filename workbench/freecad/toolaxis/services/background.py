@@ -1,0 +1,261 @@
+"""Work off the GUI thread: one computation in a QThread, with progress by stage, cancel, and errors as sentences.
+
+The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded,
+however often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
+
+While something is computed, Python's collector leaves alone what was there before: a full collection over all objects
+of FreeCAD and of the libraries holds the interpreter, and the window with it, for more than 0.1 s.  The interpreter
+also changes hands more often, since the window asks for it several times in drawing one picture.
+"""
+
+import gc
+import re
+import sys
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from threading import Event
+from time import monotonic
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore
+
+#: Interval at which progress is read, ms.
+_TICK = 150
+#: Least time between intermediate results, s.
+_PACE = 0.4
+#: How long the end of the application waits for a computation that was told to stop, ms.
+_PATIENCE = 3000
+#: How long a computation keeps the interpreter from the window that waits for it, and what it is without one, s.
+_TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
+
+#: Who hears of errors inside the add-on: callables that take the sentence and where it came from.
+_hearers: list[Callable[[str, str], Any]] = []
+#: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
+_running: set["_Thread"] = set()
+
+
+class _Thread(QtCore.QThread):
+    """Runs a callable(progress); its outcome stays in attributes."""
+
+    def __init__(self, compute: Callable[[Any], Any], digest: Callable[[Any], Any] | None) -> None:
+        super().__init__()
+        self.compute, self.digest = compute, digest
+        self.interim: Any = None
+        self.taken = -_PACE
+        self.stop = Event()
+        self.latest: tuple[str, float, float] | None = None
+        self.result: Any = None
+        self.message = self.trace = ""
+        self.stopped = False
+
+    def run(self) -> None:
+        """Compute; called in the thread."""
+        try:
+            _load()
+            from toolaxis.errors import Cancelled, ToolAxisError
+            from toolaxis.progress import Progress
+        except ImportError as reason:
+            self.message = f"{reason}: install what is missing by the Addon Manager"
+            return
+        try:
+            offered = None if self.digest is None else self._offered
+            self.result = self.compute(Progress(self._report, self.stop.is_set, offered))
+        except Cancelled:
+            self.stopped = True
+        except ToolAxisError as reason:
+            self.message = sentence(reason)
+        except ImportError as reason:
+            self.message = f"{reason}: install what is missing by the Addon Manager"
+        except MemoryError:
+            self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
+        except Exception as reason:  # our own bug: the panel says so, the traceback is for the report
+            self.message = f"an error inside Tool Axis ({type(reason).__name__}: {sentence(reason)}); please report it"
+            self.trace = traceback.format_exc()
+
+    def _report(self, stage: str, done: float, total: float) -> None:
+        self.latest = (stage, done, total)
+
+    def _offered(self, make: Callable[[], Any]) -> None:
+        if monotonic() - self.taken > _PACE and self.digest is not None:
+            digested = self.digest(make())
+            if digested is not None:
+                self.interim, self.taken = digested, monotonic()
+
+
+@cache
+def _load() -> None:
+    """Load the libraries that computations need; the collector does not look at them while one runs."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        import scipy.spatial  # noqa: F401
+
+        import toolaxis.job.planning.edit_axis
+        import toolaxis.job.planning.pipeline  # noqa: F401
+    finally:
+        if collecting:
+            gc.enable()
+    gc.freeze()
+
+
+def clear_away() -> None:
+    """Collect what nobody holds any more, also what was set aside while something is computed.
+
+    Panels that were closed leave Python objects of widgets behind, which the bindings hand out again for a new widget
+    that lies at a dead one's address; collected later, they would take the new one for dead.
+    """
+    gc.unfreeze()
+    gc.collect()
+    if _running:
+        gc.freeze()
+
+
+def hear_errors(hearer: Callable[[str, str], Any]) -> None:
+    """Have a callable hear of every error inside the add-on, on the GUI thread.
+
+    Parameters
+    ----------
+    hearer : callable
+        Takes the sentence that the panel shows, and where the error came from.
+    """
+    if hearer not in _hearers:
+        _hearers.append(hearer)
+
+
+def tell_error(message: str, trace: str) -> None:
+    """Let those who hear of errors know of one; the log has it too.
+
+    Parameters
+    ----------
+    message, trace : str
+    """
+    FreeCAD.Console.PrintLog(trace)
+    for hearer in _hearers:
+        hearer(message, trace)
+
+
+def sentence(reason: BaseException) -> str:
+    """An error as one line without a stop at its end.
+
+    Parameters
+    ----------
+    reason : BaseException
+    """
+    text = re.sub(r"(?<!\S)--(?=[a-z])", "", " ".join(str(reason).split()))  # options of the command have fields here
+    return (text or type(reason).__name__).rstrip(".")
+
+
+class Work(QtCore.QObject):
+    """One computation off the GUI thread.
+
+    Exactly one of `done`, `failed` and `cancelled` is emitted, on the GUI thread, unless the work is left alone.
+
+    Parameters
+    ----------
+    compute : callable
+        Called with a `toolaxis.progress.Progress` in another thread; it must touch no document and no widget.
+    parent : QObject, optional
+    digest : callable, optional
+        Makes of an intermediate result, in the other thread, what `interim` is emitted with; None for nothing yet.
+    """
+
+    progressed = QtCore.Signal(str, float)
+    """Stage, and the share that is done, 0 to 1; negative where it is not known."""
+    interim = QtCore.Signal(object)
+    """An intermediate result, digested."""
+    done = QtCore.Signal(object)
+    """What the callable returned."""
+    failed = QtCore.Signal(str)
+    """Why it could not be done, one sentence."""
+    cancelled = QtCore.Signal()
+
+    def __init__(self, compute: Callable[[Any], Any], parent: QtCore.QObject | None = None,
+                 digest: Callable[[Any], Any] | None = None) -> None:
+        super().__init__(parent)
+        self._thread = _Thread(compute, digest)
+        self._thread.finished.connect(self._ended)
+        self._timer = QtCore.QTimer(self)
+        self._timer.setInterval(_TICK)
+        self._timer.timeout.connect(self._tick)
+        self._told: tuple[str, float, float] | None = None
+        self.running = False
+
+    def start(self) -> "Work":
+        """Begin; returns at once."""
+        _running.add(self._thread)
+        self._thread.finished.connect(_keeper().sweep)
+        self.running = True
+        self._timer.start()
+        gc.freeze()
+        sys.setswitchinterval(_TURN)
+        self._thread.start(QtCore.QThread.LowPriority)
+        return self
+
+    def cancel(self) -> None:
+        """Ask to stop; `cancelled` follows when the computation has noticed."""
+        self._thread.stop.set()
+
+    def leave(self) -> None:
+        """Ask to stop and never emit anything again: whoever listened is gone."""
+        self.cancel()
+        self.running = False
+        self._timer.stop()
+        with suppress(RuntimeError):
+            self._thread.finished.disconnect(self._ended)
+
+    def _tick(self) -> None:
+        interim, self._thread.interim = self._thread.interim, None
+        if interim is not None:
+            self.interim.emit(interim)
+        latest = self._thread.latest
+        if latest is None or latest == self._told:
+            return
+        self._told = latest
+        stage, done, total = latest
+        self.progressed.emit(stage, min(max(done / total, 0.0), 1.0) if total > 0 else -1.0)
+
+    def _ended(self) -> None:
+        self._timer.stop()
+        self.running = False
+        thread = self._thread
+        if thread.message:
+            self.failed.emit(thread.message)
+            if thread.trace:
+                tell_error(thread.message, thread.trace)
+        elif thread.stopped or (thread.result is None and thread.stop.is_set()):
+            self.cancelled.emit()
+        else:
+            self.done.emit(thread.result)
+
+
+class _Keeper(QtCore.QObject):
+    """Lets go of threads that have ended, on the GUI thread, and stops the others when the application ends."""
+
+    def sweep(self) -> None:
+        """Let go of threads that have ended, and after the last one of what they needed of the interpreter."""
+        for thread in [thread for thread in _running if thread.isFinished()]:
+            thread.wait()
+            _running.discard(thread)
+        if not _running:
+            gc.unfreeze()
+            sys.setswitchinterval(_USUAL_TURN)
+
+
+@cache
+def _keeper() -> _Keeper:
+    keeper = _Keeper()
+    QtCore.QCoreApplication.instance().aboutToQuit.connect(stop_all)
+    return keeper
+
+
+def stop_all() -> None:
+    """Ask every computation to stop and wait for it a little, together a few seconds."""
+    for thread in tuple(_running):
+        thread.stop.set()
+    clock = QtCore.QElapsedTimer()
+    clock.start()
+    for thread in tuple(_running):
+        thread.wait(max(1, _PATIENCE - clock.elapsed()))

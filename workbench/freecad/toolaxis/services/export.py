@@ -1,0 +1,274 @@
+"""Operations of a document out as files: what the commands plan, post and report write, whole or not at all."""
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from freecad.toolaxis.document.blade_links import turned_copies
+from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.machine import angles_kept, nearest
+from freecad.toolaxis.document.machine_angles import in_order
+from freecad.toolaxis.document.machine_limits import PREFIX, mounting
+from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.staleness import why_stale
+from freecad.toolaxis.services.arguments import operation_of, progress_of
+
+#: What operations of one folder have in common, and how it is called in messages.
+_SHARED = {"tool": "tools", "stickout": "stick-outs", "flute_length": "flute lengths",
+           "shank": "shanks", "holder": "holders",
+           "scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
+           "limits": "limits of the axis",
+           "strategy": "strategies", "roughness": "roughness limits", "objective": "objectives",
+           "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
+_JUDGED = {"passed": "passed", "failed": "FAILED"}
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is written besides plan.json and the CL files.
+
+    Attributes
+    ----------
+    dialect : str
+        Of the program; empty for none.
+    machine : str
+        Name or file of the machine that the program is for; empty for none.
+    offset : (3,) sequence of float, optional
+        Where the origin of the document stands on the machine's table, mm.
+    report : bool
+        Whether the page is written.
+    """
+
+    dialect: str = ""
+    machine: str = ""
+    offset: tuple | None = None
+    report: bool = False
+
+
+def export(operations, folder, wish=None, progress=None):
+    """Write operations into a folder as the command does.
+
+    Parameters
+    ----------
+    operations : App.DocumentObject or sequence of them
+    folder : str or Path
+        Files of an earlier plan in it are replaced, others stay.
+    wish : Wish, optional
+    progress : toolaxis.progress.Progress, optional
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+
+    Raises
+    ------
+    ToolAxisError
+        In one sentence; the folder is then as it was.
+    """
+    several = operations if isinstance(operations, list | tuple) else [operations]
+    return task([operation_of(one) for one in several], folder, wish)(progress_of(progress))
+
+
+def task(operations, folder, wish=None):
+    """The writing of operations, as a computation apart from the document.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+    folder : str or Path
+    wish : Wish, optional
+
+    Returns
+    -------
+    callable
+        Takes a `toolaxis.progress.Progress` and returns the names of the files; for any thread.
+
+    Raises
+    ------
+    InvalidInput
+        When an operation is stale or has no part any more, or operations do not go together.
+    """
+    gather, verdict = plan_task(operations), _verdict(operations)
+    wish = Wish() if wish is None else wish
+
+    def compute(progress):
+        return _write(gather(progress), Path(folder), wish, (verdict, progress))
+
+    return compute
+
+
+def plan_task(operations):
+    """The plan that stands in a document, as a computation apart from it.
+
+    Parameters
+    ----------
+    operations : sequence of App.DocumentObject
+
+    Returns
+    -------
+    callable
+        Takes a `toolaxis.progress.Progress` and returns a `toolaxis.plan.plan.Plan`; for any thread.
+
+    Raises
+    ------
+    InvalidInput
+        When an operation is stale or has no part any more, or operations do not go together.
+    """
+    inputs = [_inputs(operation) for operation in operations]
+    together = _together(operations, inputs)
+    source, rows = Source.of(together), []
+    offsets = _offsets(together)
+    for operation, one in zip(operations, inputs, strict=True):
+        standing = Standing.of(operation) if operation.Motions else None
+        details = json.loads(operation.Details)
+        before = offsets[one.faces[0][0].Name]
+        rows.append((standing, operation.AxisMap, _numbered(details, before), angles_kept(operation)))
+        for link in turned_copies(operation) if standing is not None else ():
+            copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
+            rows.append((copy, operation.AxisMap, _numbered(copy.details, before), ()))
+    tool, job = together.assembled(), together.job()
+
+    def compute(progress):
+        from toolaxis.plan.plan import Plan, outcome_of
+
+        part, bodies = source.read(progress)
+        for row in rows:
+            part = Standing(None, None, None, row[2]).joined(part)
+        made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
+        mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
+        if mounted is not None:
+            made = _held(made, mounted, [row[3] for row in rows])
+        return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
+
+    return compute
+
+
+def _inputs(operation):
+    """The inputs of an operation that holds."""
+    from toolaxis.errors import InvalidInput
+
+    reasons = why_stale(operation)
+    if reasons:
+        raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before it is written")
+    return inputs_of(operation)
+
+
+def _together(operations, inputs):
+    """One job for all operations; refused where they differ in what a plan has once."""
+    from toolaxis.errors import InvalidInput
+
+    if not inputs:
+        raise InvalidInput("there is no operation: select faces and run Plan Orientations first")
+    first = inputs[0]
+    for operation, one in zip(operations, inputs, strict=True):
+        for name, words in _SHARED.items():
+            if getattr(one, name) != getattr(first, name):
+                raise InvalidInput(f"'{operations[0].Label}' and '{operation.Label}' have different {words}: select "
+                                   "those that go together, and write each kind into a folder of its own")
+    things = {thing.Name for one in inputs for thing in one.things}
+    obstacles = {body.Name: body for one in inputs for body in one.obstacles if body.Name not in things}
+    faces = dict.fromkeys(face for one in inputs for face in one.faces)
+    return replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+
+
+def _offsets(together):
+    """How many faces come before those of each part, by the parts' names."""
+    from toolaxis.cad.freecad.documents import shape_of
+
+    found, before = {}, 0
+    for thing in together.things:
+        found[thing.Name] = before
+        before += len(shape_of(thing).Faces)
+    return found
+
+
+def _numbered(details, before):
+    """What is kept of a sub-surface, its face counted through all parts."""
+    own = str(details["face"])
+    suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
+    number = details["face"] + before
+    members = [member + before for member in details.get("members", ())]
+    return details | {"face": number, "label": f"{number}{suffix}", "members": members}
+
+
+def _operation(number, part, row):
+    """An operation of the library from what stands in the document."""
+    from toolaxis.plan.document import orientation_from
+    from toolaxis.plan.operation import Operation
+
+    standing, axis_map, details = row
+    if standing is None:
+        lost = Standing(None, None, None, details)
+        return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))
+    standing = replace(standing, details=details)
+    return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
+
+
+def _held(made, mounted, angles):
+    """Operations with the rotary angles at which the machine that they were planned for holds them: those that the
+    document tells, else the nearest ones."""
+    done = [(op, kept) for op, kept in zip(made, angles, strict=True) if op.done and op.orientation.lead is None]
+    rows = in_order(mounted, [(op.orientation.axis, op.path.cl) for op, _ in done])
+    found = {}
+    for (op, kept), (ways, taken) in zip(done, rows, strict=True):
+        taken = nearest(ways, kept) if kept and ways else taken
+        if taken >= 0 and ways:
+            found[op.number] = tuple(map(float, ways[taken].rotary))
+    return [replace(op, rotary=found.get(op.number, ())) for op in made]
+
+
+def _datum(made, source):
+    """The origin that all work coordinate systems share."""
+    import numpy as np
+
+    frames = [op.frame for op in made if op.frame is not None]
+    return frames[0].origin if frames else np.array(source.datum)
+
+
+def _verdict(operations):
+    """What is known of operations, as the setup sheet says it."""
+    found = {operation.Verdict for operation in operations if operation.Motions}
+    return _JUDGED.get(found.pop(), "not judged yet: run toolaxis verify") if len(found) == 1 else (
+        "FAILED" if "failed" in found else "not judged yet: run toolaxis verify")
+
+
+def _write(plan, folder, wish, told):
+    """Make all files beside the folder, then move them there."""
+    from toolaxis.errors import InvalidInput
+    from toolaxis.job.files.plan_folder import staged, write_plan
+
+    verdict, progress = told
+    try:
+        with staged(folder) as stage:
+            inner = stage.folder / folder.resolve().name  # the page is called by its folder
+            inner.mkdir()
+            progress.report("writing the plan", 0, 1)
+            write_plan(plan, inner)
+            if wish.dialect:
+                for name, text in _program(plan, wish, folder.resolve().name, verdict).items():
+                    (inner / name).write_text(text, encoding="utf-8")
+            if wish.report:
+                from toolaxis.job.output.report import report
+
+                report(inner, None, progress)
+            names = sorted(path.name for path in inner.iterdir())
+            for name in names:
+                (inner / name).rename(stage.folder / name)
+            inner.rmdir()
+            stage.publish()
+    except OSError as reason:  # the disk is full, the drive is gone
+        raise InvalidInput(f"folder {folder} cannot be written ({reason.strerror}): make room there, or give "
+                           "another") from reason
+    return names
+
+
+def _program(plan, wish, name, verdict):
+    """The files of a program."""
+    from toolaxis.cad.machines import load_machine
+    from toolaxis.job.output.post import posted
+    from toolaxis.machine.setup import Mounting
+
+    mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None
+    return posted(plan, wish.dialect, mounting, name=name, verdict=verdict)

@@ -1,0 +1,100 @@
+"""What cutter, shank and holder of one operation meet of parts and of what stands beside them, motion by motion."""
+
+from dataclasses import dataclass
+
+from freecad.toolaxis.services import collisions
+
+
+@dataclass(frozen=True)
+class Bump:
+    """Motions one after the other on which the same part of the tool meets the same face.
+
+    Attributes
+    ----------
+    first, last : int
+        Numbers of the motions; motion k ends at point k of the path.
+    text : str
+        The sentence, with the greatest depth on these motions.
+    """
+
+    first: int
+    last: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Bumps:
+    """All of an operation.
+
+    Attributes
+    ----------
+    found : tuple of Bump
+    checked : tuple of str
+        What was looked at of "cutter", "shank" and "holder": what is known of the tool.
+    """
+
+    found: tuple
+    checked: tuple
+
+    def at(self, motion):
+        """The one on a motion; None where nothing meets.
+
+        Parameters
+        ----------
+        motion : int
+        """
+        return next((one for one in self.found if one.first <= motion <= one.last), None)
+
+
+def bumps(tool, path, found, progress):
+    """Where a tool meets copies of objects along its passes and links; runs in any thread.
+
+    Parameters
+    ----------
+    tool : toolaxis.tools.tool.Tool
+    path : toolaxis.cldata.toolpath.ToolPath
+        In the document's space.
+    found : sequence of freecad.toolaxis.services.collisions.Copy
+    progress : toolaxis.progress.Progress
+
+    Returns
+    -------
+    Bumps
+        The tool touches what it cuts: only what lies deeper than `collisions.DEPTH` counts.  Where the
+        axis moves it is looked for at the points of the path, else on all of the way between them.
+    """
+    import numpy as np
+
+    from toolaxis.contact.clearance.surroundings import Surroundings
+    from toolaxis.progress import heard
+
+    names, faces = [], []
+    for name, _, read in collisions.read(found, progress):
+        names += [f"face {face.number} of {name}" for face in read]
+        faces += read
+    around = Surroundings(tuple(faces), np.full((len(faces), 3), -collisions.DEPTH))
+    moves = bool(np.ptp(path.axis, axis=0).max(initial=0.0) > 1e-9)
+    progress.report("looking for collisions", 0, 1)
+    with heard(progress):
+        bad, some = collisions.met_by_tool(tool, (path.cl, path.axis), around, moves)
+    end = 0 if moves else 1  # motion k leads from point k - 1 to point k
+    checked = ("cutter", *(name for name in ("shank", "holder") if name in tool.outlines))
+    known = {k + end: rest for k, *rest in some}
+    return Bumps(_joined(known, (bad + end).tolist(), names), checked)
+
+
+def _joined(at, bad, names):
+    """Bumps of motions one after the other that say the same; motions that were not measured go with the one before."""
+    made, known = [], None
+    for motion in bad:
+        known = at.get(motion, known)
+        member, face, depth = known
+        if depth < collisions.DEPTH or face < 0:
+            continue
+        last = made[-1] if made else None
+        if last is not None and last["key"] == (member, face) and last["last"] == motion - 1:
+            last["last"], last["depth"] = motion, max(last["depth"], depth)
+        else:
+            made.append({"key": (member, face), "first": motion, "last": motion, "depth": depth})
+    return tuple(Bump(one["first"], one["last"],
+                      f"the {one['key'][0]} meets {names[one['key'][1]]} by {one['depth']:.1f} mm") for one in made)
