@@ -10,6 +10,8 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import Stopping
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
+from toolaxis.strategies.registry import strategies, strategy_named
+from toolaxis.strategies.strategy import INDEXED, SPHERE
 from toolaxis.work import LIMIT, MOVING
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -84,7 +86,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
-    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors", "roman", "normal", "one", "ball"),
+    sub.add_argument("--method", default=SPHERE, choices=tuple(strategy_named(INDEXED).methods),
                      help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; "
                           "to compare: roman (the axis of Roman's rule), normal (the mean normal), one (one axis for "
                           "all), ball (a ball end of the same radius along the mean normal)")
@@ -106,16 +108,13 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
-    sub.add_argument("--strategy", default="indexed", metavar="NAME",
-                     help="indexed (default): one fixed axis for each sub-surface; sturz: simultaneous five-axis "
-                          "milling with the best constant lead; two-point: the same with a flat end or torus that "
-                          "touches hollow faces at two points; blade, blade-keys: a ball end goes around blades in "
-                          "layers while one rotary axis swings without turning back, with least acceleration or by "
-                          "key points; four-plus-one: one rotary axis of the machine clamped at the best angle, the "
-                          "other turning along the passes; multiscale: a torus keeps --roughness and an expected "
-                          "strip width while the machine's rotary axes turn least")
+    default, known = " (default)", strategies().values()
+    sub.add_argument("--strategy", default=INDEXED, metavar="NAME",
+                     help="; ".join(f"{one.name}{default if one.name == INDEXED else ''}: {one.summary}"
+                                    for one in known).replace("%", "%%"))
+    kept = [f"{one.name} (default: {1000 * one.roughness:g})" for one in known if one.roughness]
     sub.add_argument("--roughness", type=float, metavar="UM",
-                     help="greatest Ra across the feed for the strategy multiscale, micrometres (default: 1.6)")
+                     help=f"greatest Ra across the feed, micrometres, for the strategy {', '.join(kept)}")
     sub.set_defaults(module="toolaxis.cli.plan")
 
 

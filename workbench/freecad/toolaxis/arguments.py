@@ -223,9 +223,9 @@ def fields_of(document, given):
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
-        from toolaxis.job.inputs.spec import roughness_for
+        from toolaxis.strategies.inputs import check_roughness
 
-        roughness_for(found.get("strategy", INDEXED), found["roughness"] / 1000)
+        check_roughness(found.get("strategy", INDEXED), found["roughness"] / 1000)
     return found
 
 

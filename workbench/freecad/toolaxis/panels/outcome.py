@@ -2,7 +2,7 @@
 
 import FreeCAD
 
-from ..strategies import TWICE
+from ..strategies import strategy_of
 
 translate = FreeCAD.Qt.translate
 
@@ -44,14 +44,15 @@ def outcome_sentence(plan):
 
 
 def touched_once(plan):
-    """Whether two-point contact was asked for and no sub-surface has any.
+    """Whether the strategy did nowhere what it is there for, as two-point contact where no sub-surface has any.
 
     Parameters
     ----------
     plan : toolaxis.plan.plan.Plan
     """
-    return plan.inputs.method == "two-point" and not any(
-        why.startswith(TWICE) for op in plan.operations for why in op.orientation.reasons)
+    promise = strategy_of(plan.inputs.method).promise
+    return bool(promise) and not any(
+        why.startswith(promise) for op in plan.operations for why in op.orientation.reasons)
 
 
 def left_to_clean_up(plan):

@@ -9,7 +9,7 @@ from PySide import QtWidgets
 
 from ..inputs import flute_of
 from ..machines import PREFIX, mounting
-from ..strategies import INDEXED, ROUGH, STRATEGIES, needs
+from ..strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from .fields import OutlineTable
 from .lists import BodyList, FaceList
 from .quantity import QuantityField
@@ -51,6 +51,7 @@ class PlanForm:
         self.counts = {name: (self._find(name, QtWidgets.QComboBox), self._find(f"{name}Number", QtWidgets.QSpinBox))
                        for name in ("regions", "orientations")}
         self.strategy = self._find("strategy", QtWidgets.QComboBox)
+        self.strategy.addItems(titles())
         self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
         self.unshown = ""
@@ -90,7 +91,7 @@ class PlanForm:
         kind, limits = KINDS[self.kind.currentIndex()], self.limits.currentIndex()
         shown = {"corner": kind in ("torus", "tapered"), "taper": kind == "tapered", "cone": limits == _CONE,
                  "limitX": limits != _NO_LIMITS and limits < 3, "tiltLow": limits == _ROTARY,
-                 "turnLow": limits == _ROTARY, "roughness": self.strategy_name == ROUGH}
+                 "turnLow": limits == _ROTARY, "roughness": keeps_roughness(self.strategy_name)}
         members = {"limitX": ("limitX", "limitY", "limitZ"), "tiltLow": ("tiltLow", "tiltHigh"),
                    "turnLow": ("turnLow", "turnHigh")}
         for combo, spin in self.counts.values():
