@@ -18,7 +18,21 @@ DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence, without the usage."""
+    """Says what is wrong in one sentence, without the usage.
+
+    Attributes
+    ----------
+    listed : callable or None
+        Makes what the help ends with, where that takes long to find out.
+    """
+
+    listed: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help with what is listed below it."""
+        if self.listed is not None:
+            self.epilog = self.listed()
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         """Print one sentence and leave with the exit code of wrong input."""
@@ -140,8 +154,8 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "five-axis machine: --dialect apt writes it as an APT file beside it, fanuc, siemens and "
                           "heidenhain as a program of --machine with tool centre point control")
     sub.add_argument("--dialect", required=True, metavar="NAME",
-                     help="fanuc (G68.2), haas-g268, haas-g254, siemens (CYCLE800), heidenhain (PLANE SPATIAL), "
-                          "linuxcnc-twp (G68.2), linuxcnc or iso (a work offset for each orientation), apt (CL files)")
+                     help="a dialect of those below, or apt (CL files)")
+    sub.listed = _dialects_listed
     sub.add_argument("--machine", metavar="NAME|FILE", help="a machine from resources/machines, a TOML or .fcm file")
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm: travel is checked with it")
@@ -155,6 +169,13 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.post")
+
+
+def _dialects_listed() -> str:
+    """All dialects with what they are called; the geometry of their programs is not imported before."""
+    from toolaxis.post.dialects.registry import dialects
+
+    return f"Dialects: {'; '.join(f'{name}: {one.title}' for name, one in dialects().items())}."
 
 
 def _add_reschedule(commands: "argparse._SubParsersAction[_Parser]") -> None:
