@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "core"))
 
 from toolaxis.strategies.registry import strategies  # noqa: E402
+from toolaxis.tools.registry import cutters  # noqa: E402
 
 ADDON, LAYOUTS = ROOT / "workbench" / "freecad" / "toolaxis", ROOT / "resources" / "ui"
 _MARKS = ("translate", "QT_TRANSLATE_NOOP")
@@ -33,6 +34,7 @@ def texts():
     for one in strategies().values():  # they are offered as the library names them
         found |= {("ToolAxisPlan", one.title), ("ToolAxis", one.note)} | {("ToolAxis", text)
                                                                          for text in one.pictures.values()}
+    found |= {("ToolAxisPlan", one.title) for one in cutters().values()}
     return sorted(pair for pair in found if pair[1])
 
 

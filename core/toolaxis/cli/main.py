@@ -12,6 +12,7 @@ from toolaxis.cli.stopping import Stopping
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import INDEXED, SPHERE
+from toolaxis.tools.registry import short_forms
 from toolaxis.work import LIMIT, MOVING
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -71,8 +72,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                                           "Lengths in mm, angles in degrees.")
     sub.add_argument("part", metavar="PART.step")
     sub.add_argument("--tool", required=True, metavar="TOOL",
-                     help="torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner radius x degrees), a TOML or "
-                          ".fctb file, or a name from resources/tools")
+                     help=f"{short_forms('')} (diameter x corner radius x degrees), a TOML or .fctb file, or a name "
+                          "from resources/tools")
     sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
     sub.add_argument("--tolerance", type=float, metavar="MM",
                      help="machining tolerance: how far the finished surface may be cut too deep (default: 0.01)")
