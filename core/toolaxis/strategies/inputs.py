@@ -29,6 +29,8 @@ def check_strategy(name: str, asked: Asked) -> Strategy:
     elif any(one.moves and asked.method == one.name for one in strategies().values()):
         raise InvalidInput(f"method {asked.method!r} moves the axis: ask for the strategy {asked.method!r} instead")
     strategy.check(asked)
+    if strategy.moves:
+        _check_machine(strategy, asked)
     return strategy
 
 
@@ -55,30 +57,6 @@ def check_roughness(name: str, roughness: float | None) -> None:
         raise InvalidInput(f"roughness is {1000 * roughness:g} um: it must be finite and above zero")
 
 
-def check_rotary_axes(strategy: Strategy, asked: Asked) -> None:
-    """Check that a machine can move the axis while it cuts.
-
-    Parameters
-    ----------
-    strategy : Strategy
-    asked : Asked
-
-    Raises
-    ------
-    InvalidInput
-        When it has too few rotary axes of its own drives, or there is none and the strategy needs one.
-    """
-    name, machine = strategy.name, asked.machine
-    if machine is None:
-        if strategy.machine_use:
-            raise InvalidInput(f"strategy {name!r} {strategy.machine_use}: {asked.remedy}")
-        return
-    driven = sum(not axis.by_hand for axis in machine.rotary)
-    if driven < strategy.rotary_axes:
-        raise InvalidInput(f"strategy {name!r} moves {_COUNTS[strategy.rotary_axes]} while it cuts and {machine.name} "
-                           f"drives {driven}: name another machine or leave out the strategy")
-
-
 def _check_moving(strategy: Strategy, asked: Asked) -> None:
     """Check what all strategies have in common that move the axis."""
     name = strategy.name
@@ -93,4 +71,16 @@ def _check_moving(strategy: Strategy, asked: Asked) -> None:
     if asked.held:
         raise InvalidInput(f"strategy {name!r} moves the axis, and {asked.held}: take the lock away, or choose fixed "
                            "axes")
-    check_rotary_axes(strategy, asked)
+
+
+def _check_machine(strategy: Strategy, asked: Asked) -> None:
+    """Check that there is a machine where one is needed, and that it drives the rotary axes."""
+    name, machine = strategy.name, asked.machine
+    if machine is None:
+        if strategy.machine_use:
+            raise InvalidInput(f"strategy {name!r} {strategy.machine_use}: {asked.remedy}")
+        return
+    driven = sum(not axis.by_hand for axis in machine.rotary)
+    if driven < strategy.rotary_axes:
+        raise InvalidInput(f"strategy {name!r} moves {_COUNTS[strategy.rotary_axes]} while it cuts and {machine.name} "
+                           f"drives {driven}: name another machine or leave out the strategy")
