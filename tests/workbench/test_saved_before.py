@@ -20,6 +20,7 @@ from freecad.toolaxis.objects.operation import Operation
 from freecad.toolaxis.objects.passes import moves
 from freecad.toolaxis.objects.wholeplan import WholePlan
 from freecad.toolaxis.results import child
+from freecad.toolaxis.strategies import STRATEGIES
 
 from toolaxis.progress import NO_PROGRESS
 
@@ -78,6 +79,21 @@ def test_it_keeps_the_machining_tolerance_that_held_then(opened, operation, part
     operation.Tolerance = 0.002
     opened.recompute()
     assert not operation.Stale
+
+
+def test_it_offers_the_strategies_that_came_later(opened, operation, tmp_path):
+    """An operation saved by a version that knew two of them keeps its own, and takes all others."""
+    operation.Strategy = ["sturz", "indexed"]
+    operation.Strategy = "indexed"
+    name = operation.Name
+    opened.saveAs(str(tmp_path / "fewer.FCStd"))
+    again = FreeCAD.openDocument(str(shutil.copy(tmp_path / "fewer.FCStd", tmp_path / "again.FCStd")))
+    found = again.getObject(name)
+    assert found.getEnumerationsOfProperty("Strategy") == list(STRATEGIES) and found.Strategy == "indexed"
+    assert not found.Stale and not bridge.is_stale(found)
+    found.Strategy = "multiscale"
+    assert bridge.inputs_of(found).strategy == "multiscale"
+    FreeCAD.closeDocument(again.Name)
 
 
 @pytest.fixture(params=["before-moving-axes.FCStd", "before-raised-surfaces.FCStd"])
