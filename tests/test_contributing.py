@@ -3,7 +3,7 @@
 import importlib
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +17,7 @@ from toolaxis.cli.main import main
 from toolaxis.job.files.plan_folder import read_json, read_plan
 from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.plan.plan import Plan
+from toolaxis.post.dialects.registry import dialects
 from toolaxis.report.tables import plan_table
 from toolaxis.strategies.registry import strategies, title_of
 from toolaxis.tools.registry import cutters
@@ -156,3 +157,9 @@ def test_a_cutter_is_one_module(add, sheet: str, tmp_path: Path, capsys: pytest.
     with pytest.raises(SystemExit):
         main(["plan", "--help"])
     assert "button:52x6" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("registry", [strategies, dialects, cutters], ids=lambda one: one.__name__)
+def test_the_manual_names_all_of_them(registry: Callable[[], Mapping[str, object]]) -> None:
+    text = (ROOT / "resources" / "manual" / "command.md").read_text(encoding="utf-8")
+    assert [name for name in registry() if not re.search(rf"`{name}[`:]", text)] == []

@@ -4,7 +4,7 @@ from math import isfinite
 
 import FreeCAD
 
-from .strategies import INDEXED
+from .strategies import INDEXED, STRATEGIES
 
 _UNITS = FreeCAD.Units
 _FACES = "give an object, (object, \"Face7\"), \"Block.Face7\", or a list of these"
@@ -17,7 +17,7 @@ _NUMBERS = {"scallop": _LENGTH, "tolerance": _LENGTH, "allowance": _LENGTH, "sti
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
 _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",
-          "method": "\"sphere\"", "strategy": "\"four-plus-one\""}
+          "method": "\"sphere\"", "strategy": f"\"{STRATEGIES[1]}\""}
 _COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")

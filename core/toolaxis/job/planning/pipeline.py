@@ -141,7 +141,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
     chosen = check_strategy(strategy, Asked(
         cutter if isinstance(cutter, Tool) else None, None if mounting is None else mounting.machine, method, objective,
-        roughness, orientations, held_in(given)))
+        None if roughness is None else float(roughness), orientations, held_in(given)))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else written(allowed)
