@@ -10,6 +10,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "core"))
+
+from toolaxis.strategies.registry import strategies  # noqa: E402
+from toolaxis.tools.registry import cutters  # noqa: E402
+
 ADDON, LAYOUTS = ROOT / "workbench" / "freecad" / "toolaxis", ROOT / "resources" / "ui"
 _MARKS = ("translate", "QT_TRANSLATE_NOOP")
 
@@ -26,7 +31,11 @@ def texts():
         context = root.findtext("class")
         found |= {(context, node.text) for node in root.iter("string")
                   if node.get("notr") != "true" and (node.text or "").strip()}
-    return sorted(found)
+    for one in strategies().values():  # they are offered as the library names them
+        found |= {("ToolAxisPlan", one.title), ("ToolAxis", one.note)} | {("ToolAxis", text)
+                                                                         for text in one.pictures.values()}
+    found |= {("ToolAxisPlan", one.title) for one in cutters().values()}
+    return sorted(pair for pair in found if pair[1])
 
 
 def _name(function):

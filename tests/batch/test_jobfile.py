@@ -107,10 +107,11 @@ def test_a_job_is_the_same_wherever_it_lies_and_another_one_with_every_other_set
     (moved / "c.step").write_text(STEP)
     same = [{}, {"tolerance": 0.01}, {"part": moved / "c.step"}, {"tool": ta.Tool.ball(diameter=8)}, {"name": "y"},
             {"timeout": 9}, {"memory": 900}]
+    rough = {"strategy": "multiscale", "tool": "torus:10x3", "machine": "bc-table-table"}
     other = [{"part": here / "b.step"}, {"tool": "ball:6"}, {"scallop": 0.2}, {"faces": "1"}, {"regions": 2},
              {"stickout": 30}, {"obstacles": [here / "b.step"]}, {"machine": "mikron-ucp-710"}, {"verify": True},
              {"limits": "cone:0,0,1,45"}, {"feedrate": 500}, {"compare": True}, {"pictures": True},
-             {"tolerance": 0.005}, {"strategy": "multiscale"}, {"strategy": "multiscale", "roughness": 0.8}]
+             {"tolerance": 0.005}, {"strategy": "sturz"}, rough, {**rough, "roughness": 0.8}]
     keys = [read_jobs([{**first, **change}])[0].key for change in same]
     assert len(set(keys)) == 1
     others = [read_jobs([{**first, **change}])[0].key for change in other]
@@ -118,11 +119,13 @@ def test_a_job_is_the_same_wherever_it_lies_and_another_one_with_every_other_set
 
 
 def test_roughness_is_told_in_micrometres_and_only_where_it_is_looked_at(here: Path) -> None:
-    job = {"part": here / "a.step", "tool": "torus:10x3", "scallop": 0.1}
+    job = {"part": here / "a.step", "tool": "torus:10x3", "scallop": 0.1, "machine": "bc-table-table"}
     asked = [{"strategy": "multiscale", "roughness": 0.8}, {"strategy": "multiscale"}, {}]
     assert [read_jobs([{**job, **more}])[0].task().options["roughness"] for more in asked] == [0.0008, None, None]
     for wrong, said in (({"roughness": 0.8}, "does not look at it"),
-                        ({"strategy": "multiscale", "roughness": -1}, "above zero")):
+                        ({"strategy": "multiscale", "roughness": -1}, "above zero"),
+                        ({"strategy": "multiscale", "tool": "ball:8"}, "a smaller corner radius"),
+                        ({"strategy": "multiscale", "machine": None}, "name a machine")):
         with pytest.raises(InvalidInput, match=said):
             read_jobs([{**job, **wrong}])
 

@@ -21,6 +21,7 @@ from toolaxis.job.planning import timing
 from toolaxis.job.planning.parallel import checked_workers
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
+from toolaxis.strategies.constant_lead import search
 
 TOOL = ta.Tool.ball(6)
 SCALLOP, LIMITS = 0.2, "cone:0,0,1,8"
@@ -103,14 +104,14 @@ def test_in_every_way_to_plan(asked: dict[str, object], workers: int, monkeypatc
 
 @pytest.mark.parametrize("workers", [1, FORKED])
 def test_where_the_axis_moves(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = planning._MOVING["sturz"]
+    whole = search.sturz
 
     def _moving(task):
         if task.worth.face.number == 2:
             raise IndexError("planted")
         return whole(task)
 
-    monkeypatch.setitem(planning._MOVING, "sturz", _moving)
+    monkeypatch.setattr(search, "sturz", _moving)
     tool = ta.Tool.torus(diameter=6, corner_radius=1)
     made = ta.plan(sheets(), tool, SCALLOP, limits=LIMITS, workers=workers, strategy="sturz")
     checked(made, "IndexError: planted")

@@ -7,7 +7,6 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.inputs.spec import by_strategy
 from toolaxis.job.output.post import posted
 from toolaxis.plan.plan import Plan
 
@@ -48,4 +47,3 @@ def test_a_machine_is_needed() -> None:
         ta.plan(_face(), TOOL, 0.1, strategy="four-plus-one")
     with pytest.raises(ta.InvalidInput, match="moves two rotary axes while it cuts"):
         ta.plan(_face(), TOOL, 0.1, strategy="four-plus-one", machine="three-axes-fixture")
-    assert by_strategy("four-plus-one") == "four-plus-one"

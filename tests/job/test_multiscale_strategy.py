@@ -9,9 +9,8 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.continuous_ik import following
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.output.roughness_pictures import draw_roughness, study
 from toolaxis.shape.nearest import nearest
-from toolaxis.strategies.roughness.pictures import front_picture
+from toolaxis.strategies.roughness.pictures import draw_roughness, front_picture, study
 from toolaxis.strategies.roughness.roughness import arithmetic_roughness
 from toolaxis.strategies.roughness.section_width import (
     expected_widths,

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.job.output.pictures import draw_verdict, width_study
+from toolaxis.job.output.pictures import draw_verdict
 from toolaxis.job.output.verify import verify_plan
 from toolaxis.plan.plan import Plan
+from toolaxis.strategies.indexed.pictures import width_study
 
 
 def test_estimate_and_count_stay_near_the_passes_made(small_plan: Plan) -> None:

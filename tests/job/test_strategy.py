@@ -7,7 +7,6 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
-from toolaxis.job.inputs.spec import by_strategy, check_five_axes
 from toolaxis.job.planning.comparison import compared
 from toolaxis.job.planning.timing import timed
 from toolaxis.machine.setup import Mounting
@@ -16,6 +15,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import standing
 from toolaxis.report.tables import plan_table
 from toolaxis.report.warnings import warnings_of
+from toolaxis.strategies.registry import strategies, strategy_of, title_of
 
 TOOL = "torus:12x1"
 
@@ -119,7 +119,9 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
     ({"strategy": "sturz", "method": "roman"}, "method 'roman' finds fixed axes"),
     ({"method": "sturz"}, "ask for the strategy 'sturz' instead"),
     ({"strategy": "sturz", "objective": "time"}, "by length or passes"),
-    ({"strategy": "sturz", "orientations": 3}, "leave out either the method"),
+    ({"strategy": "sturz", "orientations": 3}, "sub-surfaces share none: leave out the number of axes"),
+    ({"method": "roman", "orientations": 3}, "leave out either the method"),
+    ({"method": "best"}, "method is 'best': use sphere, sectors, roman, normal, one or ball"),
     ({"strategy": "sturz", "machine": "three-axes-fixture"}, "moves two rotary axes while it cuts")])
 def test_what_does_not_go_with_a_moving_axis_is_refused(words, message) -> None:
     with pytest.raises(ta.InvalidInput, match=message):
@@ -127,5 +129,9 @@ def test_what_does_not_go_with_a_moving_axis_is_refused(words, message) -> None:
 
 
 def test_names_of_strategies() -> None:
-    assert by_strategy("indexed", "roman") == "roman" and by_strategy("sturz") == "sturz"
-    check_five_axes(ta.load_machine("mikron-ucp-710"), "sturz")
+    assert list(strategies()) == ["indexed", "sturz", "two-point", "blade", "blade-keys", "four-plus-one", "multiscale"]
+    assert strategy_of("roman").name == "indexed" and strategy_of("sturz").name == "sturz"
+    assert title_of("roman") == "Roman's rule" and title_of("sturz") == "five axes, constant lead"
+    for method in ("indexed", "best"):
+        with pytest.raises(ta.InvalidInput, match=f"method is '{method}': use sphere, "):
+            strategy_of(method)

@@ -17,9 +17,10 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
-from toolaxis.post.dialects.registry import DIALECTS
+from toolaxis.post.dialects.registry import dialects
 from toolaxis.post.program import Dialect, program_of, program_text
 
+DIALECTS = dialects()
 MACHINES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",
             "three-axes-fixture")
 PLANES = [(name, machine) for name in DIALECTS for machine in MACHINES]

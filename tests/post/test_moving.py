@@ -174,8 +174,8 @@ def test_singular_directions_get_points_between_only_where_rotary_axes_are_writt
 
 @pytest.mark.parametrize(("dialect", "machine", "said"), [
     ("haas-g268", "mikron-ucp-710", "dialect haas-g268 has no tool centre point control here"),
-    ("linuxcnc", "mikron-ucp-710", "use fanuc, siemens, heidenhain or apt"),
-    ("iso", "bc-table-table", "use fanuc, siemens, heidenhain or apt"),
+    ("linuxcnc", "mikron-ucp-710", "use fanuc, heidenhain, siemens or apt"),
+    ("iso", "bc-table-table", "use fanuc, heidenhain, siemens or apt"),
     ("fanuc", "three-axes-fixture", "drives 0 rotary axes: Fanuc G43.4 needs two")])
 def test_what_a_dialect_cannot_move_is_refused(dialect: str, machine: str, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):

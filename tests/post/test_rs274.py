@@ -14,7 +14,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.post.dialects.registry import DIALECTS
+from toolaxis.post.dialects.registry import dialect_named
 from toolaxis.post.program import program_of, program_text
 
 HOME = Path(__file__).resolve().parents[2] / ".venv" / "rs274"
@@ -89,8 +89,9 @@ def test_canonical_moves_are_the_plan(machine_name: str, interpreter: tuple[str,
                                       tmp_path: Path) -> None:
     for seed in (1, 2):
         plan, mounting = _plan(machine_name, seed)
-        program = program_of(plan, mounting, DIALECTS["linuxcnc"])
-        canon = _canon(interpreter, program_text(program, DIALECTS["linuxcnc"]), tmp_path)
+        dialect = dialect_named("linuxcnc")
+        program = program_of(plan, mounting, dialect)
+        canon = _canon(interpreter, program_text(program, dialect), tmp_path)
         rows, rapid, rates = _moves(canon)
         at = 0
         for op in plan.operations:

@@ -24,6 +24,7 @@ from freecad.toolaxis.document.machine import machine_of
 from freecad.toolaxis.document.operation import Operation
 from freecad.toolaxis.document.passes import moves
 from freecad.toolaxis.document.plan_group import WholePlan
+from freecad.toolaxis.document.strategies import STRATEGIES
 from freecad.toolaxis.saved_names import TODAY
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.export import Wish, export, plan_task
@@ -86,6 +87,21 @@ def test_it_keeps_the_machining_tolerance_that_held_then(opened, operation, part
     operation.Tolerance = 0.002
     opened.recompute()
     assert not operation.Stale
+
+
+def test_it_offers_the_strategies_that_came_later(opened, operation, tmp_path):
+    """An operation saved by a version that knew two of them keeps its own, and takes all others."""
+    operation.Strategy = ["sturz", "indexed"]
+    operation.Strategy = "indexed"
+    name = operation.Name
+    opened.saveAs(str(tmp_path / "fewer.FCStd"))
+    again = FreeCAD.openDocument(str(shutil.copy(tmp_path / "fewer.FCStd", tmp_path / "again.FCStd")))
+    found = again.getObject(name)
+    assert found.getEnumerationsOfProperty("Strategy") == list(STRATEGIES) and found.Strategy == "indexed"
+    assert not found.Stale and not api.is_stale(found)
+    found.Strategy = "multiscale"
+    assert inputs_of(found).strategy == "multiscale"
+    FreeCAD.closeDocument(again.Name)
 
 
 @pytest.fixture(params=["before-moving-axes.FCStd", "before-raised-surfaces.FCStd"])

@@ -15,7 +15,7 @@ from toolaxis import __version__
 from toolaxis.batch.task import Source, Task
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
-from toolaxis.job.inputs.spec import Spec, by_strategy, roughness_for
+from toolaxis.job.inputs.spec import Spec
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
@@ -23,6 +23,8 @@ from toolaxis.partition.partition import checked_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
 from toolaxis.plan.plan import Inputs
+from toolaxis.strategies.inputs import check_strategy
+from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
@@ -174,10 +176,10 @@ def _checked(row: dict[str, Any], folder: Path) -> Wanted:
     tool = _tool(tool, spec)
     _check_rest(spec, machine)
     own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "timeout": None, "memory": None,
-           "strategy": "indexed", "roughness": None,
+           "strategy": INDEXED, "roughness": None,
            **{name: values[name] for name in _OWN if name in values}}
-    by_strategy(own["strategy"], spec.inputs.method, spec.inputs.objective)
-    roughness_for(own["strategy"], _in_mm(own["roughness"]))
+    check_strategy(own["strategy"], Asked(tool, machine, spec.inputs.method, spec.inputs.objective,
+                                          _in_mm(own["roughness"]), spec.orientations))
     key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
     return Wanted(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
 

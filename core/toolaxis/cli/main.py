@@ -10,13 +10,30 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import Stopping
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
+from toolaxis.strategies.registry import strategies, strategy_named
+from toolaxis.strategies.strategy import INDEXED, SPHERE
+from toolaxis.tools.registry import short_forms
 from toolaxis.work import LIMIT, MOVING
 
 DONE, NO, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence, without the usage."""
+    """Says what is wrong in one sentence, without the usage.
+
+    Attributes
+    ----------
+    listed : callable or None
+        Makes what the help ends with, where that takes long to find out.
+    """
+
+    listed: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help with what is listed below it."""
+        if self.listed is not None:
+            self.epilog = self.listed()
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         """Print one sentence and leave with the exit code of wrong input."""
@@ -55,8 +72,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                                           "Lengths in mm, angles in degrees.")
     sub.add_argument("part", metavar="PART.step")
     sub.add_argument("--tool", required=True, metavar="TOOL",
-                     help="torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner radius x degrees), a TOML or "
-                          ".fctb file, or a name from resources/tools")
+                     help=f"{short_forms('')} (diameter x corner radius x degrees), a TOML or .fctb file, or a name "
+                          "from resources/tools")
     sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
     sub.add_argument("--tolerance", type=float, metavar="MM",
                      help="machining tolerance: how far the finished surface may be cut too deep (default: 0.01)")
@@ -84,7 +101,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
-    sub.add_argument("--method", default="sphere", choices=("sphere", "sectors", "roman", "normal", "one", "ball"),
+    sub.add_argument("--method", default=SPHERE, choices=tuple(strategy_named(INDEXED).methods),
                      help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; "
                           "to compare: roman (the axis of Roman's rule), normal (the mean normal), one (one axis for "
                           "all), ball (a ball end of the same radius along the mean normal)")
@@ -106,16 +123,13 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
-    sub.add_argument("--strategy", default="indexed", metavar="NAME",
-                     help="indexed (default): one fixed axis for each sub-surface; sturz: simultaneous five-axis "
-                          "milling with the best constant lead; two-point: the same with a flat end or torus that "
-                          "touches hollow faces at two points; blade, blade-keys: a ball end goes around blades in "
-                          "layers while one rotary axis swings without turning back, with least acceleration or by "
-                          "key points; four-plus-one: one rotary axis of the machine clamped at the best angle, the "
-                          "other turning along the passes; multiscale: a torus keeps --roughness and an expected "
-                          "strip width while the machine's rotary axes turn least")
+    default, known = " (default)", strategies().values()
+    sub.add_argument("--strategy", default=INDEXED, metavar="NAME",
+                     help="; ".join(f"{one.name}{default if one.name == INDEXED else ''}: {one.summary}"
+                                    for one in known).replace("%", "%%"))
+    kept = [f"{one.name} (default: {1000 * one.roughness:g})" for one in known if one.roughness]
     sub.add_argument("--roughness", type=float, metavar="UM",
-                     help="greatest Ra across the feed for the strategy multiscale, micrometres (default: 1.6)")
+                     help=f"greatest Ra across the feed, micrometres, for the strategy {', '.join(kept)}")
     sub.set_defaults(module="toolaxis.cli.plan")
 
 
@@ -141,8 +155,8 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "five-axis machine: --dialect apt writes it as an APT file beside it, fanuc, siemens and "
                           "heidenhain as a program of --machine with tool centre point control")
     sub.add_argument("--dialect", required=True, metavar="NAME",
-                     help="fanuc (G68.2), haas-g268, haas-g254, siemens (CYCLE800), heidenhain (PLANE SPATIAL), "
-                          "linuxcnc-twp (G68.2), linuxcnc or iso (a work offset for each orientation), apt (CL files)")
+                     help="a dialect of those below, or apt (CL files)")
+    sub.listed = _dialects_listed
     sub.add_argument("--machine", metavar="NAME|FILE", help="a machine from resources/machines, a TOML or .fcm file")
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm: travel is checked with it")
@@ -156,6 +170,13 @@ def _add_post(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--unclamp", metavar="WORDS", help="words that let them go, such as M11,M13")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.post")
+
+
+def _dialects_listed() -> str:
+    """All dialects with what they are called; the geometry of their programs is not imported before."""
+    from toolaxis.post.dialects.registry import dialects
+
+    return f"Dialects: {'; '.join(f'{name}: {one.title}' for name, one in dialects().items())}."
 
 
 def _add_reschedule(commands: "argparse._SubParsersAction[_Parser]") -> None:

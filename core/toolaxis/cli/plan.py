@@ -9,13 +9,15 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, staged, write_plan
-from toolaxis.job.inputs.spec import Spec, by_strategy, roughness_for
+from toolaxis.job.inputs.spec import Spec
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Inputs, Plan, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.progress import Progress
+from toolaxis.strategies.inputs import check_strategy
+from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
 
 
@@ -35,6 +37,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     """
     spec = _spec(given)
     tool = spec.resolved_tool()
+    check_strategy(given.strategy, Asked(tool, load_machine(spec.machine) if spec.machine else None, given.method,
+                                         given.objective, _roughness(given), given.orientations))
     with staged(Path(given.out)) as stage:
         from toolaxis.job.planning.pipeline import plan
 
@@ -62,8 +66,6 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _spec(given: Namespace) -> Spec:
-    by_strategy(given.strategy, given.method, given.objective)
-    roughness_for(given.strategy, _roughness(given))
     if given.limits:
         parse_limits(given.limits)
     inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
@@ -71,8 +73,6 @@ def _spec(given: Namespace) -> Spec:
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
-    if spec.machine:
-        load_machine(spec.machine)
     return spec
 
 

@@ -2,13 +2,8 @@
 
 from dataclasses import dataclass
 
-#: What each method of a comparison stands for.
-METHOD_NAMES = {"plan": "this plan", "sphere": "best of the hemisphere", "sectors": "sectors of zhu2016",
-                "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis",
-                "ball": "ball end, mean normal", "sturz": "five axes, constant lead",
-                "two-point": "five axes, two contacts", "blade": "four axes, least acceleration",
-                "blade-keys": "four axes, key points",
-                "four-plus-one": "4+1 axes, one clamped", "multiscale": "five axes, least turning"}
+#: The method of the row that stands for the plan itself.
+THIS_PLAN = "plan"
 
 
 @dataclass(frozen=True)
@@ -18,7 +13,7 @@ class Baseline:
     Attributes
     ----------
     method : str
-        One of `toolaxis.plan.plan.METHODS`, or "plan" for the plan itself.
+        As in `toolaxis.plan.plan.Inputs`, or "plan" for the plan itself.
     tool : str
         Short form of the tool that it takes: a ball end for the method "ball".
     sub_surfaces, machined : int
@@ -32,6 +27,8 @@ class Baseline:
         Time of all, s, as `Plan.seconds` reckons it.
     reason : str
         Why something is not machined; empty where all is.
+    title : str
+        What the method is called; not written, as the method tells it.
     """
 
     method: str
@@ -44,6 +41,12 @@ class Baseline:
     travel: float
     seconds: float
     reason: str = ""
+    title: str = ""
+
+    @property
+    def shown(self) -> str:
+        """What tables and pictures call the method."""
+        return "this plan" if self.method == THIS_PLAN else self.title or self.method
 
     @property
     def complete(self) -> bool:

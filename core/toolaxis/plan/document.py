@@ -181,7 +181,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "travel": plan.travel,
         "orientations": plan.orientations,
         "seconds": plan.seconds,
-        "baselines": [asdict(one) for one in plan.baselines],
+        "baselines": [{name: value for name, value in asdict(one).items() if name != "title"}
+                      for one in plan.baselines],
         "blades": blades_document(plan.blades),
         "machine": machine_document(plan.machine),
         "order": None if plan.order is None else {

@@ -20,12 +20,6 @@ from toolaxis.work import LIMIT
 
 Array = NDArray[np.float64]
 
-#: Fixed axes, or simultaneous five-axis milling: with a constant lead, or with two-point contact of a flat bottom; or
-#: four-axis milling around blades, with least peak acceleration or by key points; 4 + 1 axes; or five that keep a
-#: roughness and turn least.
-STRATEGIES = ("indexed", "sturz", "two-point", "blade", "blade-keys", "four-plus-one", "multiscale")
-#: How the axis of each sub-surface is found; strategies that move it are methods too.
-METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball", *STRATEGIES[1:])
 OBJECTIVES = ("length", "passes", "time")
 DIRECTIONS = ("zigzag", "climb", "conventional")
 #: What a change of the tool axis between operations is reckoned to take, s.
@@ -47,8 +41,11 @@ class Inputs:
         Greatest scallop height.
     allowance : float
         Stock left on the faces.
-    method, objective, direction : str
-        One of `METHODS`, `OBJECTIVES`, `DIRECTIONS`.
+    method : str
+        How the axis of each sub-surface is found: one of the ways to find a fixed axis, or the name of a strategy that
+        moves it.  Which there are is known to `toolaxis.strategies.registry` only.
+    objective, direction : str
+        One of `OBJECTIVES`, `DIRECTIONS`.
     limits : str
         Limits of the axis in the short form of the command, or what was given instead ("a Cone"); empty for none.
     feedrate : float
@@ -98,7 +95,6 @@ class Inputs:
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")
-        _one_of("method", self.method, METHODS)
         _one_of("objective", self.objective, OBJECTIVES)
         _one_of("direction", self.direction, DIRECTIONS)
 
@@ -198,6 +194,8 @@ class Plan:
         What bodies of the machine meet between operations, before the first and after the last one, in sentences.
     faults : tuple of Fault
         Where the program failed on no single sub-surface, as in timing the whole: the plan is incomplete then.
+    at_points : bool
+        Whether the method checks the cutter on the machined face at points only; not written, as the method tells it.
     """
 
     part: Part
@@ -214,6 +212,7 @@ class Plan:
     order: Order | None = None
     in_the_way: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
+    at_points: bool = False
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.

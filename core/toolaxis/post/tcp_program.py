@@ -24,6 +24,9 @@ from toolaxis.post.program import Dialect, Lines, number, setting_of
 
 Array = NDArray[np.float64]
 
+#: What every setup sheet says of the way to the work.
+FIRST_MOTION = ("The first motion of each operation leads straight from the retracted place to its first point, with "
+                "the axis turned before. Whether that is free of fixtures is not checked.")
 #: Numbers in words.
 _WORDS = ("none", "one", "two")
 

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from rich.table import Table
 
-from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
+from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan, outcome_of
@@ -104,7 +104,7 @@ def plan_table(plan: Plan) -> Table:
                ("outcome", "left")]
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
-    points = _POINTS if plan.inputs.method in ("sturz", "four-plus-one", "blade", "blade-keys") else ""
+    points = _POINTS if plan.at_points else ""
     return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, reckoning(plan), _order(plan)))))
 
 
@@ -189,7 +189,7 @@ def baselines_table(plan: Plan) -> Table:
         ("method", "left"), ("tool", "left"), ("sub-surfaces\nmachined", "right"), ("different\naxes", "right"),
         ("passes", "right"), ("cutting\nlength mm", "right"), ("to this\nplan's", "right"), ("with links\nmm", "right"),
         ("time\nmin:s", "right"))
-    notes = [f"{METHOD_NAMES.get(one.method, one.method)}: {one.reason}" for one in plan.baselines if one.reason]
+    notes = [f"{one.shown}: {one.reason}" for one in plan.baselines if one.reason]
     what = "the same faces" if plan.blades is None else "the machined sub-surfaces of the first blade"
     return table(f"{what} by other methods, each with the same proofs", columns, rows,
                  "\n".join([reckoning(plan), *notes]))
@@ -197,7 +197,7 @@ def baselines_table(plan: Plan) -> Table:
 
 def _baseline_row(one: Baseline, first: Baseline) -> list[str]:
     ratio = f"{one.length / first.length:.3f}" if one.complete and first.complete and first.length > 0 else "-"
-    shown = [METHOD_NAMES.get(one.method, one.method), one.tool, f"{one.machined} of {one.sub_surfaces}"]
+    shown = [one.shown, one.tool, f"{one.machined} of {one.sub_surfaces}"]
     if not one.machined:
         return [*shown, *["-"] * 6]
     return [*shown, str(one.orientations), str(one.passes), number(one.length, 1), ratio,

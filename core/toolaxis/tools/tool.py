@@ -1,9 +1,8 @@
 """The whole rotating solid: cutter, shank, holder and how far the cutter sticks out."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, isfinite, radians
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -11,26 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.tools.profile import Profile
+from toolaxis.tools.registry import cutter_named, cutters, short_forms
+from toolaxis.tools.sizes import positive
 from toolaxis.tools.solid import COMPONENTS, Distance, signed_distance, solid_pieces
 
 Array = NDArray[np.float64]
-
-
-def _number(name: str, value: Any, unit: str = "mm") -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as reason:
-        raise InvalidInput(f"{name} is {value!r}: it must be a number of {unit}") from reason
-    if not isfinite(number):
-        raise InvalidInput(f"{name} is {number} {unit}: it must be a finite number")
-    return number
-
-
-def _positive(name: str, value: Any) -> float:
-    number = _number(name, value)
-    if number <= 0:
-        raise InvalidInput(f"{name} is {number} mm: it must be a finite number above zero")
-    return number
 
 
 def _outline(name: str, rows: ArrayLike | None) -> Array | None:
@@ -61,7 +45,7 @@ class Tool:
     Attributes
     ----------
     kind : str
-        "torus", "ball", "flat" or "tapered".
+        One of `toolaxis.tools.registry.cutters`: "torus", "ball", "flat", "tapered" and what was added to them.
     radius : float
         Radius R where the corner arc ends (flat bottom plus corner radius).
     corner_radius : float
@@ -98,11 +82,7 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        radius, corner = _positive("diameter", diameter) / 2, _number("corner radius", corner_radius)
-        if corner <= 0:
-            raise InvalidInput(f"corner radius is {corner} mm: a torus needs one above zero; use a flat tool for a "
-                               "sharp corner")
-        return Tool.build("torus", radius, corner, 0.0, **body)
+        return Tool.of("torus", diameter, corner_radius, **body)
 
     @staticmethod
     def ball(diameter: float, **body: Any) -> "Tool":
@@ -115,8 +95,7 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        radius = _positive("diameter", diameter) / 2
-        return Tool.build("ball", radius, radius, 0.0, **body)
+        return Tool.of("ball", diameter, **body)
 
     @staticmethod
     def flat(diameter: float, **body: Any) -> "Tool":
@@ -129,7 +108,7 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        return Tool.build("flat", _positive("diameter", diameter) / 2, 0.0, 0.0, **body)
+        return Tool.of("flat", diameter, **body)
 
     @staticmethod
     def tapered(diameter: float, corner_radius: float, half_angle_deg: float, **body: Any) -> "Tool":
@@ -148,20 +127,39 @@ class Tool:
         **body
             flute_length, stickout, shank, holder: see `Tool.build`.
         """
-        angle, corner = _number("half angle", half_angle_deg, "deg"), _number("corner radius", corner_radius)
-        if not 0 < angle < 80:
-            raise InvalidInput(f"half angle is {angle} deg: it must lie between 0 and 80")
-        if corner < 0:
-            raise InvalidInput(f"corner radius is {corner} mm: it must be zero or more")
-        return Tool.build("tapered", _positive("diameter", diameter) / 2, corner, radians(angle), **body)
+        return Tool.of("tapered", diameter, corner_radius, half_angle_deg, **body)
 
     @staticmethod
-    def build(kind: str, radius: float, corner_radius: float, half_angle: float, **body: Any) -> "Tool":
-        """A tool from radii; `torus`, `ball`, `flat` and `tapered` call it.
+    def of(kind: str, *sizes: Any, **body: Any) -> "Tool":
+        """A tool of any kind from its sizes.
 
         Parameters
         ----------
         kind : str
+            One of `toolaxis.tools.registry.cutters`.
+        *sizes
+            In the order of the kind's short form, mm and degrees.
+        **body
+            flute_length, stickout, shank, holder: see `Tool.build`.
+
+        Raises
+        ------
+        InvalidInput
+            When there is no such kind, or the sizes make none.
+        """
+        cutter = cutter_named(kind)
+        if len(sizes) != len(cutter.sizes):
+            raise InvalidInput(f"{len(sizes)} sizes are given: a {kind} needs {', '.join(cutter.sizes)}")
+        return Tool.build(kind, *cutter.radii(*sizes), **body)
+
+    @staticmethod
+    def build(kind: str, radius: float, corner_radius: float, half_angle: float, **body: Any) -> "Tool":
+        """A tool from radii; `of` calls it.
+
+        Parameters
+        ----------
+        kind : str
+            One of `toolaxis.tools.registry.cutters`.
         radius, corner_radius : float
             mm
         half_angle : float
@@ -180,8 +178,9 @@ class Tool:
         Raises
         ------
         InvalidInput
-            When a size makes no tool.
+            When there is no such kind, or a size makes no tool.
         """
+        cutter_named(kind)
         unknown = set(body) - {"flute_length", "stickout", "shank", "holder"}
         if unknown:
             raise InvalidInput(f"tool has no property {sorted(unknown)[0]!r}: "
@@ -189,7 +188,7 @@ class Tool:
         if corner_radius > radius:
             raise InvalidInput(f"corner radius is {corner_radius} mm, above the radius {radius} mm: "
                                "it can be at most half the diameter")
-        stick = None if body.get("stickout") is None else _positive("stick-out", body["stickout"])
+        stick = None if body.get("stickout") is None else positive("stick-out", body["stickout"])
         flute = _flute(4 * radius, body.get("flute_length"), corner_radius, stick)
         shank, holder = _outline("shank", body.get("shank")), _outline("holder", body.get("holder"))
         if holder is not None and stick is None:
@@ -198,7 +197,7 @@ class Tool:
 
     @staticmethod
     def parse(text: str, **body: Any) -> "Tool":
-        """A tool from its short form: torus:12x1, ball:8, flat:20, tapered:6x3x4 (diameter x corner x degrees).
+        """A tool from its short form, such as torus:12x1, ball:8 or tapered:6x3x4 (diameter x corner x degrees).
 
         Parameters
         ----------
@@ -212,16 +211,14 @@ class Tool:
             When the text is not of that form.
         """
         kind, _, sizes = text.strip().lower().partition(":")
-        counts = {"torus": 2, "ball": 1, "flat": 1, "tapered": 3}
+        known = cutters()
         try:
             numbers = [float(part) for part in sizes.split("x")]
         except ValueError:
             numbers = []
-        if kind not in counts or len(numbers) != counts[kind]:
-            raise InvalidInput(f"tool {text!r} is not understood: write torus:12x1, ball:8, flat:20 or tapered:6x3x4")
-        makers: dict[str, Callable[..., Tool]] = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat,
-                                                  "tapered": Tool.tapered}
-        return makers[kind](*numbers, **body)
+        if kind not in known or len(numbers) != len(known[kind].sizes):
+            raise InvalidInput(f"tool {text!r} is not understood: write {short_forms()}")
+        return Tool.of(kind, *numbers, **body)
 
     @property
     def flat_radius(self) -> float:
@@ -236,11 +233,9 @@ class Tool:
     @property
     def name(self) -> str:
         """The short form, as `parse` reads it."""
-        sizes = [repr(2 * self.radius)]
-        if self.kind in ("torus", "tapered"):
-            sizes.append(repr(self.corner_radius))
-        if self.kind == "tapered":
-            sizes.append(f"{degrees(self.half_angle):.12g}")
+        known = {"diameter": repr(2 * self.radius), "corner_radius": repr(self.corner_radius),
+                 "half_angle_deg": f"{degrees(self.half_angle):.12g}"}
+        sizes = [known[name] for name in cutter_named(self.kind).sizes]
         return f"{self.kind}:" + "x".join(size.removesuffix(".0") for size in sizes)
 
     @property
@@ -343,7 +338,7 @@ class Tool:
 
 def _flute(usual: float, given: Any, corner_radius: float, stickout: float | None) -> float:
     """Length of the cutting edge: the one given, or the usual one as far as the stick-out allows."""
-    length = usual if given is None else _positive("flute length", given)
+    length = usual if given is None else positive("flute length", given)
     if stickout is not None and given is None:
         length = min(length, stickout)
         if length <= corner_radius:

@@ -21,6 +21,7 @@ from toolaxis.plan.schema import check
 from toolaxis.post.apt import apt_text
 from toolaxis.post.read_apt import read_apt
 from toolaxis.shape.part import Part
+from toolaxis.strategies.registry import strategy_of, title_of
 
 PLAN = "plan.json"
 #: What a folder may hold of an earlier plan, and of an earlier verdict; the rest in it is the user's and stays.
@@ -262,10 +263,13 @@ def read_plan(folder: Path) -> Plan:
     """
     document = read_json(folder / PLAN)
     check(document)
+    strategy = strategy_of(document["inputs"]["method"])
     part = _read_part(folder, document["part"])
     obstacles = [_read_part(folder, record) for record in document["obstacles"]]
     paths = [None if op["cl_file"] is None else _read_path(folder, op["cl_file"]) for op in document["operations"]]
-    return plan_from(document, part, obstacles, paths)
+    plan = plan_from(document, part, obstacles, paths)
+    titled = tuple(replace(one, title=title_of(one.method)) for one in plan.baselines)
+    return replace(plan, baselines=titled, at_points=strategy.at_points)
 
 
 def _inside(folder: Path, name: str) -> Path:

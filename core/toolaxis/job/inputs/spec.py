@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.inputs.tool_file import load_holder, load_tool
-from toolaxis.machine.machine import Machine
-from toolaxis.plan.plan import STRATEGIES, Inputs
+from toolaxis.plan.plan import Inputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
@@ -21,9 +20,6 @@ from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
-
-#: Ra that five axes keep with the strategy "multiscale" unless another is given, mm.
-ROUGHNESS = 1.6e-3
 
 
 @dataclass(frozen=True)
@@ -96,83 +92,6 @@ class Spec:
     def numbers(self) -> Numbers | str | None:
         """The face list as `toolaxis.plan` takes it."""
         return parse_faces(self.faces) if self.faces else None
-
-
-def by_strategy(strategy: str, method: str = "sphere", objective: str = "length") -> str:
-    """The method of a strategy.
-
-    Parameters
-    ----------
-    strategy : str
-        One of `toolaxis.plan.plan.STRATEGIES`.
-    method : str
-        How fixed axes are found.
-    objective : str
-
-    Raises
-    ------
-    InvalidInput
-        When there is no such strategy, or the method or the objective is not one of it.
-    """
-    if strategy not in STRATEGIES:
-        raise InvalidInput(f"strategy is {strategy!r}: use {', '.join(STRATEGIES[:-1])} or {STRATEGIES[-1]}")
-    if strategy == "indexed":
-        if method in STRATEGIES:
-            raise InvalidInput(f"method {method!r} moves the axis: ask for the strategy {method!r} instead")
-        return method
-    if method not in ("sphere", strategy):
-        raise InvalidInput(f"method {method!r} finds fixed axes and strategy {strategy!r} moves them: leave out one of "
-                           "both")
-    if objective == "time":
-        raise InvalidInput(f"strategy {strategy!r} chooses how to lean by length or passes: leave out the objective "
-                           "time")
-    return strategy
-
-
-def roughness_for(strategy: str, roughness: float | None) -> float:
-    """The greatest Ra that a strategy keeps, mm; 0 where it looks at none.
-
-    Parameters
-    ----------
-    strategy : str
-    roughness : float or None
-        mm; 1.6 um unless given.
-
-    Raises
-    ------
-    InvalidInput
-        When one is given to a strategy that does not look at it, or it is not above zero.
-    """
-    if strategy != "multiscale":
-        if roughness is not None:
-            raise InvalidInput(f"roughness is given and strategy {strategy!r} does not look at it: leave it out, or "
-                               "ask for the strategy 'multiscale'")
-        return 0.0
-    wanted = ROUGHNESS if roughness is None else float(roughness)
-    if not (isfinite(wanted) and wanted > 0):
-        raise InvalidInput(f"roughness is {1000 * wanted:g} um: it must be finite and above zero")
-    return wanted
-
-
-def check_five_axes(machine: Machine, strategy: str) -> None:
-    """Check that a machine can move its axis while it cuts.
-
-    Parameters
-    ----------
-    machine : Machine
-    strategy : str
-
-    Raises
-    ------
-    InvalidInput
-        When it has too few rotary axes of its own drives: two, or one to go around blades.
-    """
-    driven = sum(not axis.by_hand for axis in machine.rotary)
-    needed = 1 if strategy.startswith("blade") else 2
-    if driven < needed:
-        count = ("one rotary axis", "two rotary axes")[needed - 1]
-        raise InvalidInput(f"strategy {strategy!r} moves {count} while it cuts and {machine.name} drives {driven}: "
-                           "name another machine or leave out the strategy")
 
 
 def parse_faces(text: str) -> Numbers | str:

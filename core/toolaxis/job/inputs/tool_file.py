@@ -3,19 +3,17 @@
 import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.resources import named_files
+from toolaxis.tools.cutter import BIT_SIZES
+from toolaxis.tools.registry import cutter_named, cutter_of_bit, cutters, short_forms
 from toolaxis.tools.tool import Tool
 
-_KINDS = ("torus", "ball", "flat", "tapered")
-_SIZES = {"torus": ("diameter", "corner_radius"), "ball": ("diameter",), "flat": ("diameter",),
-          "tapered": ("diameter", "corner_radius", "half_angle_deg")}
 _BODY = ("flute_length", "stickout", "shank", "holder")
-_FREECAD = {"bullnose": "torus", "torus": "torus", "ballend": "ball", "endmill": "flat", "taperedballnose": "tapered"}
 _UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4, "°": 1.0, "deg": 1.0}
 
 
@@ -45,15 +43,15 @@ def load_tool(text: str, **body: Any) -> Tool:
         When the text names no tool, or the sizes make none.
     """
     given = {name: value for name, value in body.items() if value is not None}
-    if text.partition(":")[0].strip() in _KINDS:
+    if text.partition(":")[0].strip() in cutters():
         return Tool.parse(text, **given)
     path = Path(text)
     if not path.is_file():
         known = library()
         if text not in known:
             names = ", ".join(known) or "none"
-            raise InvalidInput(f"tool {text!r} is neither a short form (torus:12x1, ball:8, flat:20, tapered:6x3x4), "
-                               f"nor a file, nor one of the library: {names}")
+            raise InvalidInput(f"tool {text!r} is neither a short form ({short_forms('')}), nor a file, "
+                               f"nor one of the library: {names}")
         path = known[text]
     reader = _freecad_sizes if path.suffix.lower() == ".fctb" else _toml_sizes
     return _build(path, {**reader(path), **given})
@@ -61,14 +59,13 @@ def load_tool(text: str, **body: Any) -> Tool:
 
 def _build(path: Path, sizes: Mapping[str, Any]) -> Tool:
     kind = sizes["kind"]
-    makers: dict[str, Callable[..., Tool]] = {"torus": Tool.torus, "ball": Tool.ball, "flat": Tool.flat,
-                                              "tapered": Tool.tapered}
-    missing = [name for name in _SIZES[kind] if name not in sizes]
+    names = cutter_named(kind).sizes
+    missing = [name for name in names if name not in sizes]
     if missing:
-        raise InvalidInput(f"tool file {path.name} has no {missing[0]}: a {kind} needs {', '.join(_SIZES[kind])}")
+        raise InvalidInput(f"tool file {path.name} has no {missing[0]}: a {kind} needs {', '.join(names)}")
     try:
-        return makers[kind](*(float(sizes[name]) for name in _SIZES[kind]),
-                            **{name: sizes[name] for name in _BODY if name in sizes})
+        return Tool.of(kind, *(float(sizes[name]) for name in names),
+                       **{name: sizes[name] for name in _BODY if name in sizes})
     except (TypeError, ValueError) as reason:
         raise InvalidInput(f"tool file {path.name}: {reason}") from reason
 
@@ -89,12 +86,13 @@ def _toml(path: Path) -> dict[str, Any]:
 
 def _toml_sizes(path: Path) -> dict[str, Any]:
     sizes = _toml(path)
-    if sizes.get("kind") not in _KINDS:
-        raise InvalidInput(f"tool file {path.name} has kind {sizes.get('kind')!r}: use {', '.join(_KINDS)}")
-    unknown = set(sizes) - {"kind", "note", *_SIZES[sizes["kind"]], *_BODY}
+    if sizes.get("kind") not in cutters():
+        raise InvalidInput(f"tool file {path.name} has kind {sizes.get('kind')!r}: use {', '.join(cutters())}")
+    own = cutter_named(sizes["kind"]).sizes
+    unknown = set(sizes) - {"kind", "note", *own, *_BODY}
     if unknown:
         raise InvalidInput(f"tool file {path.name} has an unknown {sorted(unknown)[0]!r}: a {sizes['kind']} has "
-                           f"{', '.join((*_SIZES[sizes['kind']], *_BODY))} and note")
+                           f"{', '.join((*own, *_BODY))} and note")
     return sizes
 
 
@@ -110,25 +108,20 @@ def _quantity(path: Path, parameters: Mapping[str, Any], name: str) -> float | N
 
 
 def _freecad_sizes(path: Path) -> dict[str, Any]:
-    """Sizes from a FreeCAD tool bit; the bull nose of FreeCAD 1.0 gives its flat radius, later ones the corner's."""
+    """Sizes from a FreeCAD tool bit."""
     try:
         bit = json.loads(_text_of(path))
         shape = str(bit.get("shape-type") or Path(str(bit["shape"])).stem).lower().replace(" ", "")
         parameters = bit["parameter"]
     except (ValueError, KeyError, AttributeError, TypeError) as reason:
         raise InvalidInput(f"tool file {path.name} is not a FreeCAD tool bit: {reason!r}") from reason
-    if shape not in _FREECAD:
+    kind = cutter_of_bit(shape)
+    if kind is None:
         raise UnsupportedGeometry(f"tool file {path.name} is a {shape}: only end mills, ball ends, bull noses and "
                                   "tapered ball noses can be planned with")
-    kind = _FREECAD[shape]
-    size = {name: _quantity(path, parameters, name) for name in (
-        "Diameter", "CornerRadius", "FlatRadius", "TaperAngle", "CuttingEdgeHeight", "ShankDiameter", "Length")}
-    sizes: dict[str, Any] = {"kind": kind, "diameter": size["Diameter"], "flute_length": size["CuttingEdgeHeight"]}
-    if kind == "torus":
-        flat = size["FlatRadius"]
-        sizes["corner_radius"] = (size["Diameter"] or 0) / 2 - flat if flat is not None else size["CornerRadius"]
-    elif kind == "tapered":
-        sizes |= {"corner_radius": (size["Diameter"] or 0) / 2, "half_angle_deg": (size["TaperAngle"] or 0) / 2}
+    size = {name: _quantity(path, parameters, name)
+            for name in (*BIT_SIZES, "CuttingEdgeHeight", "ShankDiameter", "Length")}
+    sizes: dict[str, Any] = {"kind": kind.name, **kind.sizes_of_bit(size), "flute_length": size["CuttingEdgeHeight"]}
     if size["ShankDiameter"] and size["Length"] and size["Length"] > (size["CuttingEdgeHeight"] or 0):
         sizes["shank"] = [(size["ShankDiameter"] / 2, 0.0), (size["ShankDiameter"] / 2, size["Length"])]
     return {name: value for name, value in sizes.items() if value is not None}

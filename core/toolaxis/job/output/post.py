@@ -14,10 +14,9 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import apt_text
 from toolaxis.post.context import Options
-from toolaxis.post.dialects.registry import APT, dialect_named
+from toolaxis.post.dialects.registry import APT, dialect_named, tip_control_of
 from toolaxis.post.program import bare_program, program_of, program_text
 from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
-from toolaxis.post.tcp_controls import tip_control_of
 from toolaxis.post.tcp_program import moves, moving_text
 
 
@@ -29,7 +28,7 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
     ----------
     plan : Plan
     dialect : str
-        A name of `post.dialects.known`.
+        A name of `toolaxis.post.dialects.registry.dialects`, or apt.
     mounting : Mounting, optional
         The machine and where the part stands on it; needed by all dialects but apt.
     options : Options, optional

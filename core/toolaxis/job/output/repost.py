@@ -8,10 +8,9 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Inputs
 from toolaxis.post.cl_points import CutterLocations
 from toolaxis.post.context import Options
-from toolaxis.post.dialects.registry import dialect_named
+from toolaxis.post.dialects.registry import dialect_named, tip_control_of
 from toolaxis.post.program import setting_of
 from toolaxis.post.setup_sheet import course_sheet_text
-from toolaxis.post.tcp_controls import tip_control_of
 from toolaxis.post.tcp_program import course_of, courses_text
 
 #: Scallop height that stands where none was asked for, mm; nothing that is written depends on it.

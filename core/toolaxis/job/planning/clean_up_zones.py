@@ -16,6 +16,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import corner_too_large, tight_fillet
 from toolaxis.search.messages import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.shape.measure import mean_width
+from toolaxis.strategies.registry import strategy_of
 from toolaxis.tools.tool import Tool
 
 #: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
@@ -86,7 +87,7 @@ def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
 
 def _outlined(plan: Plan, op: Operation) -> bool:
     """Whether what an operation leaves can be outlined: of a fixed axis, and of layers around a blade."""
-    return op.orientation.lead is None or plan.inputs.method.startswith("blade")
+    return op.orientation.lead is None or strategy_of(plan.inputs.method).in_layers
 
 
 def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
@@ -105,7 +106,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
         When the user asked to stop.
     """
     assert op.path is not None and op.orientation.axis is not None
-    if plan.inputs.method.startswith("blade"):
+    if strategy_of(plan.inputs.method).in_layers:
         return beyond_layers(op.face, op.path, op.orientation.feed)
     zones = search_task(plan, op, progress).left_by(op.path)
     if not zones:

@@ -4,22 +4,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from toolaxis.errors import Cancelled, fault
-from toolaxis.plan.baseline import Baseline
+from toolaxis.plan.baseline import THIS_PLAN, Baseline
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
+from toolaxis.strategies.registry import strategies, title_of
 
 #: Rules that choose an axis for each sub-surface of the plan.
 BY_SUB_SURFACE = ("sectors", "roman", "normal")
-#: What takes the faces whole: one axis for all of them, a ball end along their mean normals, and a moving axis.
-WHOLE = ("one", "ball", "sturz")
+#: What takes the faces whole, as moving axes do: one axis for all of them, and a ball end along their mean normals.
+WHOLE = ("one", "ball")
 
 
 def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
     """A plan with what other methods come to.
 
     Sectors, Roman's rule and mean normals on the same sub-surfaces; one fixed axis for all faces; and a ball end of the
-    same radius along each face's mean normal; and five axes with a constant lead where the machine drives two rotary
-    axes.
+    same radius along each face's mean normal; and strategies that are to be compared, such as five axes with a constant
+    lead, where the machine drives their rotary axes.
 
     Parameters
     ----------
@@ -39,21 +40,22 @@ def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[F
     -----
     **Source**: [zhu2016] Table 4 and Sec. 6.2.
     """
-    rows = [baseline("plan", made)]
+    rows = [baseline(THIS_PLAN, made)]
     pieces = [op.face for op in made.operations]
     rotary = () if made.machine is None else made.machine.machine.rotary
-    for method in (*BY_SUB_SURFACE, *WHOLE):
-        whole = method in WHOLE
+    driven = sum(not axis.by_hand for axis in rotary)
+    moving = [one.name for one in strategies().values() if one.compared and driven >= one.rotary_axes]
+    for method in (*BY_SUB_SURFACE, *WHOLE, *moving):
+        whole = method not in BY_SUB_SURFACE
         if method == made.inputs.method and (not whole or len(pieces) == len(faces)):
-            continue
-        if method == "sturz" and sum(not axis.by_hand for axis in rotary) < 2:
             continue
         try:
             other = again(method, faces if whole else pieces)
         except Cancelled:
             break
         except Exception as reason:
-            rows.append(Baseline(method, made.tool.name, len(pieces), 0, 0, 0, 0.0, 0.0, 0.0, fault(reason).sentence))
+            rows.append(Baseline(method, made.tool.name, len(pieces), 0, 0, 0, 0.0, 0.0, 0.0, fault(reason).sentence,
+                                 title_of(method)))
             continue
         if other.outcome == "cancelled":
             break
@@ -73,4 +75,5 @@ def baseline(method: str, made: Plan) -> Baseline:
     refused = [op for op in made.operations if not op.done]
     reason = f"face {refused[0].face.label}: {next(iter(refused[0].orientation.reasons), '')}" if refused else ""
     return Baseline(method, made.tool.name, len(made.operations), len(done), made.orientations,
-                    sum(op.orientation.passes for op in done), made.length, made.travel, made.seconds, reason)
+                    sum(op.orientation.passes for op in done), made.length, made.travel, made.seconds, reason,
+                    title_of(method))

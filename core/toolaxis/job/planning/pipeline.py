@@ -12,21 +12,21 @@ from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
-from toolaxis.job.inputs.spec import by_strategy, check_five_axes, chosen_faces, roughness_for, with_joined, with_rings
+from toolaxis.job.inputs.spec import chosen_faces, with_joined, with_rings
 from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.job.planning.blade_pattern import recognised
 from toolaxis.job.planning.comparison import compared
 from toolaxis.job.planning.failures import failed_after
 from toolaxis.job.planning.parallel import checked_workers
 from toolaxis.job.planning.planner import Job, went_on
-from toolaxis.job.planning.sub_surfaces import check_division, not_divided, read_division, smooth_pieces
+from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
 from toolaxis.job.planning.timing import timed
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import checked_count
-from toolaxis.plan.plan import STRATEGIES, Inputs, Plan
+from toolaxis.plan.plan import Inputs, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, heard
 from toolaxis.search.fixed_axis import METHODS
@@ -35,8 +35,8 @@ from toolaxis.search.time_estimate import known_machine
 from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
-from toolaxis.strategies.roughness.feasible_area import check_bull_nose
-from toolaxis.strategies.two_point.rings import check_bottom
+from toolaxis.strategies.inputs import check_strategy
+from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
@@ -45,7 +45,7 @@ from toolaxis.work import LIMIT
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
-         objective: str = "length", strategy: str = "indexed", allowance: float = 0.0, direction: str = "zigzag",
+         objective: str = "length", strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
          obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
          tolerance: ToleranceLike = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
          limits: AxisLimits | str | None = None, offset: ArrayLike | None = None,
@@ -77,14 +77,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         Sub-surfaces given by hand, with the axes and feeds that are to be kept: faces that are named there are not
         divided otherwise.  A text names a file of them, a plan.json, or the folder of a plan.
     strategy : str
-        "indexed": every sub-surface has one fixed axis; "sturz": simultaneous five-axis milling with the best constant
-        lead, for comparison or where one fixed axis does not do; "two-point": simultaneous five-axis milling in which a
-        flat end or torus touches hollow faces at two points; "blade" and "blade-keys": a ball end goes around blades in
-        layers while one rotary axis swings without turning back, with least peak acceleration or by key points and
-        rounded corners; the faces around a blade are joined: "1+2+3+4"; "four-plus-one": one rotary axis of the machine
-        is clamped at the best angle and the other turns along the passes, so that their strips are the widest;
-        "multiscale": a torus keeps a roughness across the feed and an expected strip width, while the machine's rotary
-        axes turn as little as that allows.
+        "indexed": every sub-surface has one fixed axis; the others move it while it cuts.  Their names, what they do
+        and what they need are listed by `toolaxis plan --help` and in the manual, resources/manual/strategies.md.
     objective : str
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
         limits of its axes. Faces are divided by time too where that is asked for, else by cutting length.
@@ -114,7 +108,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     rapid : float
         Rate of rapid traverse in links, mm/min; for times only.
     roughness : float, optional
-        Greatest Ra across the feed, mm, for the strategy "multiscale" only: 0.0016 (1.6 um) unless given.
+        Greatest Ra across the feed, mm, for a strategy that keeps one: 0.0016 (1.6 um) unless given.
     compare : bool
         Also plan the same faces by the other methods; what they come to stands in the plan's baselines.
     limit : float
@@ -140,38 +134,26 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     UnsupportedGeometry
         When faces cannot be joined.
     """
-    method = by_strategy(strategy, method, objective)
     checked_count(regions)
     checked_count(orientations, "orientations")
-    if orientations is not None and method != "sphere":
-        raise InvalidInput(f"method {method!r} names its own axes, which are not shared: leave out either the method "
-                           "or the number of orientations")
     mounting, allowed = _machine(machine, limits, offset)
+    cutter = load_tool(tool) if isinstance(tool, str) else tool
+    given = read_division(division) if isinstance(division, str) else tuple(division or ())
+    chosen = check_strategy(strategy, Asked(
+        cutter if isinstance(cutter, Tool) else None, None if mounting is None else mounting.machine, method, objective,
+        None if roughness is None else float(roughness), orientations, held_in(given)))
+    method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else written(allowed)
     inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), Tolerance.of(tolerance), float(rapid), roughness_for(strategy, roughness),
-                    float(limit))
+                    float(spindle), Tolerance.of(tolerance), float(rapid),
+                    chosen.roughness if roughness is None else float(roughness), float(limit))
     if objective == "time":
         known_machine(mounting)
-    if strategy != "indexed" and mounting is not None:
-        check_five_axes(mounting.machine, strategy)
-    given = read_division(division) if isinstance(division, str) else tuple(division or ())
-    check_division(given, method, method in STRATEGIES)
-    cutter = load_tool(tool) if isinstance(tool, str) else tool
     inputs.check_tool(cutter)
-    if strategy == "two-point":
-        check_bottom(cutter)
-    if strategy == "four-plus-one" and mounting is None:
-        raise InvalidInput("strategy 'four-plus-one' clamps one rotary axis of a machine and turns the other: name a "
-                           "machine")
-    if strategy == "multiscale":
-        check_bull_nose(cutter, flat_too=False)
-        if mounting is None:
-            raise InvalidInput("strategy 'multiscale' has the rotary axes of a machine turn least: name a machine")
-    sections = strategy.startswith("blade")  # plane sections, to which iso-parametric lines do not matter
-    loaded, numbers = with_joined(load(part), faces, pi if sections else GREATEST_CORNER)
-    if sections:
+    # Layers are plane sections, to which iso-parametric lines do not matter.
+    loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER)
+    if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
     bodies = tuple(load(body) for body in _listed(obstacles))

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import zip_longest
 
 import numpy as np
@@ -33,18 +32,15 @@ from toolaxis.plan.plan import Inputs, Option, Plan
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task, searched
+from toolaxis.search.fixed_axis import Task
 from toolaxis.search.fixed_axis import task as search_task
 from toolaxis.search.machine_limits import combined
 from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
-from toolaxis.strategies.blade.plan import blade
-from toolaxis.strategies.constant_lead.search import sturz
-from toolaxis.strategies.four_plus_one.search import four_plus_one
-from toolaxis.strategies.roughness.plan import multiscale
-from toolaxis.strategies.two_point.search import two_point
+from toolaxis.strategies.registry import strategy_of
+from toolaxis.strategies.strategy import Strategy
 from toolaxis.tools.tool import Tool
 from toolaxis.work import MOVING, Budget, OutOfWork, limited
 
@@ -52,12 +48,6 @@ Array = NDArray[np.float64]
 
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
-#: Methods that search as another one does.
-_SEARCHES = {"ball": "normal"}
-#: Methods that move the axis.
-_MOVING: dict[str, Callable[[Task], tuple[Orientation, ToolPath | None]]] = {
-    "sturz": sturz, "two-point": two_point, "blade": blade, "blade-keys": partial(blade, curve="keys"),
-    "four-plus-one": four_plus_one, "multiscale": multiscale}
 
 
 def went_on(plan: Plan, stage: Callable[[Plan], Plan]) -> Plan:
@@ -254,7 +244,7 @@ class Job:
 
     def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
         return Plan(self.part, self.tool, self.inputs, operations, self.bodies, self.datum, outcome, options,
-                    machine=self.machine)
+                    machine=self.machine, at_points=self._strategy.at_points)
 
     def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
         """Sub-surfaces of each face by itself; a number of them is not asked of faces narrower than the cutter."""
@@ -339,7 +329,7 @@ class Job:
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
-        times = MOVING if self.inputs.method in _MOVING else 1.0
+        times = MOVING if self._strategy.moves else 1.0
         with limited(Budget(self.inputs.limit, times)):
             return self._with_axis(target, place, progress)
 
@@ -353,14 +343,14 @@ class Job:
         try:
             found, path = Orientation(None), None
             given = target.given if target.given is not None and target.given.held else None
-            if given is not None and self.inputs.method not in (*_MOVING, "one"):
-                found, path = held(self._task(face, inner), given, lambda task: self._found(task, None))
+            if given is not None and not self._strategy.moves and self.inputs.method != "one":
+                found, path = held(self._task(face, inner), given, lambda task: self._strategy.plan(task, self.inputs))
             elif axis is not None and target.shared:
                 found, path = self._shared(target, inner)
             if found.axis is None and self.inputs.method == "one":
                 why = found.reasons or ("no axis found that all sub-surfaces allow",)
                 return Operation(number, face, replace(found, reasons=why))
-            if found.axis is None and (given is None or self.inputs.method in _MOVING):
+            if found.axis is None and (given is None or self._strategy.moves):
                 refused = found.reasons
                 found, path = self._searched(face, axis, inner)
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
@@ -390,18 +380,14 @@ class Job:
 
     def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
-        moving = _MOVING.get(self.inputs.method)
-        if moving is not None:
-            plain = self if self.inputs.objective != "time" else replace(self, inputs=replace(self.inputs,
-                                                                                              objective="length"))
-            if self.inputs.method == "multiscale":
-                return multiscale(plain._task(face, progress), self.inputs.roughness, self.inputs.feedrate)
-            return moving(plain._task(face, progress))
-        return self._found(self._task(face, progress), start)
+        job = self
+        if self._strategy.moves and self.inputs.objective == "time":  # in a comparison with a plan for least time
+            job = replace(self, inputs=replace(self.inputs, objective="length"))
+        return self._strategy.plan(job._task(face, progress), self.inputs, start)
 
-    def _found(self, task: Task, start: Array | None) -> tuple[Orientation, ToolPath | None]:
-        """The fixed axis that the method finds for a task, and its passes."""
-        return searched(task, _SEARCHES.get(self.inputs.method, self.inputs.method), start)
+    @property
+    def _strategy(self) -> Strategy:
+        return strategy_of(self.inputs.method)
 
     @property
     def _limits(self) -> AxisLimits | None:

@@ -260,25 +260,12 @@ def held(task: Task, given: SubSurface, search: Callable[[Task], tuple[Orientati
     return replace(found, reasons=(*notes, *found.reasons)), path
 
 
-def check_division(division: Sequence[SubSurface], method: str, moving: bool) -> None:
-    """Check that a method can keep what is given.
+def held_in(division: Sequence[SubSurface]) -> str:
+    """Which axis or feed a division keeps, as a clause; empty where it keeps none.
 
     Parameters
     ----------
     division : sequence of SubSurface
-    method : str
-    moving : bool
-        Whether the method moves the axis.
-
-    Raises
-    ------
-    InvalidInput
-        When an axis or a feed is given and the method chooses them by other rules.
     """
-    if not (moving or method == "one"):
-        return
-    for one in division:
-        if one.held and (one.locked or one.feed):
-            what = "moves the axis" if moving else "takes one axis for all sub-surfaces"
-            raise InvalidInput(f"method {method!r} {what} and a sub-surface of face {one.face} has a lock: leave out "
-                               "either the method or the lock")
+    held = next((one for one in division if one.held and (one.locked or one.feed)), None)
+    return "" if held is None else f"a sub-surface of face {held.face} has a lock"

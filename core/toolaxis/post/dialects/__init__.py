@@ -1,1 +1,1 @@
-"""The dialects: one module for each maker of controls, and `known` with all of them."""
+"""The dialects: one module for each maker of controls, and `registry`, which finds them."""

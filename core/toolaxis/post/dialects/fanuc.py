@@ -2,7 +2,9 @@
 
 **Source** FANUC Series 30i/31i-A additional manual A-79976E for the feature coordinate system and its G69.  That G68.2
 takes the origin X Y Z and the angles I J K of turns about Z, the new X, the new Z, and that length compensation is
-cancelled after G69 and G28, is common practice and not from a manual that was at hand.
+cancelled after G69 and G28, is common practice and not from a manual that was at hand.  The same holds for tool centre
+point control: G43.4 H stands in a block of its own, takes the positions of rotary axes in its motion blocks and is
+cancelled by G49.
 """
 
 from typing import ClassVar
@@ -10,6 +12,7 @@ from typing import ClassVar
 from toolaxis.post.context import Program, Setting
 from toolaxis.post.indexed_positions import Station
 from toolaxis.post.program import Dialect, Lines
+from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
 
 
 class Fanuc(Dialect):
@@ -79,3 +82,30 @@ class Iso(Fanuc):
             return ["M5", self.comment(f"SET {self.rotary(program, station)}"), "M0",
                     f"S{program.inputs.spindle:.0f} M3"]
         return super().index(program, station)
+
+
+class FanucTip(TipControl):
+    """G43.4, type 1: tips in the work coordinate system that turns with the table, and positions of the rotary axes."""
+
+    dialect = Fanuc()
+    title = "Fanuc G43.4"
+    axis_digits = 3
+    notes: ClassVar[tuple[str, ...]] = (
+        FIRST_MOTION, "G43.4 is programmed in the coordinate system that is fixed to the table with the rotary axes at "
+        "zero; check the parameter that says so.")
+
+    def begin(self, program: Setting, course: Course) -> Lines:
+        """Rotary axes to the first axis, then control of the tip."""
+        return [*program.unclamp, f"G0 {self.orientation(program, course, 0)}", "G43.4 H1"]
+
+    def leave(self, program: Setting, course: Course) -> Lines:
+        """Control of the tip off, retract."""
+        return ["G49", "G91 G28 Z0.", "G90"]
+
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
+        """Positions of the rotary axes."""
+        return " ".join(rotary_words(program, course, k, self.axis_digits, True))
+
+
+DIALECTS = (Fanuc(), Iso())
+TIP_CONTROLS = (FanucTip(),)

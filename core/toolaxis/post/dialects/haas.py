@@ -57,3 +57,6 @@ class HaasOffset(HaasPlane):
     def orient(self, program: Program, station: Station) -> Lines:
         """Index, then the dynamic work offset."""
         return [*self.index(program, station), "G254"]
+
+
+DIALECTS = (HaasPlane(), HaasOffset())

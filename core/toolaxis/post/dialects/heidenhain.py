@@ -3,7 +3,9 @@
 **Source** HEIDENHAIN TNC 620 user's manual for conversational programming, 10/2017, "Defining the working plane with
 the spatial angle": turns about the fixed axes in the order A, B, C, which is C, B, A about the turned ones.  That
 without SEQ the nearest solution inside the ranges is taken, which is the one where the axes stand, and that M140 MB MAX
-retracts along the tool axis, is common practice and not from a manual that was at hand.
+retracts along the tool axis, is common practice and not from a manual that was at hand.  TNC 620 user's manual for ISO
+programming, 5/2013, "Maintaining the position of the tool tip when positioning with tilted axes (TCPM): M128": the tip
+keeps its place on the workpiece, M129 resets it.
 """
 
 import numpy as np
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from toolaxis.post.context import Program, Setting
 from toolaxis.post.indexed_positions import Station
 from toolaxis.post.program import Dialect, Lines, number
+from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
 
 
 class Heidenhain(Dialect):
@@ -91,3 +94,32 @@ def signed(text: str) -> str:
     text : str
     """
     return text if text.startswith("-") else f"+{text}"
+
+
+class HeidenhainTip(TipControl):
+    """M128: the tip keeps its place while the rotary axes turn to the positions in each block."""
+
+    dialect = Heidenhain()
+    title = "Heidenhain M128"
+    axis_digits = 4
+    least_axes = 1
+    notes = (FIRST_MOTION, "The tool retracts along its axis by M140 MB MAX before the axes turn.",
+             "M128 keeps the tip in its place: the tool length in the table is that to the tip.")
+
+    def begin(self, program: Setting, course: Course) -> Lines:
+        """Rotary axes to the first axis, then control of the tip."""
+        free = [f"L {word}" for word in program.unclamp]
+        return [*free, f"L {self.orientation(program, course, 0)} R0 FMAX", "L M128"]
+
+    def leave(self, program: Setting, course: Course) -> Lines:
+        """Control of the tip off, retract along the tool axis."""
+        return ["L M129", "L M140 MB MAX"]
+
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
+        """Positions of the rotary axes with their signs."""
+        return " ".join(word[0] + signed(word[1:]) for word in
+                        rotary_words(program, course, k, self.axis_digits, True))
+
+
+DIALECTS = (Heidenhain(),)
+TIP_CONTROLS = (HeidenhainTip(),)

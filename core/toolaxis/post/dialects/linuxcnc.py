@@ -71,3 +71,6 @@ class LinuxCncPlane(LinuxCnc):
         if names not in (["C", "A"], ["C", "B"]):
             raise InvalidInput(f"{self.title} turns C and then A or B in the head and {program.machine.name} has "
                                f"{', '.join(names)}: use another --dialect")
+
+
+DIALECTS = (LinuxCncPlane(), LinuxCnc())

@@ -1,17 +1,33 @@
-"""All dialects by name."""
+"""All dialects: the modules beside this one that offer some, and their tool centre point controls."""
+
+from collections.abc import Iterator
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
 
 from toolaxis.errors import InvalidInput
-from toolaxis.post.dialects.fanuc import Fanuc, Iso
-from toolaxis.post.dialects.haas import HaasOffset, HaasPlane
-from toolaxis.post.dialects.heidenhain import Heidenhain
-from toolaxis.post.dialects.linuxcnc import LinuxCnc, LinuxCncPlane
-from toolaxis.post.dialects.siemens import Siemens
+from toolaxis.post import dialects as _package
 from toolaxis.post.program import Dialect
+from toolaxis.post.tcp_program import TipControl
 
 #: What the command takes besides the dialects of programs: CL files, which need no machine.
 APT = "apt"
-DIALECTS: dict[str, Dialect] = {dialect.name: dialect for dialect in (
-    Fanuc(), HaasPlane(), HaasOffset(), Siemens(), Heidenhain(), LinuxCncPlane(), LinuxCnc(), Iso())}
+
+
+def dialects() -> dict[str, Dialect]:
+    """The dialects by name: `DIALECTS` of each module."""
+    return {one.name: one for module in _modules() for one in module.DIALECTS}
+
+
+def tip_controls() -> dict[str, TipControl]:
+    """The tool centre point controls by the name of their dialect: `TIP_CONTROLS` of the modules that have some."""
+    return {one.dialect.name: one for module in _modules() for one in getattr(module, "TIP_CONTROLS", ())}
+
+
+def _modules() -> Iterator[ModuleType]:
+    for found in iter_modules(_package.__path__, f"{_package.__name__}."):
+        if found.name != __name__:
+            yield import_module(found.name)
 
 
 def dialect_named(name: str) -> Dialect:
@@ -26,6 +42,26 @@ def dialect_named(name: str) -> Dialect:
     InvalidInput
         When there is none.
     """
-    if name not in DIALECTS:
-        raise InvalidInput(f"dialect {name!r} is not known: use {', '.join([*DIALECTS, APT])}")
-    return DIALECTS[name]
+    known = dialects()
+    if name not in known:
+        raise InvalidInput(f"dialect {name!r} is not known: use {', '.join([*known, APT])}")
+    return known[name]
+
+
+def tip_control_of(dialect: Dialect) -> TipControl:
+    """The tool centre point control of a dialect.
+
+    Parameters
+    ----------
+    dialect : Dialect
+
+    Raises
+    ------
+    InvalidInput
+        When it has none, or none that is known for sure.
+    """
+    known = tip_controls()
+    if dialect.name not in known:
+        raise InvalidInput(f"the tool axis of the plan moves and dialect {dialect.name} has no tool centre point "
+                           f"control here: use {', '.join(known)} or apt")
+    return known[dialect.name]

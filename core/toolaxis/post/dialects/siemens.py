@@ -5,16 +5,20 @@ axis as the turns before have left it; Direction minus or plus takes the solutio
 the rotary axis that is the direction reference.  The order of the arguments, CYCLE800(_FR, _TC, _ST, _MODE, X0, Y0, Z0,
 A, B, C, X1, Y1, Z1, _DIR, _FR_I, _DMODE), with _FR 1 for a retract of Z before swivelling, _MODE 57 for axis by axis in
 the order X, Y, Z, and the empty call that deletes the swivel frames, is that of published programs; no manual for it
-was at hand.
+was at hand.  SINUMERIK programming manual job planning 6FC5398-2BP20, 6.2: with TRAORI A3, B3, C3 are components of
+the axis, ORIWKS refers them to the workpiece, and ORIVECT turns it in the plane of both; SUPA G0 Z D0 as a retract is
+common practice.
 """
 
 from math import degrees
 
 import numpy as np
 
+from toolaxis.errors import InvalidInput
 from toolaxis.post.context import Program, Setting
 from toolaxis.post.indexed_positions import Station
 from toolaxis.post.program import Dialect, Lines, number
+from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
 
 
 class Siemens(Dialect):
@@ -77,3 +81,60 @@ def _direction(program: Program, station: Station) -> int:
     own = degrees(float(station.angles[tilting]))
     other = [degrees(float(row[tilting])) for row in station.others]
     return -1 if any(value > own + 1e-6 for value in other) or (not other and own < 0) else 1
+
+
+class SiemensTip(TipControl):
+    """TRAORI with the axis as a vector in the work coordinate system, turned on the shortest way between two."""
+
+    dialect = Siemens()
+    title = "Siemens TRAORI"
+    axis_digits = 7
+    least_axes = 1
+    notes = (FIRST_MOTION, "The rotary axes are turned to the first axis before TRAORI; the control goes on from there "
+             "in the same solution. The program is for those angles, in the comments.")
+
+    def start(self, program: Setting) -> Lines:
+        """Modes, transformations and frames off, tool, spindle, retract."""
+        return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", "T1 D1", "M6", "G54",
+                f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
+
+    def begin(self, program: Setting, course: Course) -> Lines:
+        """Rotary axes to the first axis, then the transformation and its work offset."""
+        words = [f"{word[0]}=DC({word[1:]})" if endless else word for word, endless in
+                 zip(rotary_words(program, course, 0, self.dialect.angle_digits, True),
+                     (axis.high == float("inf") for axis in program.machine.rotary), strict=True)]
+        return [*program.unclamp, f"G0 {' '.join(words)}", "D1", "TRAORI", "G54", "ORIWKS ORIVECT"]
+
+    def leave(self, program: Setting, course: Course) -> Lines:
+        """Transformation off, retract."""
+        return ["TRAFOOF", self._retract(program)]
+
+    def end(self, program: Setting) -> Lines:
+        """Spindle off, end."""
+        return ["M5", "M30"]
+
+    def orientation(self, program: Setting, course: Course, k: int) -> str:
+        """The axis as a vector."""
+        return " ".join(f"{name}={number(value, self.axis_digits)}" for name, value in
+                        zip(("A3", "B3", "C3"), course.axes[k], strict=True))
+
+    def check(self, program: Setting) -> None:
+        """Refuse a retract that nobody told.
+
+        Raises
+        ------
+        InvalidInput
+        """
+        super().check(program)
+        if program.retract is None:
+            raise InvalidInput(f"Z of {program.machine.name} has no upper limit to retract to: give --retract, the "
+                               "machine coordinate at which the rotary axes may turn")
+
+    @staticmethod
+    def _retract(program: Setting) -> str:
+        assert program.retract is not None
+        return f"SUPA G0 Z{number(program.retract, 3)} D0"
+
+
+DIALECTS = (Siemens(),)
+TIP_CONTROLS = (SiemensTip(),)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from toolaxis.plan.baseline import METHOD_NAMES, Baseline, clock
+from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.plan import Option
 from toolaxis.report.figures.plots import BLUE, GREY, SKY, VERMILION, figure
 
@@ -22,7 +22,7 @@ def baselines_picture(rows: Sequence[Baseline]) -> Figure:
     """
     made = figure(9.5, 1.3 + 0.52 * len(rows))
     ax = made.subplots()
-    names = [f"{METHOD_NAMES.get(one.method, one.method)}\n{one.tool}" for one in rows]
+    names = [f"{one.shown}\n{one.tool}" for one in rows]
     whole = [one if one.complete else None for one in rows]
     cut = [one.length if one else 0.0 for one in whole]
     links = [one.travel if one else 0.0 for one in whole]

@@ -305,7 +305,7 @@ def blade(job: Task, curve: str = "least") -> tuple[Orientation, ToolPath | None
     Raises
     ------
     InvalidInput
-        When the tool has no ball end, the face does not go around a blade, or the objective is time.
+        When the tool has no ball end, or the face does not go around a blade.
     Cancelled
         When the user asked to stop.
 
@@ -313,8 +313,6 @@ def blade(job: Task, curve: str = "least") -> tuple[Orientation, ToolPath | None
     -----
     **Source**: [stheta2023]; the surroundings are the real ones, and the proof that of all moving axes.
     """
-    if job.worth.objective == "time":
-        raise InvalidInput("strategy 'blade' goes by tool angles: leave out the objective time")
     search = BladeSearch(job, curve)
     refused: list[str] = []
     try:

@@ -15,7 +15,6 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.clearance.queries import judged, motions
 from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
-from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.violations import Witness
 from toolaxis.path.constant_lead import LeadChart, LeadCut
@@ -171,8 +170,6 @@ def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
 
     Raises
     ------
-    InvalidInput
-        When the objective is time, which the lead is not chosen by.
     Cancelled
         When the user asked to stop.
 
@@ -183,8 +180,6 @@ def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
     **Properties**: 1. links, entries and exits are proven as for fixed axes, everything that keeps a distance by bounds
     along the motion; 2. the cutter on the skin is checked at points.
     """
-    if job.worth.objective == "time":
-        raise InvalidInput("strategy 'sturz' chooses its lead by length or passes: leave out the objective time")
     search = Sturz(job)
     refused: list[str] = []
     blocked: dict[tuple[str, bool], float] = {}

@@ -1,6 +1,7 @@
 """Pictures of the axis that turns while the other one is clamped: its angle over the face and along the passes."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -17,6 +18,8 @@ from toolaxis.report.figures.plots import bare, figure, scale_bar
 from toolaxis.report.figures.splat_renderer import camera, mean_direction
 
 Array = NDArray[np.float64]
+
+_DPI = 110
 
 #: Colours of angles and of passes in their order.
 _MAP, _ORDER = "twilight_shifted", "viridis"
@@ -66,6 +69,21 @@ def turning_of(plan: Plan, op: Operation) -> Turning | None:
     rows = tuple((path.cc[one], np.degrees(rotary[one, 1 - which])) for one in strokes if len(one) > 1)
     names = [axis.name for axis in mounting.machine.rotary]
     return Turning(names[which], names[1 - which], float(np.degrees(rotary[0, which])), rows)
+
+
+def draw_free_angle(plan: Plan, op: Operation, folder: Path) -> None:
+    """Draw how the free axis turns, where the other one stands still.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+        With a path.
+    folder : Path
+    """
+    turning = turning_of(plan, op)
+    if turning is not None:
+        free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png", dpi=_DPI)
 
 
 def free_angle_picture(turning: Turning, op: Operation) -> Figure:

@@ -286,7 +286,7 @@ def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
     Raises
     ------
     InvalidInput
-        When the machine does not drive two rotary axes, or the objective is time.
+        When the machine does not drive two rotary axes.
     Cancelled
         When the user asked to stop.
 
@@ -298,8 +298,6 @@ def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
     **Properties**: 1. never longer than the best fixed axis, nor with more passes where these are the objective; 2. the
     free angle has no jump along a pass or from one to the next; 3. the clamped one stands still on cuts and links.
     """
-    if job.worth.objective == "time":
-        raise InvalidInput("strategy 'four-plus-one' goes by length or passes: leave out the objective time")
     search, refused = Clamping(job, machine_of(job)), list[str]()
     fixed, _ = searched(job)
     best: list[tuple[Orientation, ToolPath | None]] = []

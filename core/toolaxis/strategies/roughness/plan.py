@@ -17,7 +17,8 @@ from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, laid
 from toolaxis.strategies.roughness.passes import evaluation_length, roughness_at, spots
 from toolaxis.strategies.roughness.rotary_velocity import PARTS, fastest, turning
-from toolaxis.strategies.roughness.search import ROUGHNESS, Found, Multiscale
+from toolaxis.strategies.roughness.search import Found, Multiscale
+from toolaxis.strategies.roughness.strategy import ROUGHNESS
 
 Array = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ def multiscale(job: Task, roughness: float = ROUGHNESS,
     Raises
     ------
     InvalidInput
-        When the cutter is no torus, no machine is given, the objective is time, or the roughness is out of range.
+        When the cutter is no torus, no machine is given, or the roughness is out of range.
     Cancelled
         When the user asked to stop.
 
@@ -53,8 +54,6 @@ def multiscale(job: Task, roughness: float = ROUGHNESS,
     **Source**: [dong2023] Sec. 5.2, with the conditions themselves in the place of fixed orientations, see
     `toolaxis.strategies.roughness.smoothing.smoothed`, and passes laid for the roughness.
     """
-    if job.worth.objective == "time":
-        raise InvalidInput("strategy 'multiscale' goes by length or passes: leave out the objective time")
     search, refused = Multiscale(job, roughness, feedrate), list[str]()
     best: tuple[Orientation, ToolPath | None] | None = None
     for feed in FEEDS:

@@ -48,14 +48,13 @@ from toolaxis.strategies.roughness.rotary_spline import RotarySpline
 from toolaxis.strategies.roughness.roughness import scallop_of_roughness
 from toolaxis.strategies.roughness.section_width import expected_widths
 from toolaxis.strategies.roughness.smoothing import Smoothed, smoothed
+from toolaxis.strategies.roughness.strategy import ROUGHNESS
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: The lean whose strip width is expected, rad: the paper's Sturz milling.
 NOMINAL = radians(20.0)
-#: Ra unless given, mm.
-ROUGHNESS = 1.6e-3
 #: Share of the roughness for which passes are laid: the rest leaves the rotary axes room.
 _SHARE = 0.88
 #: Grid of leans along and across the passes, leans between the least and the greatest, and what is added to the least.

@@ -1,14 +1,53 @@
 """The cutter at a two-point contact, cut across the feed: to scale, and how high its edge is above the face."""
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from toolaxis.cldata.toolpath import Motion
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
-from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, Rings, Setting
+from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, Rings, Setting, rings, stand_of
 
 Array = NDArray[np.float64]
+
+_DPI = 110
+#: Places of a path among which the one with two contacts is chosen.
+_PLACES = 200
+
+
+def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
+    """Draw the cutter where its strip is about the widest with two contacts, of some places of the path.
+
+    Parameters
+    ----------
+    plan : Plan
+    op : Operation
+        With a path.
+    folder : Path
+    """
+    assert op.path is not None
+    cut = np.flatnonzero(op.path.kind == Motion.CUT)
+    some = cut[:: max(len(cut) // _PLACES, 1)]
+    found = nearest(op.face, op.path.cc[some])
+    on = found.distance < 1e-6
+    some, uv = some[on], found.uv[on]
+    if not len(some):
+        return
+    d = op.face.evaluate(uv)
+    setting = Setting(op.face, plan.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
+                      plan.inputs.allowance, plan.inputs.tolerance)
+    stand = stand_of(setting, op.path.cl[some], op.path.axis[some])
+    sides = np.abs(rings(setting, stand).sides).max(axis=1)
+    best = int(np.argmin(np.where(stand.lift > 0.9 * stand.lift.max(), sides, np.inf)))
+    one = setting.rows(np.array([best]))
+    ring = rings(one, stand.rows(np.array([best])))
+    contacts_picture(one, ring, op.name).savefig(folder / f"{op.name}-contacts.png", dpi=_DPI)
 
 
 def contacts_picture(setting: Setting, ring: Rings, name: str) -> Figure:

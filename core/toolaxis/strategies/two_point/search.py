@@ -74,7 +74,7 @@ def two_point(job: Task, posture: str = "two-point",
     Raises
     ------
     InvalidInput
-        When the cutter has no flat bottom, or the objective is time.
+        When the cutter has no flat bottom.
     Cancelled
         When the user asked to stop.
 
@@ -82,8 +82,6 @@ def two_point(job: Task, posture: str = "two-point",
     -----
     **Source**: [jang2021], with postures that gouge nowhere in place of the formula's.
     """
-    if job.worth.objective == "time":
-        raise InvalidInput("strategy 'two-point' goes by length or passes: leave out the objective time")
     refused: list[str] = []
     for choice in choices(job, posture, lead)[:LAID]:
         name = f"feed along {choice.work.feed}, leaning {choice.leaning}"

@@ -3,9 +3,8 @@
 from importlib.util import find_spec
 from math import degrees
 
-#: Kinds of cutters: FreeCAD's shape and its type; the ones after the first where a shape is not there.
-_SHAPES = {"torus": (("bullnose", "Bullnose"),), "ball": (("ballend", "Ballend"),), "flat": (("endmill", "Endmill"),),
-           "tapered": (("taperedballnose", "TaperedBallNose"), ("ballend", "Ballend"))}
+from toolaxis.tools.registry import cutter_named
+
 _FLAT = 1e-6
 
 
@@ -32,7 +31,7 @@ def add_bit(document, tool, label):
         bit.Proxy.onDelete(bit)
         if document.getObject(name) is not None:
             document.removeObject(name)
-        bit = _bit(document, tool, label, _SHAPES["ball"][0])
+        bit = _bit(document, tool, label, cutter_named("ball").bits[0])
     bit.Label = label
     if bit.ViewObject is not None:
         bit.ViewObject.Visibility = False
@@ -73,7 +72,7 @@ def _shape_for(tool):
         kind = "torus" if tool.corner_radius > _FLAT else "flat"
     if kind == "torus" and tool.flat_radius <= _FLAT:
         kind = "ball"
-    known = _SHAPES[kind]
+    known = cutter_named(kind).bits
     return next((one for one in known[:-1] if _known(one[0])), known[-1])
 
 

@@ -2,8 +2,6 @@
 
 from pathlib import PurePosixPath
 
-_KINDS = {"bullnose": "torus", "torus": "torus", "ballend": "ball", "endmill": "flat", "taperedballnose": "tapered"}
-
 
 def tool_from(thing):
     """The cutter of a tool controller or tool bit.
@@ -26,26 +24,25 @@ def tool_from(thing):
         When it is a tool that cannot be planned with.
     """
     from toolaxis.errors import InvalidInput, UnsupportedGeometry
+    from toolaxis.tools.cutter import BIT_SIZES
+    from toolaxis.tools.registry import cutter_of_bit
     from toolaxis.tools.tool import Tool
 
     bit = thing if hasattr(thing, "Diameter") else getattr(thing, "Tool", None)
     if bit is None or not hasattr(bit, "Diameter"):
         raise InvalidInput(f"{thing.Label} is no tool: choose a tool controller or a tool bit of a CAM job")
     shape = _shape_of(bit)
-    if shape not in _KINDS:
+    cutter = cutter_of_bit(shape)
+    if cutter is None:
         raise UnsupportedGeometry(f"{bit.Label} is a {shape or 'tool of unknown shape'}: only end mills, ball ends, "
                                   "bull noses and tapered ball noses can be planned with")
-    kind, diameter = _KINDS[shape], _size(bit, "Diameter")
-    body = _body(bit)
-    if kind == "torus":
-        flat = _size(bit, "FlatRadius")
-        corner = diameter / 2 - flat if flat is not None else _size(bit, "CornerRadius")
-        if corner is None:
-            raise InvalidInput(f"{bit.Label} has no corner radius: give it one in the CAM workbench")
-        return Tool.flat(diameter, **body) if corner <= 0 else Tool.torus(diameter, corner, **body)
-    if kind == "tapered":
-        return Tool.tapered(diameter, diameter / 2, (_size(bit, "TaperAngle") or 0.0) / 2, **body)
-    return (Tool.ball if kind == "ball" else Tool.flat)(diameter, **body)
+    body, sizes = _body(bit), cutter.sizes_of_bit({name: _size(bit, name) for name in BIT_SIZES})
+    corner = sizes.get("corner_radius", 0.0)
+    if corner is None:
+        raise InvalidInput(f"{bit.Label} has no corner radius: give it one in the CAM workbench")
+    if "corner_radius" in cutter.sizes and corner <= 0:
+        return Tool.flat(sizes["diameter"], **body)
+    return Tool.of(cutter.name, *(sizes[name] for name in cutter.sizes), **body)
 
 
 def _shape_of(bit):

@@ -7,7 +7,7 @@ from freecad.toolaxis.document.children import frame_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.machine_limits import PREFIX
 from freecad.toolaxis.document.placement import matrix_of
-from freecad.toolaxis.document.strategies import INDEXED, ROUGH, ROUGHNESS, check_strategy
+from freecad.toolaxis.document.strategies import INDEXED, ROUGHNESS, check_strategy, keeps_roughness
 
 #: Machining tolerance unless given, mm; and what it was before it could be given.
 TOLERANCE, FORMER_TOLERANCE = 0.01, 0.002
@@ -82,7 +82,7 @@ class Inputs:
     strategy : str
         One of `freecad.toolaxis.document.strategies.STRATEGIES`: fixed axes, or how the axis moves.
     roughness : float
-        Greatest Ra across the feed, micrometres; that of the strategy "multiscale", which alone looks at it.
+        Greatest Ra across the feed, micrometres; for strategies that look at it.
     """
 
     faces: tuple = ()
@@ -115,7 +115,7 @@ class Inputs:
             object.__setattr__(self, name, rows)
         for name in ("faces", "obstacles", "pieces"):
             object.__setattr__(self, name, tuple(getattr(self, name) or ()))
-        if self.strategy != ROUGH:
+        if not keeps_roughness(self.strategy):
             object.__setattr__(self, "roughness", ROUGHNESS)
 
     @property
@@ -163,7 +163,7 @@ class Inputs:
                          objective=self.objective, direction=self.direction,
                          limits="" if self.limits.startswith(PREFIX) else self.limits, feedrate=self.feedrate,
                          spindle=self.spindle, tolerance=Tolerance.of(self.tolerance),
-                         roughness=self.roughness / 1000 if self.strategy == ROUGH else 0.0)
+                         roughness=self.roughness / 1000 if keeps_roughness(self.strategy) else 0.0)
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes, and the strategy.
@@ -173,15 +173,11 @@ class Inputs:
         InvalidInput
             When one is out of range, or does not go with method, tool or machine.
         """
-        from toolaxis.errors import InvalidInput
         from toolaxis.partition.partition import checked_count
 
         checked_count(self.regions)
         checked_count(self.orientations, "orientations")
         check_strategy(self)
-        if self.orientations is not None and self.method != "sphere":
-            raise InvalidInput(f"method {self.method!r} names its own axes, which are not shared: choose the best axis "
-                               "of the hemisphere, or an axis for each sub-surface")
 
 
 def inputs_of(thing):

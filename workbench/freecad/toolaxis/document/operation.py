@@ -38,7 +38,7 @@ INPUTS = (
              ("sphere", "sectors", "roman", "normal", "one", "ball")),
     Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while it cuts", False, False,
              STRATEGIES),
-    Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, which multiscale looks at"),
+    Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, for strategies that look at it"),
     Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and turn it to the others"),
     Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"))
 LOCKS = (

@@ -24,6 +24,10 @@ def ensure(thing, properties):
         if one.name in known:
             if one.fixed and not one.hidden:  # an older version may have let the user edit it
                 thing.setEditorMode(one.name, ["ReadOnly"])
+            if not set(one.choices) <= set(thing.getEnumerationsOfProperty(one.name) or ()):  # it knew fewer
+                value = getattr(thing, one.name)
+                setattr(thing, one.name, [*one.choices, *({value} - set(one.choices))])
+                setattr(thing, one.name, value)
             continue
         thing.addProperty(f"App::Property{one.kind}", one.name, one.group, one.text, 0, one.fixed, one.hidden)
         if one.choices:

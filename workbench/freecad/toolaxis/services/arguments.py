@@ -5,7 +5,7 @@ from math import isfinite
 import FreeCAD
 from freecad.toolaxis.document.kinds import is_operation, is_plan
 from freecad.toolaxis.document.read_shapes import sculptured
-from freecad.toolaxis.document.strategies import INDEXED
+from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES
 
 _UNITS = FreeCAD.Units
 _FACES = "give an object, (object, \"Face7\"), \"Block.Face7\", or a list of these"
@@ -18,7 +18,7 @@ _NUMBERS = {"scallop": _LENGTH, "tolerance": _LENGTH, "allowance": _LENGTH, "sti
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
 _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",
-          "method": "\"sphere\"", "strategy": "\"four-plus-one\""}
+          "method": "\"sphere\"", "strategy": f"\"{STRATEGIES[1]}\""}
 _COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
@@ -220,9 +220,9 @@ def fields_of(document, given):
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
-        from toolaxis.job.inputs.spec import roughness_for
+        from toolaxis.strategies.inputs import check_roughness
 
-        roughness_for(found.get("strategy", INDEXED), found["roughness"] / 1000)
+        check_roughness(found.get("strategy", INDEXED), found["roughness"] / 1000)
     return found
 
 

@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 
 import FreeCAD
+from freecad.toolaxis.document.strategies import picture_titles
 
 translate = FreeCAD.Qt.translate
 
@@ -44,12 +45,7 @@ def title_of(name):
         As the command names its file, without the ending.
     """
     operation, _, kind = name.rpartition("-")
-    titles = {"passes": translate("ToolAxis", "Passes and tool"), "axes": translate("ToolAxis", "Tool axes"),
-              "widths": translate("ToolAxis", "Strip widths"), "estimate": translate("ToolAxis", "Estimate and count"),
-              "contacts": translate("ToolAxis", "Two contacts"), "angle": translate("ToolAxis", "Axis that turns"),
-              "angles": translate("ToolAxis", "Tool angles in the S-theta plane"),
-              "motion": translate("ToolAxis", "Motion of the axes"),
-              "roughness": translate("ToolAxis", "Strip width and roughness"),
+    titles = {**picture_titles(), "passes": translate("ToolAxis", "Passes and tool"),
               "plan": translate("ToolAxis", "Whole part"), "machine": translate("ToolAxis", "On the machine"),
               "tightest": translate("ToolAxis", "Where it is tightest"),
               "orientations": translate("ToolAxis", "Length and number of axes"),

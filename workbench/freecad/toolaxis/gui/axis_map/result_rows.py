@@ -95,8 +95,6 @@ def fill_baselines(table, rows):
     table : QTableWidget
     rows : sequence of toolaxis.plan.baseline.Baseline
     """
-    from toolaxis.plan.baseline import METHOD_NAMES
-
     heads = [translate("ToolAxisPlan", "Method"), translate("ToolAxisPlan", "Axes"), translate("ToolAxis", "Passes"),
              translate("ToolAxis", "Cutting length")]
     table.setVisible(bool(rows))
@@ -107,7 +105,7 @@ def fill_baselines(table, rows):
     table.verticalHeader().setVisible(False)
     table.setRowCount(len(rows))
     for i, row in enumerate(rows):
-        name = METHOD_NAMES.get(row.method, row.method)
+        name = row.shown
         cells = [name, str(row.orientations), str(row.passes), length_text(row.length)]
         if not row.complete:
             cells[3] = translate("ToolAxis", "{} of {} sub-surfaces").format(row.machined, row.sub_surfaces)

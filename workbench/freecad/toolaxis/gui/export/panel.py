@@ -50,13 +50,13 @@ class ExportPanel(Panel):
         return self.form.offsetX, self.form.offsetY, self.form.offsetZ
 
     def _fill(self):
-        from toolaxis.post.dialects.registry import DIALECTS
+        from toolaxis.post.dialects.registry import dialects
 
         form = self.form
         file = Path(self.document.FileName) if self.document.FileName else Path.home() / self.document.Label
         form.folder.setText(str(file.with_name(f"{file.stem}-plan")))
         form.dialect.addItem(translate("ToolAxis", "none"), "")
-        for name, dialect in DIALECTS.items():
+        for name, dialect in dialects().items():
             form.dialect.addItem(dialect.title, name)
         for combo in (form.machine, form.dialect):
             combo.setMinimumContentsLength(12)

@@ -7,15 +7,19 @@ from math import degrees
 import FreeCAD
 from freecad.toolaxis.document.inputs import Inputs, flute_of
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
-from freecad.toolaxis.document.strategies import INDEXED, ROUGH, STRATEGIES, needs
+from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from PySide import QtWidgets
 
+from toolaxis.tools.registry import cutters
+
 translate = FreeCAD.Qt.translate
 
-KINDS = ("torus", "ball", "flat", "tapered")
+KINDS = tuple(cutters())
+#: The field of each size of a cutter.
+_FIELDS = {"diameter": "diameter", "corner_radius": "corner", "half_angle_deg": "taper"}
 OBJECTIVES = ("length", "passes")
 DIRECTIONS = ("zigzag", "climb", "conventional")
 METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
@@ -44,12 +48,14 @@ class PlanForm:
                             for name in ("scallop", "tolerance", "allowance")}
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
+        self.kind.addItems([translate("ToolAxisPlan", one.title) for one in cutters().values()])
         self.limits = self._find("limits", QtWidgets.QComboBox)
         self.spindle = self._find("spindle", QtWidgets.QSpinBox)
         self.middle = [self._find(name, QtWidgets.QDoubleSpinBox) for name in ("limitX", "limitY", "limitZ")]
         self.counts = {name: (self._find(name, QtWidgets.QComboBox), self._find(f"{name}Number", QtWidgets.QSpinBox))
                        for name in ("regions", "orientations")}
         self.strategy = self._find("strategy", QtWidgets.QComboBox)
+        self.strategy.addItems(titles())
         self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
         self.unshown = ""
@@ -86,10 +92,10 @@ class PlanForm:
         self.faces.on_change(slot)
 
     def _show_what_counts(self, *_):
-        kind, limits = KINDS[self.kind.currentIndex()], self.limits.currentIndex()
-        shown = {"corner": kind in ("torus", "tapered"), "taper": kind == "tapered", "cone": limits == _CONE,
+        sizes, limits = cutters()[KINDS[self.kind.currentIndex()]].sizes, self.limits.currentIndex()
+        shown = {"corner": "corner_radius" in sizes, "taper": "half_angle_deg" in sizes, "cone": limits == _CONE,
                  "limitX": limits != _NO_LIMITS and limits < 3, "tiltLow": limits == _ROTARY,
-                 "turnLow": limits == _ROTARY, "roughness": self.strategy_name == ROUGH}
+                 "turnLow": limits == _ROTARY, "roughness": keeps_roughness(self.strategy_name)}
         members = {"limitX": ("limitX", "limitY", "limitZ"), "tiltLow": ("tiltLow", "tiltHigh"),
                    "turnLow": ("turnLow", "turnHigh")}
         for combo, spin in self.counts.values():
@@ -117,11 +123,8 @@ class PlanForm:
         kind, _, sizes = text.strip().lower().partition(":")
         numbers = [float(size) for size in sizes.split("x")]
         self.kind.setCurrentIndex(KINDS.index(kind))
-        self.quantities["diameter"].value = numbers[0]
-        if len(numbers) > 1:
-            self.quantities["corner"].value = numbers[1]
-        if len(numbers) > 2:
-            self.quantities["taper"].value = numbers[2]
+        for size, value in zip(cutters()[kind].sizes, numbers, strict=True):
+            self.quantities[_FIELDS[size]].value = value
 
     def take_tool(self, tool, speeds):
         """Show a tool of the document or the library: cutter and shank, and what is known of the rest and of speeds.
@@ -148,8 +151,7 @@ class PlanForm:
     def tool_text(self):
         """The cutter's short form."""
         kind = KINDS[self.kind.currentIndex()]
-        names = {"torus": ("diameter", "corner"), "ball": ("diameter",), "flat": ("diameter",),
-                 "tapered": ("diameter", "corner", "taper")}[kind]
+        names = [_FIELDS[size] for size in cutters()[kind].sizes]
         return f"{kind}:" + "x".join(f"{self.quantities[name].value:.12g}" for name in names)
 
     @property

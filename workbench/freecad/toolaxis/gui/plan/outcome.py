@@ -1,7 +1,7 @@
 """How a plan that was just made turned out, in one sentence."""
 
 import FreeCAD
-from freecad.toolaxis.document.strategies import TWICE
+from freecad.toolaxis.document.strategies import strategy_of
 
 translate = FreeCAD.Qt.translate
 
@@ -43,14 +43,15 @@ def outcome_sentence(plan):
 
 
 def touched_once(plan):
-    """Whether two-point contact was asked for and no sub-surface has any.
+    """Whether the strategy did nowhere what it is there for, as two-point contact where no sub-surface has any.
 
     Parameters
     ----------
     plan : toolaxis.plan.plan.Plan
     """
-    return plan.inputs.method == "two-point" and not any(
-        why.startswith(TWICE) for op in plan.operations for why in op.orientation.reasons)
+    promise = strategy_of(plan.inputs.method).promise
+    return bool(promise) and not any(
+        why.startswith(promise) for op in plan.operations for why in op.orientation.reasons)
 
 
 def left_to_clean_up(plan):

@@ -1,0 +1,50 @@
+"""The strategy `four-plus-one`: one rotary axis clamped, the other turning along the passes."""
+
+from typing import TYPE_CHECKING
+
+from toolaxis.strategies.strategy import Strategy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from toolaxis.cldata.toolpath import ToolPath
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.plan import Inputs, Plan
+    from toolaxis.search.fixed_axis import Task
+
+
+class FourPlusOne(Strategy):
+    """The best clamped angle of either rotary axis."""
+
+    name = "four-plus-one"
+    title = "4+1 axes"
+    summary = "one rotary axis of the machine clamped at the best angle, the other turning along the passes"
+    note = "One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits."
+    rank = 4
+    machine_use = "clamps one rotary axis of a machine and turns the other"
+    at_points = True
+
+    @property
+    def pictures(self) -> dict[str, str]:
+        """The free angle."""
+        return {"angle": "Axis that turns"}
+
+    def plan(self, task: "Task", inputs: "Inputs",
+             start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
+        """The best clamped angle and its passes; the best fixed axis where that is shorter."""
+        from toolaxis.strategies.four_plus_one.search import four_plus_one
+
+        return four_plus_one(task)
+
+    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+        """Draw the angle of the axis that turns, over the face and along the passes."""
+        from toolaxis.strategies.four_plus_one.pictures import draw_free_angle
+
+        draw_free_angle(plan, op, folder)
+
+
+STRATEGY = FourPlusOne()

@@ -1,0 +1,1 @@
+"""Fixed axes: every sub-surface is machined with one that stands still."""

@@ -1,0 +1,77 @@
+"""The strategy `indexed`: one fixed axis for each sub-surface, by one of several methods."""
+
+from typing import TYPE_CHECKING
+
+from toolaxis.errors import InvalidInput
+from toolaxis.strategies.strategy import INDEXED, SPHERE, Asked, Strategy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from toolaxis.cldata.toolpath import ToolPath
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.plan import Inputs, Plan
+    from toolaxis.search.fixed_axis import Task
+
+#: How fixed axes are found, and what each way is called.
+METHODS = {SPHERE: "best of the hemisphere", "sectors": "sectors of zhu2016", "roman": "Roman's rule",
+           "normal": "mean normals", "one": "one fixed axis", "ball": "ball end, mean normal"}
+#: Methods that search as another one does.
+_SEARCHES = {"ball": "normal"}
+
+
+class Indexed(Strategy):
+    """The best fixed axis."""
+
+    name = INDEXED
+    title = "fixed axes (3+2)"
+    summary = "one fixed axis for each sub-surface"
+    rank = 0
+    rotary_axes = 0
+
+    @property
+    def methods(self) -> dict[str, str]:
+        """Ways to find a fixed axis."""
+        return METHODS
+
+    @property
+    def pictures(self) -> dict[str, str]:
+        """Axes, strips, and how well they are estimated."""
+        return {"axes": "Tool axes", "widths": "Strip widths", "estimate": "Estimate and count"}
+
+    def check(self, asked: Asked) -> None:
+        """Check the method, and that axes which it names itself are neither to be shared nor kept.
+
+        Raises
+        ------
+        InvalidInput
+        """
+        if asked.method not in METHODS:
+            *most, last = METHODS
+            raise InvalidInput(f"method is {asked.method!r}: use {', '.join(most)} or {last}")
+        if asked.orientations is not None and asked.method != SPHERE:
+            raise InvalidInput(f"method {asked.method!r} names its own axes, which are not shared: leave out either "
+                               "the method or the number of orientations")
+        if asked.held and asked.method == "one":
+            raise InvalidInput(f"method 'one' takes one axis for all sub-surfaces, and {asked.held}: leave out either "
+                               "the method or the lock")
+
+    def plan(self, task: "Task", inputs: "Inputs",
+             start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
+        """The fixed axis that the method finds, and its passes."""
+        from toolaxis.search.fixed_axis import searched
+
+        return searched(task, _SEARCHES.get(inputs.method, inputs.method), start)
+
+    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+        """Draw the map of axes and the strip widths, and the study of estimate and count where methods are compared."""
+        from toolaxis.strategies.indexed.pictures import draw_fixed_axis
+
+        draw_fixed_axis(plan, op, task, folder)
+
+
+STRATEGY = Indexed()

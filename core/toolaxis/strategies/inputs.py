@@ -1,0 +1,86 @@
+"""Whether a strategy goes with what a plan is asked for: the one check for the command, for scripts and for FreeCAD."""
+
+from math import isfinite
+
+from toolaxis.errors import InvalidInput
+from toolaxis.strategies.registry import strategies, strategy_named
+from toolaxis.strategies.strategy import SPHERE, Asked, Strategy
+
+_COUNTS = {1: "one rotary axis", 2: "two rotary axes"}
+
+
+def check_strategy(name: str, asked: Asked) -> Strategy:
+    """The strategy with a name, if it goes with what is asked for.
+
+    Parameters
+    ----------
+    name : str
+    asked : Asked
+
+    Raises
+    ------
+    InvalidInput
+        When there is no such strategy, or something does not go with it: one sentence, with the remedy.
+    """
+    strategy = strategy_named(name)
+    check_roughness(name, asked.roughness)
+    if strategy.moves:
+        _check_moving(strategy, asked)
+    elif any(one.moves and asked.method == one.name for one in strategies().values()):
+        raise InvalidInput(f"method {asked.method!r} moves the axis: ask for the strategy {asked.method!r} instead")
+    strategy.check(asked)
+    if strategy.moves:
+        _check_machine(strategy, asked)
+    return strategy
+
+
+def check_roughness(name: str, roughness: float | None) -> None:
+    """Check that a roughness is given only to a strategy that looks at it, and one that can be kept.
+
+    Parameters
+    ----------
+    name : str
+    roughness : float or None
+        Greatest Ra, mm.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    if roughness is None:
+        return
+    if not strategy_named(name).roughness:
+        others = " or ".join(repr(one.name) for one in strategies().values() if one.roughness)
+        raise InvalidInput(f"roughness is given and strategy {name!r} does not look at it: leave it out, or "
+                           f"ask for the strategy {others}")
+    if not (isfinite(roughness) and roughness > 0):
+        raise InvalidInput(f"roughness is {1000 * roughness:g} um: it must be finite and above zero")
+
+
+def _check_moving(strategy: Strategy, asked: Asked) -> None:
+    """Check what all strategies have in common that move the axis."""
+    name = strategy.name
+    if asked.method not in (SPHERE, name):
+        raise InvalidInput(f"method {asked.method!r} finds fixed axes and strategy {name!r} moves them: leave out one "
+                           "of both")
+    if asked.objective == "time":
+        raise InvalidInput(f"strategy {name!r} chooses how to lean by length or passes: leave out the objective time")
+    if asked.orientations is not None:
+        raise InvalidInput(f"strategy {name!r} moves the axis, so that sub-surfaces share none: leave out the number "
+                           "of axes")
+    if asked.held:
+        raise InvalidInput(f"strategy {name!r} moves the axis, and {asked.held}: take the lock away, or choose fixed "
+                           "axes")
+
+
+def _check_machine(strategy: Strategy, asked: Asked) -> None:
+    """Check that there is a machine where one is needed, and that it drives the rotary axes."""
+    name, machine = strategy.name, asked.machine
+    if machine is None:
+        if strategy.machine_use:
+            raise InvalidInput(f"strategy {name!r} {strategy.machine_use}: {asked.remedy}")
+        return
+    driven = sum(not axis.by_hand for axis in machine.rotary)
+    if driven < strategy.rotary_axes:
+        raise InvalidInput(f"strategy {name!r} moves {_COUNTS[strategy.rotary_axes]} while it cuts and {machine.name} "
+                           f"drives {driven}: name another machine or leave out the strategy")

@@ -1,0 +1,62 @@
+"""The strategy `multiscale`: a roughness across the feed and an expected strip width, the rotary axes turning least."""
+
+from typing import TYPE_CHECKING
+
+from toolaxis.strategies.strategy import Asked, Strategy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from toolaxis.cldata.toolpath import ToolPath
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.plan import Inputs, Plan
+    from toolaxis.search.fixed_axis import Task
+
+#: Ra unless given, mm.
+ROUGHNESS = 1.6e-3
+
+
+class Roughness(Strategy):
+    """Strip width and roughness together."""
+
+    name = "multiscale"
+    title = "strip width and roughness"
+    summary = "a torus keeps --roughness and an expected strip width while the machine's rotary axes turn least"
+    note = ("Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab "
+            "Limits.")
+    rank = 5
+    machine_use = "has the rotary axes of a machine turn least"
+    roughness = ROUGHNESS
+    at_points = True
+
+    @property
+    def pictures(self) -> dict[str, str]:
+        """Strip width and Ra over the face."""
+        return {"roughness": "Strip width and roughness"}
+
+    def check(self, asked: Asked) -> None:
+        """Check that the cutter is a torus."""
+        from toolaxis.strategies.roughness.feasible_area import check_bull_nose
+
+        if asked.tool is not None:
+            check_bull_nose(asked.tool, flat_too=False)
+
+    def plan(self, task: "Task", inputs: "Inputs",
+             start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
+        """Passes that keep the roughness."""
+        from toolaxis.strategies.roughness.plan import multiscale
+
+        return multiscale(task, inputs.roughness, inputs.feedrate)
+
+    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+        """Draw strip width and Ra over the face, and what the rotary axes do."""
+        from toolaxis.strategies.roughness.pictures import draw_roughness
+
+        draw_roughness(plan, op, folder)
+
+
+STRATEGY = Roughness()

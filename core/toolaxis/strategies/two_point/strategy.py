@@ -1,0 +1,56 @@
+"""The strategy `two-point`: a flat end or torus that touches hollow faces at two points."""
+
+from typing import TYPE_CHECKING
+
+from toolaxis.strategies.strategy import Asked, Strategy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from toolaxis.cldata.toolpath import ToolPath
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.plan import Inputs, Plan
+    from toolaxis.search.fixed_axis import Task
+
+
+class TwoPoint(Strategy):
+    """Two contacts where the face is hollow, one elsewhere."""
+
+    name = "two-point"
+    title = "two-point contact"
+    summary = "simultaneous five-axis milling in which a flat end or torus touches hollow faces at two points"
+    note = "The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose."
+    rank = 2
+    promise = "two contacts on"
+
+    @property
+    def pictures(self) -> dict[str, str]:
+        """The cutter at its contacts."""
+        return {"contacts": "Two contacts"}
+
+    def check(self, asked: Asked) -> None:
+        """Check that the cutter has a flat bottom."""
+        from toolaxis.strategies.two_point.rings import check_bottom
+
+        if asked.tool is not None:
+            check_bottom(asked.tool)
+
+    def plan(self, task: "Task", inputs: "Inputs",
+             start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
+        """Passes with two contacts where they can be had."""
+        from toolaxis.strategies.two_point.search import two_point
+
+        return two_point(task)
+
+    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+        """Draw the cutter at the widest of its two-point contacts."""
+        from toolaxis.strategies.two_point.pictures import draw_contacts
+
+        draw_contacts(plan, op, folder)
+
+
+STRATEGY = TwoPoint()

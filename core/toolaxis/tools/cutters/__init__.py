@@ -1,0 +1,1 @@
+"""The kinds of cutters: one module each; `toolaxis.tools.registry` finds them."""

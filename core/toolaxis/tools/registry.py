@@ -1,0 +1,60 @@
+"""All kinds of cutters: the modules of `toolaxis.tools.cutters`, each of which offers one."""
+
+from collections.abc import Mapping
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
+
+from toolaxis.errors import InvalidInput
+from toolaxis.tools import cutters as _package
+from toolaxis.tools.cutter import Cutter
+
+
+@cache
+def cutters() -> Mapping[str, Cutter]:
+    """The kinds by name, in the order in which they are listed."""
+    found: list[Cutter] = [import_module(module.name).CUTTER
+                           for module in iter_modules(_package.__path__, f"{_package.__name__}.")]
+    found.sort(key=lambda one: (one.rank, one.name))
+    return {one.name: one for one in found}
+
+
+def cutter_named(kind: str) -> Cutter:
+    """The kind with a name.
+
+    Parameters
+    ----------
+    kind : str
+
+    Raises
+    ------
+    InvalidInput
+        When there is none.
+    """
+    known = cutters()
+    if kind not in known:
+        raise InvalidInput(f"tool is a {kind!r}: use {', '.join(known)}")
+    return known[kind]
+
+
+def cutter_of_bit(shape: str) -> Cutter | None:
+    """The kind as which a tool bit of FreeCAD is read; None where it can be planned with as none.
+
+    Parameters
+    ----------
+    shape : str
+        In lower case, without blanks.
+    """
+    return next((one for one in cutters().values() if shape in one.read_from), None)
+
+
+def short_forms(last: str = "or") -> str:
+    """An example of each kind's short form, as a clause.
+
+    Parameters
+    ----------
+    last : str
+        What stands before the last one; a comma where it is empty.
+    """
+    *most, end = (one.example for one in cutters().values())
+    return f"{', '.join(most)}{f' {last} ' if last else ', '}{end}"
