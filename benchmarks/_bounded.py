@@ -31,7 +31,7 @@ class Bounds(NamedTuple):
     memory: int
 
 
-class Line(NamedTuple):
+class MessageLine(NamedTuple):
     """A line of the process's messages with the processor seconds that it had used by then."""
 
     cpu: float
@@ -51,7 +51,7 @@ class Ran(NamedTuple):
     ended: str
     killed: bool
     output: str
-    lines: tuple[Line, ...]
+    lines: tuple[MessageLine, ...]
 
     @property
     def short_of_memory(self) -> bool:
@@ -92,7 +92,7 @@ def run(command: Sequence[str], bounds: Bounds, folder: Path) -> Ran:
     with open(folder / "stdout", "w+", encoding="utf-8", errors="replace") as out:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE,
                                    preexec_fn=_bind, start_new_session=True)
-        watch = _Watch(process.pid, bounds.seconds, began)
+        watch = _ProcessWatch(process.pid, bounds.seconds, began)
         try:
             lines, status, used = watch.followed(process)
         except BaseException:
@@ -104,7 +104,7 @@ def run(command: Sequence[str], bounds: Bounds, folder: Path) -> Ran:
                    watch.ended, watch.killed, out.read(), tuple(lines))
 
 
-class _Watch:
+class _ProcessWatch:
     """Listens to a process and ends it in time."""
 
     def __init__(self, number: int, seconds: float, began: float) -> None:
@@ -112,10 +112,10 @@ class _Watch:
         self._told: tuple[float, float] | None = None
         self.ended, self.killed = "", False
 
-    def followed(self, process: "subprocess.Popen[bytes]") -> tuple[list[Line], int, resource.struct_rusage]:
+    def followed(self, process: "subprocess.Popen[bytes]") -> tuple[list[MessageLine], int, resource.struct_rusage]:
         """Its messages, its wait status, and what it used."""
         assert process.stderr is not None
-        lines: list[Line] = []
+        lines: list[MessageLine] = []
         rest, ended = b"", None
         with selectors.DefaultSelector() as selector, process.stderr as pipe:
             os.set_blocking(pipe.fileno(), False)
@@ -127,13 +127,13 @@ class _Watch:
                     selector.unregister(pipe)
                 *whole, rest = (rest + (more or b"")).split(b"\n")
                 cpu = self._cpu()
-                lines += [Line(cpu, text.decode("utf-8", "replace")) for text in whole]
+                lines += [MessageLine(cpu, text.decode("utf-8", "replace")) for text in whole]
                 self._bound(cpu)
                 number, status, used = os.wait4(self._number, os.WNOHANG)
                 ended = (status, used) if number else None
             *whole, rest = (rest + (pipe.read() or b"")).split(b"\n")
             cpu = ended[1].ru_utime + ended[1].ru_stime
-            lines += [Line(cpu, text.decode("utf-8", "replace")) for text in (*whole, rest) if text]
+            lines += [MessageLine(cpu, text.decode("utf-8", "replace")) for text in (*whole, rest) if text]
         _kill(self._number)  # what it may have left behind
         return lines, *ended
 

@@ -18,7 +18,7 @@ from toolaxis.feasibility.violations import FREE
 from toolaxis.path.parametrization import IsoChart, rows
 from toolaxis.path.pass_count import panels
 from toolaxis.path.trim_intervals import RowPoints, row_points
-from toolaxis.search.cost import FEEDS, Worth
+from toolaxis.search.cost import FEEDS, MachiningCost
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ _BATCH, _AUDITED = 128, 100
 
 
 @dataclass(frozen=True, eq=False)
-class _Places:
+class _PassPoints:
     """A few places on some passes with one feed: uv (n, 2), first place of each pass, weight of each pass, and whether
     a place continues the one before, (n,)."""
 
@@ -47,16 +47,16 @@ class Floor:
 
     Attributes
     ----------
-    worth : Worth
+    worth : MachiningCost
     size : (int, int)
         Passes on each smooth stretch, and gaps between places on a pass.
     """
 
-    worth: Worth
+    worth: MachiningCost
     size: tuple[int, int] = _FINE
 
     @cached_property
-    def places(self) -> tuple[_Places, _Places]:
+    def places(self) -> tuple[_PassPoints, _PassPoints]:
         """Places for feed u and v."""
         return _places(self.worth.charts[0], self.size), _places(self.worth.charts[1], self.size)
 
@@ -84,7 +84,7 @@ class Floor:
                 + tool.flat_radius * across / np.where(size > 0, size, 1.0))
 
 
-def _places(chart: IsoChart, size: tuple[int, int]) -> _Places:
+def _places(chart: IsoChart, size: tuple[int, int]) -> _PassPoints:
     edges = panels(chart)
     nodes, weight = np.polynomial.legendre.leggauss(size[0])
     half = np.diff(edges)[:, None] / 2
@@ -94,8 +94,8 @@ def _places(chart: IsoChart, size: tuple[int, int]) -> _Places:
     points: RowPoints = row_points(found, (a1 - a0) / size[1])
     line = found.line[points.interval]
     met, start = np.unique(line, return_index=True)
-    return _Places(chart.uv(points.along, steps[line]), start, (half * weight).ravel()[met],
-                   np.append(False, np.diff(points.interval) == 0))
+    return _PassPoints(chart.uv(points.along, steps[line]), start, (half * weight).ravel()[met],
+                       np.append(False, np.diff(points.interval) == 0))
 
 
 @dataclass
@@ -116,7 +116,7 @@ class Least:
     lowest: float = np.inf
 
 
-def least_length(judged: Feasibility, worth: Worth, grid: Array, full: bool = False) -> Least:
+def least_length(judged: Feasibility, worth: MachiningCost, grid: Array, full: bool = False) -> Least:
     """The least exact length over all axes of a grid that the proof form accepts.
 
     `full` counts every axis that screening leaves, bounds or not.
@@ -143,7 +143,7 @@ def least_length(judged: Feasibility, worth: Worth, grid: Array, full: bool = Fa
     return found
 
 
-def _take(judged: Feasibility, worth: Worth, found: Least, pair: tuple[Array, int, float]) -> None:
+def _take(judged: Feasibility, worth: MachiningCost, found: Least, pair: tuple[Array, int, float]) -> None:
     """Count a pair of axis and feed, and keep it where it is the best and proven."""
     axis, k, bound = pair
     value = worth.counted(axis, FEEDS[k])[1]
@@ -154,7 +154,7 @@ def _take(judged: Feasibility, worth: Worth, found: Least, pair: tuple[Array, in
         found.length, found.axis, found.feed = value, axis, k
 
 
-def audit(worth: Worth, found: Least) -> None:
+def audit(worth: MachiningCost, found: Least) -> None:
     """Count some of the pairs that were left out, picked at random."""
     for i in np.random.default_rng(0).permutation(len(found.left_out))[:_AUDITED]:
         axis, k, bound = found.left_out[i]

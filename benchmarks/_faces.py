@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from benchmarks._bounded import Line, Ran
+from benchmarks._bounded import MessageLine, Ran
 
 Document = Mapping[str, Any]
 
@@ -53,12 +53,12 @@ def kind_of(reasons: Sequence[str]) -> str:
     return "other"
 
 
-def seconds_by(lines: Sequence[Line], pattern: re.Pattern[str], end: float) -> dict[str, float]:
+def seconds_by(lines: Sequence[MessageLine], pattern: re.Pattern[str], end: float) -> dict[str, float]:
     """Processor seconds between the first message of each face, or operation, and what is told next.
 
     Parameters
     ----------
-    lines : sequence of Line
+    lines : sequence of MessageLine
     pattern : re.Pattern
         Its first group says of whom a message tells.
     end : float
@@ -66,7 +66,7 @@ def seconds_by(lines: Sequence[Line], pattern: re.Pattern[str], end: float) -> d
     """
     took: dict[str, float] = {}
     now, since = "", 0.0
-    for line in (*lines, Line(end, "")):
+    for line in (*lines, MessageLine(end, "")):
         found = pattern.match(line.text)
         name = found[1] if found else ""
         if name != now:

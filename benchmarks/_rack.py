@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 _AREA, _NUMBER, _FITS, _ACROSS, _GENTLE, _LEAST_TORUS, _CORNER = 0.8, 0.5, 0.9, 0.05, 5.0, 6.0, 0.125
 
 
-class _Place(NamedTuple):
+class _Holding(NamedTuple):
     """What a cutter of a diameter is held by, mm: scallop height to plan with, stick-out, radius of the shank and of
     the holder's nose."""
 
@@ -25,13 +25,14 @@ class _Place(NamedTuple):
     nose: float
 
 
-_RACK = (_Place(0.5, 0.002, 25, 1.5, 6), _Place(1, 0.003, 25, 1.5, 6), _Place(2, 0.005, 25, 1.5, 6),
-         _Place(3, 0.01, 30, 1.5, 6), _Place(4, 0.01, 40, 2, 8), _Place(6, 0.01, 40, 3, 8), _Place(8, 0.02, 45, 4, 8),
-         _Place(10, 0.02, 50, 5, 9), _Place(12, 0.02, 60, 6, 10), _Place(16, 0.03, 75, 8, 14),
-         _Place(20, 0.03, 80, 10, 17), _Place(32, 0.05, 120, 16, 25), _Place(50, 0.1, 160, 20, 32))
+_RACK = (_Holding(0.5, 0.002, 25, 1.5, 6), _Holding(1, 0.003, 25, 1.5, 6), _Holding(2, 0.005, 25, 1.5, 6),
+         _Holding(3, 0.01, 30, 1.5, 6), _Holding(4, 0.01, 40, 2, 8), _Holding(6, 0.01, 40, 3, 8),
+         _Holding(8, 0.02, 45, 4, 8),
+         _Holding(10, 0.02, 50, 5, 9), _Holding(12, 0.02, 60, 6, 10), _Holding(16, 0.03, 75, 8, 14),
+         _Holding(20, 0.03, 80, 10, 17), _Holding(32, 0.05, 120, 16, 25), _Holding(50, 0.1, 160, 20, 32))
 
 
-class Held(NamedTuple):
+class RackTool(NamedTuple):
     """name : short form;  scallop : mm;  file : text of a tool file, None where the name is all that is known."""
 
     name: str
@@ -39,7 +40,7 @@ class Held(NamedTuple):
     file: str | None
 
 
-def chosen(survey: Mapping[str, Any]) -> Held:
+def chosen(survey: Mapping[str, Any]) -> RackTool:
     """The tool for a part, by the rule.
 
     Parameters
@@ -56,7 +57,7 @@ def chosen(survey: Mapping[str, Any]) -> Held:
     return given(f"ball:{place.diameter:g}")
 
 
-def given(text: str) -> Held:
+def given(text: str) -> RackTool:
     """A tool of a size that somebody chose, held as the next larger one on the rack.
 
     Parameters
@@ -67,7 +68,7 @@ def given(text: str) -> Held:
     found = re.fullmatch(r"(ball|torus|flat):([0-9.]+)(?:x([0-9.]+))?", text)
     if found is None:
         size = re.search(r"[0-9.]+", text)
-        return Held(text, _place(float(size[0]) if size else 0.0).scallop, None)
+        return RackTool(text, _place(float(size[0]) if size else 0.0).scallop, None)
     kind, diameter, corner = found[1], float(found[2]), found[3]
     place = _place(diameter)
     rows = [f'kind = "{kind}"', f"diameter = {diameter}"]
@@ -80,10 +81,10 @@ def given(text: str) -> Held:
                  [place.shank, place.stickout]]
     holder = [[place.nose, 0.0], [place.nose, 40.0], [place.nose + 15, 40.0], [place.nose + 15, 80.0]]
     rows += [f"flute_length = {flute}", f"stickout = {float(place.stickout)}", f"shank = {shank}", f"holder = {holder}"]
-    return Held(text, place.scallop, "\n".join(rows) + "\n")
+    return RackTool(text, place.scallop, "\n".join(rows) + "\n")
 
 
-def _place(diameter: float) -> _Place:
+def _place(diameter: float) -> _Holding:
     return next((place for place in _RACK if place.diameter >= diameter), _RACK[-1])
 
 

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from toolaxis.numeric.jit import fused
+from toolaxis.numeric.jit import jit_fma
 from toolaxis.numeric.vectors import perpendicular
 from toolaxis.shape.face import Face
 
@@ -41,7 +41,7 @@ def frames(axes: np.ndarray) -> np.ndarray:
     return np.array([[*perpendicular(axis), axis] for axis in axes])
 
 
-@fused
+@jit_fma
 def _parabola(nodes: np.ndarray, frame: np.ndarray, cutter: np.ndarray, tips: np.ndarray) -> None:
     """Tip, first and second derivative of the pass in the tool's frame into tips (3, 3)."""
     for k in range(3):
@@ -59,7 +59,7 @@ def _parabola(nodes: np.ndarray, frame: np.ndarray, cutter: np.ndarray, tips: np
         tips[0, c], tips[1, c], tips[2, c] = middle, 0.5 * (high - low), high - 2.0 * middle + low
 
 
-@fused
+@jit_fma
 def _gaps(points: np.ndarray, frame: np.ndarray, cutter: np.ndarray, tips: np.ndarray, gaps: np.ndarray) -> None:
     """Distances of all points from the ring of the corner, without a branch."""
     e0, e1, e2, e3, e4, e5 = frame[0, 0], frame[0, 1], frame[0, 2], frame[1, 0], frame[1, 1], frame[1, 2]
@@ -86,7 +86,7 @@ def _gaps(points: np.ndarray, frame: np.ndarray, cutter: np.ndarray, tips: np.nd
         gaps[i] = sqrt(t * t + z * z) - r
 
 
-@fused
+@jit_fma
 def widths(points: np.ndarray, nodes: np.ndarray, axes: np.ndarray, sizes: Sizes, out: np.ndarray) -> None:
     """Half widths to either side, mm, of k axes (as frames) at n contacts into out (k, n, 2)."""
     cutter, lift = sizes

@@ -14,13 +14,13 @@ from benchmarks._papers import GOUGE
 import toolaxis as ta
 from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.job.planning.blade_copies import spread_out
-from toolaxis.job.planning.blade_pattern import Pattern, recognised
+from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.blades import blades_lines
-from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -38,7 +38,7 @@ STAGES = (("looking for blades", "blades found"), ("looking for what", "covered 
 COUNTS = (1, 2, 4, 8, 16)
 
 
-class Watch:
+class StageTimes:
     """When each stage was heard of first."""
 
     def __init__(self) -> None:
@@ -61,14 +61,14 @@ def main() -> None:
         if not path.exists():
             print(f"{path.name}: skipped, {path} is not there (set TOOLAXIS_SHARED)")
             continue
-        watch = Watch()
+        watch = StageTimes()
         plan = ta.plan(path, tool, SCALLOP, workers=WORKERS, tolerance=GOUGE, progress=Progress(watch.report))
         told(path, plan, watch, time.perf_counter() - watch.began)
         if plan.blades is not None:
             growth(plan)
 
 
-def told(path: Path, plan: Plan, watch: Watch, seconds: float) -> None:
+def told(path: Path, plan: Plan, watch: StageTimes, seconds: float) -> None:
     """Print what was measured of a whole part."""
     own, largest = (resource.getrusage(who).ru_maxrss / 1e3 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     done = sum(op.done for op in plan.operations)
@@ -93,7 +93,7 @@ def told(path: Path, plan: Plan, watch: Watch, seconds: float) -> None:
                   f"{found.length:7.1f} mm, strip {found.average_strip_width:.3f} mm, unreached {found.unreached:.3f}")
 
 
-class Planner:
+class ProvingPlanner:
     """What proves operations on further blades; where the proof refuses, it does not search."""
 
     workers = WORKERS
@@ -101,7 +101,7 @@ class Planner:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
 
-    def task(self, part: Part, face: Face, progress: Progress) -> Task:
+    def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
         """What decides about an axis."""
         inputs = self.plan.inputs
         return task(face, self.plan.tool, inputs.scallop, None, (), part=part, tolerance=inputs.tolerance,
@@ -114,13 +114,13 @@ class Planner:
 
 def growth(plan: Plan) -> None:
     """Print the time of turning and proving by the number of blades, and of one proof by the faces in the way."""
-    pattern, _ = recognised(ta.load(plan.part.source))
+    pattern, _ = find_pattern(ta.load(plan.part.source))
     assert pattern is not None
     own = tuple(op for op in plan.operations if pattern.blades.blade_of(op.face.number) == 1)
     first = replace(plan, operations=own, blades=None)
     for count, some in fewer(pattern):
         start = time.perf_counter()
-        spread_out(some, first, Planner(plan), NO_PROGRESS)
+        spread_out(some, first, ProvingPlanner(plan), NO_PROGRESS)
         print(f"    {count:3d} of the blades: {time.perf_counter() - start:7.1f} s to turn {len(own)} operations to "
               "them and prove them")
     done = max((op for op in own if op.path is not None), key=lambda op: op.face.area)
@@ -128,7 +128,7 @@ def growth(plan: Plan) -> None:
     for count, _ in fewer(pattern):
         part = among(pattern, count)
         start = time.perf_counter()
-        groups = Planner(plan).task(pattern.blades.apart(part, done.face.number), done.face, NO_PROGRESS).groups
+        groups = ProvingPlanner(plan).task(pattern.blades.apart(part, done.face.number), done.face, NO_PROGRESS).groups
         proof = prove(done.path, plan.tool, groups, plan.inputs.allowance)
         print(f"    {len(part.faces):4d} faces with {count:2d} blades: {time.perf_counter() - start:6.2f} s to prove "
               f"{done.name}, least clearance {min(proof.clearance.values()):.3f} mm")

@@ -10,7 +10,7 @@ from benchmarks._papers import GOUGE
 import toolaxis as ta
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.face_division import Divider
-from toolaxis.partition.ring_division import Around, candidates
+from toolaxis.partition.ring_division import RingDivision, candidates
 from toolaxis.partition.shared_axes import trade
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
@@ -47,7 +47,7 @@ def short() -> None:
 
 
 def divisions(name: str, part: ta.Part, face: ta.Face,
-              cut: tuple[ta.Tool, float]) -> tuple[Divider, tuple[Around, ...]]:
+              cut: tuple[ta.Tool, float]) -> tuple[Divider, tuple[RingDivision, ...]]:
     """Print reckoned length, links and clean-up included, by iso-parametric cuts and around the bosses."""
     tool, scallop = cut
     start = time.perf_counter()
@@ -65,11 +65,11 @@ def divisions(name: str, part: ta.Part, face: ta.Face,
     return whole, around
 
 
-def _ring(one: Around) -> str:
+def _ring(one: RingDivision) -> str:
     return f"rings of {one.radius:g} mm" if np.isfinite(one.radius) else "nearest boss"
 
 
-def sharing(whole: Divider, around: tuple[Around, ...]) -> None:
+def sharing(whole: Divider, around: tuple[RingDivision, ...]) -> None:
     """Print what sharing few axes comes to in pieces by cuts alone, as plans do, and in pieces of rings."""
     print("    reckoned length, mm, (sub-surfaces) by number of shared axes")
     for one in around:

@@ -11,12 +11,12 @@ import numpy as np
 from toolaxis.contact.clearance import queries as distances
 from toolaxis.contact.clearance.clearance import clearances, clears, segment_clears
 from toolaxis.contact.clearance.gouge import RESOLUTION, gouges, penetration, segment_gouges
-from toolaxis.contact.clearance.queries import bounded, motions
+from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.bounding.bounding_tree import cells
-from toolaxis.shape.bounding.build import subdivided
+from toolaxis.shape.bounding.build import build_tree
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -107,7 +107,7 @@ def _tightness(face: Face) -> None:
     print(f"\n{'depth answered for free contacts':38}{'median':>10}{'worst':>10}{'cells':>9}  (mm)")
     for tool in TOOLS:
         tips = place(face, tool, uv, axis)
-        found = bounded(cells(face), tool, motions(tips, axis), 0.0, RESOLUTION, only)
+        found = lower_bounds(cells(face), tool, motions(tips, axis), 0.0, RESOLUTION, only)
         free = -found.lower[found.lower[:, 0] > -0.002, 0]
         print(f"  {tool.name:36}{np.median(free):10.5f}{free.max():10.5f}{found.looked.mean():9.0f}")
 
@@ -115,7 +115,7 @@ def _tightness(face: Face) -> None:
 def main() -> None:
     """Print the tables."""
     face = patch()
-    spent = seconds(lambda: subdivided(face, 0.001), 1)
+    spent = seconds(lambda: build_tree(face, 0.001), 1)
     tree = cells(face)
     print(f"cells of a 100 mm patch: {len(tree.leaf):,} leaves, {tree.shape.nbytes / 1e6:.1f} MB, {1e3 * spent:.0f} ms")
     around = box(face)

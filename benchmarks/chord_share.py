@@ -24,7 +24,7 @@ SHARES = (50, 20, 10, 8, 6, 4)
 OTHERS = Path(os.environ.get("TOOLAXIS_SHARED", Path(__file__).resolve().parents[2] / "shared")) / "parts"
 
 
-class Job(NamedTuple):
+class FaceJob(NamedTuple):
     """A face to be machined."""
 
     path: Path
@@ -33,7 +33,7 @@ class Job(NamedTuple):
     scallop: float
 
 
-class Cost(NamedTuple):
+class PlanCost(NamedTuple):
     """What one plan costs, and what the judge measured."""
 
     points: int
@@ -46,11 +46,13 @@ class Cost(NamedTuple):
     passed: bool
 
 
-JOBS = (Job(FOLDER / "freeform.step", None, "torus:12x1", 0.02), Job(FOLDER / "saddle.step", None, "torus:12x1", 0.02),
-        Job(FOLDER / "waves.step", None, "torus:12x1", 0.02), Job(FOLDER / "boss.step", None, "torus:10x1", 0.02),
-        Job(FOLDER / "trimmed.step", None, "torus:16x2", 0.02),
-        Job(OTHERS / "mousecover.step", (9,), "torus:10x1", 0.05),
-        Job(OTHERS / "ctc05_in.stp", (127,), "ball:12", 0.02))
+JOBS = (FaceJob(FOLDER / "freeform.step", None, "torus:12x1", 0.02),
+        FaceJob(FOLDER / "saddle.step", None, "torus:12x1", 0.02),
+        FaceJob(FOLDER / "waves.step", None, "torus:12x1", 0.02),
+        FaceJob(FOLDER / "boss.step", None, "torus:10x1", 0.02),
+        FaceJob(FOLDER / "trimmed.step", None, "torus:16x2", 0.02),
+        FaceJob(OTHERS / "mousecover.step", (9,), "torus:10x1", 0.05),
+        FaceJob(OTHERS / "ctc05_in.stp", (127,), "ball:12", 0.02))
 
 
 def main() -> None:
@@ -63,19 +65,19 @@ def short() -> None:
     tables(JOBS[:2])
 
 
-def tables(jobs: tuple[Job, ...]) -> None:
+def tables(jobs: tuple[FaceJob, ...]) -> None:
     """Print the rows of faces, and the geometric means of what they cost, each as a multiple of the first share's.
 
     Parameters
     ----------
-    jobs : tuple of Job
+    jobs : tuple of FaceJob
     """
     print(f"planned with h/{1 / SCALLOP_SHARE:g}, at most {MACHINING_SHARE:g} of the machining tolerance, "
           f"which is {ta.Tolerance().gouge:g} mm")
     print(f"{'face':22} {'tool':10} {'h um':>5} {'chord um':>8} {'points':>7} {'CL kB':>7} {'plan s':>6} "
           f"{'length mm':>9} {'gouge um':>8} {'left um':>7} {'% within h':>10}")
     ta.plan(jobs[0].path, ta.Tool.parse(jobs[0].tool, **BODY), 1.0, workers=1)  # compiles what is timed
-    found: list[list[Cost]] = []
+    found: list[list[PlanCost]] = []
     for job in jobs:
         if not job.path.is_file():
             print(f"{job.path.name}: not measured, the folder of parts by others is not there")
@@ -89,12 +91,12 @@ def tables(jobs: tuple[Job, ...]) -> None:
               f"time {seconds:.2f}, length {length:.3f}")
 
 
-def row(job: Job, share: int) -> Cost:
+def row(job: FaceJob, share: int) -> PlanCost:
     """Plan and judge a face with a share of the scallop height, and print what it costs.
 
     Parameters
     ----------
-    job : Job
+    job : FaceJob
     share : int
         The chord tolerance is so many times smaller than the scallop height.
     """
@@ -110,7 +112,7 @@ def row(job: Job, share: int) -> Cost:
     return cost
 
 
-def measured(plan: Plan, verdict: Verdict, seconds: float) -> Cost:
+def measured(plan: Plan, verdict: Verdict, seconds: float) -> PlanCost:
     """What a plan costs and what the judge measured of it.
 
     Parameters
@@ -128,8 +130,8 @@ def measured(plan: Plan, verdict: Verdict, seconds: float) -> Cost:
     good = sum(one.share_within(limit) * one.area for limit, one in targets)
     area = sum(one.area for _, one in targets)
     points = sum(len(op.path.cl) for op in done if op.path is not None)
-    return Cost(points, size / 1e3, seconds, plan.length, max(op.gouge_max for op in verdict.operations),
-                max(op.scallop_max for op in verdict.operations), good / area, verdict.passed)
+    return PlanCost(points, size / 1e3, seconds, plan.length, max(op.gouge_max for op in verdict.operations),
+                    max(op.scallop_max for op in verdict.operations), good / area, verdict.passed)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from toolaxis.job.planning.edit_axis import frame_of
 from toolaxis.partition.shared_axes import cover
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.search.fixed_axis import task
 
 TOOL = ta.Tool.torus(12, 1, stickout=60, holder=[(16, 0), (16, 40), (25, 40), (25, 80)])
@@ -145,7 +145,7 @@ def by_patches(part: ta.Part, pieces: Sequence[ta.Face], method: str) -> Plan:
         frame = None if path is None else frame_of(piece, found, np.zeros(3))
         operations.append(Operation(number, piece, found, path, frame))
     outcome = "complete" if all(op.done for op in operations) else "incomplete"
-    inputs = Inputs(H, method=method, feedrate=FEED, tolerance=ta.Tolerance(GOUGE))
+    inputs = PlanInputs(H, method=method, feedrate=FEED, tolerance=ta.Tolerance(GOUGE))
     return Plan(part, TOOL, inputs, tuple(operations), (), np.zeros(3), outcome)
 
 

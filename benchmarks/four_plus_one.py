@@ -23,8 +23,8 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
-from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
-from toolaxis.strategies.four_plus_one.search import Finder, clamped_range
+from toolaxis.strategies.four_plus_one.clamp_angle import ClampSearch
+from toolaxis.strategies.four_plus_one.search import FourPlusOneSearch, clampable_angles
 from toolaxis.tools.tool import Tool
 
 FACES = ("freeform", "saddle", "hyperbolic_paraboloid")
@@ -63,13 +63,13 @@ def brute(name: str) -> None:
     mounting = Mounting(ta.load_machine(MACHINE))
     job = task(face, Tool.torus(12, 1), SCALLOP, mounting, tolerance=GOUGE)
     began = time.perf_counter()
-    finder = Finder(Clamping(job, mounting))
+    finder = FourPlusOneSearch(ClampSearch(job, mounting))
     found = finder.found(Orientation(None))[0]  # no fixed axis: the search stands on its own
     spent = time.perf_counter() - began
-    every = Finder(Clamping(job, mounting))
+    every = FourPlusOneSearch(ClampSearch(job, mounting))
     rows = []
     for which, axis in enumerate(mounting.machine.rotary):
-        for angle in clamped_range(axis, STEP):
+        for angle in clampable_angles(axis, STEP):
             for feed in ("u", "v"):
                 rough = every.search.reckoned(every.search.clamp(which, float(angle)), feed)
                 rows += [] if rough is None else [(rough.length, rough.clamp, feed)]

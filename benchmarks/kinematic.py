@@ -14,13 +14,13 @@ from benchmarks._manta import manta_passes
 from toolaxis.feed.fixed_axis_time import Feeds, index_time
 from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.velocity_ramps import ramps
-from toolaxis.machine.feed_polytopes import Level, alignments, best_along, box, pole_zone, preferred
+from toolaxis.machine.feed_polytopes import Level, alignments, best_along, box, pole_zone, preferred_direction
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.report.figures.kinematics import feed_figure, polytope_figure, reach_figure
 from toolaxis.search.fastest_setup import cutting_seconds, fastest
-from toolaxis.search.kinematic_setup import Setup, Stretch, setup, setups_by_pass
+from toolaxis.search.kinematic_setup import PassSegment, Setup, setup, setups_by_pass
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 FEEDS = Feeds(500.0, tolerance=0.01)
@@ -41,25 +41,25 @@ What the model cannot explain:
   whole-part strategies, which is the paper's."""
 
 
-def rules() -> tuple[Stretch, ...]:
+def rules() -> tuple[PassSegment, ...]:
     """The rules y = x + c of z = (y^2 - x^2)/500 on +-50 mm, there and back."""
     found = []
     for k, c in enumerate(np.linspace(-100, 100, RULES + 2)[1:-1]):
         x = np.array([max(-50, -50 - c), min(50, 50 - c)])[:: 1 if k % 2 == 0 else -1]
         y = x + c
         normals = np.stack([2 * x / 500, -2 * y / 500, np.ones(2)], axis=1)
-        found.append(Stretch(np.stack([x, y, (y * y - x * x) / 500], axis=1),
-                             normals / np.linalg.norm(normals, axis=1, keepdims=True)))
+        found.append(PassSegment(np.stack([x, y, (y * y - x * x) / 500], axis=1),
+                                 normals / np.linalg.norm(normals, axis=1, keepdims=True)))
     return tuple(found)
 
 
-def links(passes: Sequence[Stretch]) -> tuple[Stretch, ...]:
+def links(passes: Sequence[PassSegment]) -> tuple[PassSegment, ...]:
     """Straight steps from each pass to the next."""
-    return tuple(Stretch(np.stack([one.tips[-1], other.tips[0]]), np.stack([one.normals[-1], other.normals[0]]))
+    return tuple(PassSegment(np.stack([one.tips[-1], other.tips[0]]), np.stack([one.normals[-1], other.normals[0]]))
                  for one, other in pairwise(passes))
 
 
-def strategies(passes: Sequence[Stretch], share: float) -> dict[str, tuple[float, float]]:
+def strategies(passes: Sequence[PassSegment], share: float) -> dict[str, tuple[float, float]]:
     """Seconds of cutting with links, and of index moves, of the paper's three strategies and ours, for all passes."""
     steps = links(passes)
     every = setups_by_pass(MIKRON, passes)
@@ -76,7 +76,7 @@ def strategies(passes: Sequence[Stretch], share: float) -> dict[str, tuple[float
     return {name: (cut * share, turn) for name, (cut, turn) in rows.items()}
 
 
-def _seconds(passes: Sequence[Stretch], steps: Sequence[Stretch], rotary: np.ndarray) -> float:
+def _seconds(passes: Sequence[PassSegment], steps: Sequence[PassSegment], rotary: np.ndarray) -> float:
     return float(sum(cutting_seconds(MIKRON, some, rotary, FEEDS)[0] for some in (passes, steps)))
 
 
@@ -86,7 +86,7 @@ def _indexing(every: Sequence[Setup], share: float) -> float:
     return share * sum(index_time(MIKRON.machine, np.zeros(2), turn) for turn in turns)
 
 
-def told(name: str, passes: Sequence[Stretch], share: float) -> None:
+def told(name: str, passes: Sequence[PassSegment], share: float) -> None:
     """Print a table beside the paper's."""
     print(f"\n{name}: {round(len(passes) * share)} passes")
     rows = strategies(passes, share)
@@ -120,7 +120,7 @@ def main() -> None:
     machine = MIKRON.machine
     print("Table 2 (printed .87 3.6 8.7 / .74 4.4 7.4 / .87 3.6 8.7):")
     for level in Level:
-        levels = preferred(machine, level)[1] / 1000
+        levels = preferred_direction(machine, level)[1] / 1000
         print(f"    {level.name.lower():13}", " ".join(f"{value:7.4f}" for value in levels))
     feeds = {"(1, 1, 1)": (1, 1, 1), "(1, 0, 0)": (1, 0, 0), "(0, 0, 1)": (0, 0, 1)}
     for name, feed in feeds.items():

@@ -10,14 +10,14 @@ import numpy as np
 
 from toolaxis.job.planning.edit_axis import try_axis
 from toolaxis.job.planning.pipeline import plan
-from toolaxis.job.planning.timing import feeds_of, timed
+from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.feed_polytopes import Level
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.kinematic_setup import Stretch, common_feed, reached
+from toolaxis.search.kinematic_setup import PassSegment, common_feed, reach_along_feed
 from toolaxis.search.machine_limits import mounting_of
-from toolaxis.search.time_estimate import Pace, known_machine
+from toolaxis.search.time_estimate import TimeEstimate, require_machine_limits
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FACES = ("freeform", "saddle", "waves", "biquintic", "hyperbolic_paraboloid")
@@ -27,15 +27,15 @@ TOOL, SCALLOP, FEED = "torus:12x1", 0.02, 6000.0
 def by_jerk(made: Plan) -> Operation:
     """The first operation with the free axis of most jerk along the mean feed; the next one where that is refused."""
     op = made.operations[0]
-    mounting, found = known_machine(mounting_of(made.machine)), op.orientation.map
+    mounting, found = require_machine_limits(mounting_of(made.machine)), op.orientation.map
     assert found is not None
     axes = found.axis[found.reason == 0]
     rotary = np.array([mounting.solutions(axis)[0] for axis in axes])
     rows = []
     for k, feed in enumerate(FEEDS):
-        lines = Pace(op.face, made.tool, mounting, feeds_of(made.inputs)).lines[k]
-        along = common_feed([Stretch(line.middles, line.normals) for line in lines])
-        rows += [(value, i, feed) for i, value in enumerate(reached(mounting, Level.JERK, along, rotary))]
+        lines = TimeEstimate(op.face, made.tool, mounting, feeds_of(made.inputs)).lines[k]
+        along = common_feed([PassSegment(line.middles, line.normals) for line in lines])
+        rows += [(value, i, feed) for i, value in enumerate(reach_along_feed(mounting, Level.JERK, along, rotary))]
     for _, i, feed in sorted(rows, key=lambda row: -row[0])[:12]:
         tried = try_axis(made, op, axes[i], feed)
         if tried.done:
@@ -51,8 +51,8 @@ def main() -> None:
         wide, fast = (plan(EXAMPLES / f"{name}.step", TOOL, SCALLOP, machine="mikron-ucp-710", feedrate=FEED,
                            objective=objective) for objective in ("length", "time"))
         strong = by_jerk(wide)
-        jerky = timed(Plan(wide.part, wide.tool, wide.inputs, (strong,), wide.obstacles, wide.datum, wide.outcome,
-                           machine=wide.machine))
+        jerky = add_times(Plan(wide.part, wide.tool, wide.inputs, (strong,), wide.obstacles, wide.datum, wide.outcome,
+                               machine=wide.machine))
         told = [f"{made.length:7.0f} mm {made.seconds:7.1f} s" for made in (wide, jerky, fast)]
         saved = [100 * (1 - fast.seconds / made.seconds) for made in (wide, jerky)]
         print(f"{name:22} {told[0]:>22} {told[1]:>22} {told[2]:>22}   {saved[0]:6.1f} % {saved[1]:6.1f} %", flush=True)

@@ -23,16 +23,16 @@ from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.roughness.feasible_area import critical_curvature, least_lean
-from toolaxis.strategies.roughness.paper_iteration import pinned
-from toolaxis.strategies.roughness.pass_constraints import Lane, Wish, followed
+from toolaxis.strategies.roughness.paper_iteration import iterate_as_published
+from toolaxis.strategies.roughness.pass_constraints import OrientationRequirements, PassConstraints, spline_along_axes
 from toolaxis.strategies.roughness.passes import spots
 from toolaxis.strategies.roughness.pictures import front_picture
 from toolaxis.strategies.roughness.plan import constant_lead
 from toolaxis.strategies.roughness.rotary_spline import even_knots, smoothest
 from toolaxis.strategies.roughness.roughness import arithmetic_roughness, step_of_roughness
-from toolaxis.strategies.roughness.search import NOMINAL, Multiscale
-from toolaxis.strategies.roughness.section_width import expected_widths, section_parameters, section_points
-from toolaxis.strategies.roughness.smoothing import smoothed
+from toolaxis.strategies.roughness.search import NOMINAL, RoughnessSearch
+from toolaxis.strategies.roughness.section_width import expect_widths, section_parameters, section_points
+from toolaxis.strategies.roughness.smoothing import smooth_axes
 from toolaxis.verify.material_removal import removal
 
 EXAMPLES, OUT = (Path(__file__).parents[1] / name for name in ("examples", "out"))
@@ -43,7 +43,7 @@ LEAST = (2.1529, 2.6, 2.8, 2.9, 3.0)
 
 def numbers() -> None:
     """What the paper's formulas come to, and how exactly the borders and constraints are met."""
-    low, high = expected_widths(TOOL, NOMINAL, H)
+    low, high = expect_widths(TOOL, NOMINAL, H)
     print(f"expected strip width, R 5, r 3, 20 deg, h = 0.1 mm: {low:.4f} to {high:.4f} mm (2.1529, 3.1529)")
     print(f"Ra 1.6 um at passes {float(step_of_roughness(TOOL, RA, NOMINAL)):.5f} mm apart on a plane (0.66434)")
     rng = np.random.default_rng(0)
@@ -70,7 +70,7 @@ def region() -> ta.Face:
     return ta.Face(face.surface, (np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]]),), face.flip, face.number)
 
 
-def laid(search: Multiscale) -> Layout:
+def laid(search: RoughnessSearch) -> Layout:
     """Passes on which Sturz milling has the wanted mean Ra."""
     height = 1.2 * search.height
     for _ in range(3):
@@ -114,18 +114,18 @@ def row(title: str, widths: np.ndarray, ra: np.ndarray, judged: np.ndarray | Non
           f"{int((ra > RA).sum()):5d} {cost:9.4f} {taken:6.0f}{seen}", flush=True)
 
 
-def paper_loop(search: Multiscale, placed: Layout, wish: Wish) -> str:
+def paper_loop(search: RoughnessSearch, placed: Layout, wish: OrientationRequirements) -> str:
     """The loop of the paper on all passes: its sum and ours with the same ends and coefficients."""
     a0, a1, _, _ = placed.chart.bounds
     sums, failed = np.zeros(2), 0
     for piece in placed.pieces[::6]:
         lane = search.lane(piece, "u", (placed.steps, a0, a1), wish)
         try:
-            loop = pinned(lane, NOMINAL)
+            loop = iterate_as_published(lane, NOMINAL)
         except ToolAxisError:
             failed += 1
             continue
-        ours = smoothed(loop.lane, loop.spline, loop.spline.angles(lane.places[[0, -1]]))
+        ours = smooth_axes(loop.lane, loop.spline, loop.spline.angles(lane.places[[0, -1]]))
         sums += loop.cost, ours.cost if ours.kept else np.inf
     return (f"every sixth pass, ends at 20 deg: sum {sums[0]:.4f} by the paper's loop, {sums[1]:.4f} with the "
             f"conditions themselves; the loop found nothing on {failed}")
@@ -136,7 +136,7 @@ def main() -> None:
     numbers()
     face = region()
     job = task(face, TOOL, H, Mounting(ta.load_machine("bc-table-table")), tolerance=GOUGE)
-    search = Multiscale(job, RA, FEED)
+    search = RoughnessSearch(job, RA, FEED)
     placed = laid(search)
     uv = spots(face, "u", LENGTH)
     cut, widths, ra = constant_lead(search, placed, NOMINAL)
@@ -151,7 +151,7 @@ def main() -> None:
     for low in LEAST:
         began = time.perf_counter()
         try:
-            found = search.along(placed, Wish(H, (low, high), RA, search.wish.leans))
+            found = search.along(placed, OrientationRequirements(H, (low, high), RA, search.wish.leans))
         except ToolAxisError as reason:
             print(f"{f'strips of {low} mm at least':34} none: {reason}", flush=True)
             continue
@@ -162,12 +162,12 @@ def main() -> None:
     OUT.mkdir(exist_ok=True)
     front_picture(front, 1000 * RA).savefig(OUT / "multiscale-front.png", dpi=110)
     print(f"the front is drawn in {OUT / 'multiscale-front.png'}")
-    print(paper_loop(search, placed, Wish(H, (LEAST[2], high), 1.0, search.wish.leans)))
+    print(paper_loop(search, placed, OrientationRequirements(H, (LEAST[2], high), 1.0, search.wish.leans)))
 
 
-def lane_cost(lane: Lane, cut: LeadCut) -> float:
+def lane_cost(lane: PassConstraints, cut: LeadCut) -> float:
     """Sum of squared angular velocities of a constant lead along a pass, (rad/s)^2."""
-    return followed(lane, cut.axes(lane.face, lane.uv)).cost(lane.places, lane.durations)
+    return spline_along_axes(lane, cut.axes(lane.face, lane.uv)).cost(lane.places, lane.durations)
 
 
 def short() -> None:

@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 from benchmarks._bounded import Bounds, Ran, python, run
 from benchmarks._faces import last_reasons, outcomes, why_stopped
-from benchmarks._rack import Held, chosen, given
+from benchmarks._rack import RackTool, chosen, given
 
 FOLDER = Path(os.environ.get("TOOLAXIS_SHARED", Path(__file__).resolve().parents[2] / "shared")) / "parts"
 ENDINGS = (".step", ".stp")
@@ -159,7 +159,7 @@ def _numbers(asked: argparse.Namespace, name: str, sculptured: Mapping[int, floa
     return sorted(sorted(sculptured, key=lambda number: draws[number])[:asked.sample])
 
 
-def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, float], tool: Held,
+def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, float], tool: RackTool,
                         where: tuple[Bounds, Path]) -> list[dict[str, Any]]:
     bounds, place = where
     folder, spec = place / "plan", tool.name

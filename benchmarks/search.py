@@ -19,10 +19,10 @@ from benchmarks._papers import GOUGE
 import toolaxis as ta
 from toolaxis.plan.orientation import REASONS
 from toolaxis.search.direction_grid import spiral
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.search.hemisphere import frame_of, search
-from toolaxis.search.local_search import Candidate
+from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.sectors import mean_normal, roman_axis, sectors
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -33,7 +33,7 @@ SEEDS = ((0, 1.5), (0, 3.0), (1, 2.5), (4, 2.0))
 
 
 @dataclass(frozen=True)
-class Row:
+class SearchRow:
     """One line of the table: cutting length by exact count, mm (inf where nothing is free), and what it took."""
 
     method: str
@@ -59,45 +59,46 @@ def faces() -> dict[str, Callable[[], ta.Face]]:
     return made
 
 
-def first_proven(job: Task, found: list[Candidate]) -> Candidate | None:
+def first_proven(job: FaceProblem, found: list[CountedAxis]) -> CountedAxis | None:
     """The best candidate that the proof form accepts."""
     return next((one for one in found if job.feasibility.witness(one.axis) is None), None)
 
 
-def by_search(job: Task, name: str, method: Callable[[Ledger], list[Candidate]]) -> Row:
+def by_search(job: FaceProblem, name: str, method: Callable[[AxisTable], list[CountedAxis]]) -> SearchRow:
     """One of the two searches, with the proof form on its answer."""
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     start = time.perf_counter()
     best = first_proven(job, method(ledger))
     spent = time.perf_counter() - start
-    return Row(name, np.inf if best is None else best.value, ledger.evaluations, spent,
-               "nothing free" if best is None else f"{ledger.counts} counts")
+    return SearchRow(name, np.inf if best is None else best.value, ledger.evaluations, spent,
+                     "nothing free" if best is None else f"{ledger.counts} counts")
 
 
-def brute_force(job: Task, spacing: float, full: bool) -> Row:
+def brute_force(job: FaceProblem, spacing: float, full: bool) -> SearchRow:
     """Every axis of a grid; the best that the proof form accepts."""
     start = time.perf_counter()
     grid = spiral(frame_of(job.feasibility.normals), spacing)
     found = least_length(job.feasibility, job.worth, grid, full)
     spent = time.perf_counter() - start
     audit(job.worth, found)
-    return Row("brute force", found.length, found.visible, spent,
-               f"of {len(grid)}; {found.counted} counts, {found.audited} more: count over bound >= {found.lowest:.3f}")
+    return SearchRow("brute force", found.length, found.visible, spent,
+                     f"of {len(grid)}; {found.counted} counts, {found.audited} more: "
+                     f"count over bound >= {found.lowest:.3f}")
 
 
-def baseline(job: Task, name: str, rule: Callable[[Ledger], np.ndarray]) -> Row:
+def baseline(job: FaceProblem, name: str, rule: Callable[[AxisTable], np.ndarray]) -> SearchRow:
     """A rule that gives one axis: its value where the proof form accepts it, else the reason why not."""
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     start = time.perf_counter()
     axis = rule(ledger)
     witness = job.feasibility.witness(axis)
     value = np.inf if witness else min(job.worth.counted(axis, feed)[1] for feed in "uv")
     spent = time.perf_counter() - start
     note = "" if witness is None else f"refused: {REASONS[witness.reason]}"
-    return Row(name, value, ledger.evaluations + 2, spent, note)
+    return SearchRow(name, value, ledger.evaluations + 2, spent, note)
 
 
-def compare(face: ta.Face, spacing: float, full: bool) -> list[Row]:
+def compare(face: ta.Face, spacing: float, full: bool) -> list[SearchRow]:
     """All methods on one face."""
     job = task(face, TOOL, SCALLOP, tolerance=GOUGE)
     by_search(job, "warm-up", search)
@@ -106,7 +107,7 @@ def compare(face: ta.Face, spacing: float, full: bool) -> list[Row]:
             baseline(job, "mean normal", mean_normal)]
 
 
-def show(name: str, rows: list[Row]) -> None:
+def show(name: str, rows: list[SearchRow]) -> None:
     """Print one face's lines."""
     ours, paper, dense = rows[:3]
     for row in rows:

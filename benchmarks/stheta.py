@@ -24,11 +24,11 @@ from toolaxis.machine.library import load_machine
 from toolaxis.numeric.corner_rounding import corner
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.joining.smooth_skins import join
-from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.layers import along_blade
 from toolaxis.strategies.blade.plan import blade
 from toolaxis.strategies.blade.reschedule import swing_of_path
-from toolaxis.strategies.blade.schedule import Layer, Scheduled, Swing, reschedule
+from toolaxis.strategies.blade.schedule import Layer, ScheduledLayer, SwivelAxis, reschedule
 from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.tools.tool import Tool
 
@@ -40,7 +40,7 @@ MACHINE = load_machine("four-axis-a")
 EXAMPLE = Path(__file__).parents[1] / "examples" / "blisk.step"
 #: The part stands with its z along X.
 TURN = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-UP = Swing(np.array([0.0, 0.0, 1.0]))
+UP = SwivelAxis(np.array([0.0, 0.0, 1.0]))
 EXACT = ((5.80323, 1.160646), (7.976613, 1.595323), (11.650766, 3.238075), (13.09737, 4.323028))
 
 
@@ -58,7 +58,7 @@ def layers(name: str, count: int = LAYERS) -> list[Layer]:
     return made
 
 
-def path(found: list[Scheduled], theta: list[Array], count: int) -> tuple[ToolPath, Array]:
+def path(found: list[ScheduledLayer], theta: list[Array], count: int) -> tuple[ToolPath, Array]:
     """A path over layers with tool angles, and the way of its cutter centres."""
     tips, axes, ways = [], [], []
     for k, (one, angle) in enumerate(zip(found, theta, strict=True)):
@@ -74,18 +74,18 @@ def path(found: list[Scheduled], theta: list[Array], count: int) -> tuple[ToolPa
     return ToolPath(cl, cl, axis, axis, np.zeros(len(cl), dtype=np.int8), np.array([0, len(cl)])), np.concatenate(ways)
 
 
-def angles(kind: str, found: list[Scheduled], count: int) -> list[Array]:
+def angles(kind: str, found: list[ScheduledLayer], count: int) -> list[Array]:
     """Tool angles of layers at even places."""
     rows = []
     for one in found:
         s = np.linspace(0, one.section.length, count)
         smooth = SmoothSection(one.section)
-        rows.append(one.curve.at(s)[0] if kind == "curve" else unscheduled(smooth, s) if kind == "unscheduled" else
+        rows.append(one.curve.at(s)[0] if kind == "curve" else constant_angles(smooth, s) if kind == "unscheduled" else
                     by_quaternions(smooth, s))
     return rows
 
 
-def hits(one: Scheduled, theta: Array) -> int:
+def hits(one: ScheduledLayer, theta: Array) -> int:
     """Points of a layer at which the tool meets the section, by brute force over all its edges."""
     a, b = one.section.points[:-1], one.section.points[1:]
     way = np.column_stack([np.cos(theta), np.sin(theta)])[:, None]
@@ -97,14 +97,14 @@ def hits(one: Scheduled, theta: Array) -> int:
     return int(((t > 1e-6) & (u > 0) & (u < 1)).any(axis=1).sum())
 
 
-def motion(found: list[Scheduled], kind: str) -> AxisMotion:
+def motion(found: list[ScheduledLayer], kind: str) -> AxisMotion:
     """What the axes do on the middle layer."""
     middle = found[len(found) // 2:len(found) // 2 + 1]
     made, way = path(middle, angles(kind, middle, FINE), FINE)
     return axis_motion(MACHINE, made, way, SPEED, TURN)
 
 
-def seconds(found: list[Scheduled], kind: str) -> float:
+def seconds(found: list[ScheduledLayer], kind: str) -> float:
     """Jerk-limited time of some layers in the middle."""
     first = (len(found) - TIMED) // 2
     some = found[first:first + TIMED]

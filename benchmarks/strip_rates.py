@@ -17,7 +17,7 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.half_widths import step_half_widths
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy, second_order_many_axes
 from toolaxis.contact.strip.width import (
-    _checked,
+    _check_inputs,
     contact_rows,
     step_widths,
     step_widths_many_axes,
@@ -63,7 +63,7 @@ def rows() -> list[tuple[str, str, float, float]]:
         tool = Tool.parse(name)
         few = uv[:100]
         cutter, out = cutter_numbers(tool, SCALLOP, 0.0), np.empty((len(axes), len(few)))
-        geometry, sizes = _checked(face, tool, SCALLOP, 0.0)
+        geometry, sizes = _check_inputs(face, tool, SCALLOP, 0.0)
         contacts, same = contact_rows(few, "u", False), np.repeat(axis, len(few), axis=0)
         forms = contact_forms(face, few, "u", True)
         calls: list[tuple[str, int, Callable[[], object]]] = [
@@ -86,7 +86,7 @@ def jobs() -> dict[str, tuple[Callable[..., None], tuple[Any, ...], np.ndarray]]
     """Kernels with what they take and where they write, 200 axes at 5 contacts; their operations are counted too."""
     face, tool, axes = patch(), Tool.parse("torus:12x1"), cone(200, 0.35, 0.7)
     uv, cutter = np.random.default_rng(3).uniform(0.1, 0.9, (5, 2)), cutter_numbers(tool, SCALLOP, 0.0)
-    geometry, sizes = _checked(face, tool, SCALLOP, 0.0)
+    geometry, sizes = _check_inputs(face, tool, SCALLOP, 0.0)
     points, nodes, _ = _section.sections(face, uv, cutter, SCALLOP)
     pairs = np.empty((len(axes), len(uv), 2))
     return {

@@ -34,21 +34,21 @@ from toolaxis.feed.moving_axis_time import five_axis_motion
 from toolaxis.machine.library import load_machine
 from toolaxis.report.figures.plots import GREY, VERMILION, bare, cutting_lines, figure
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import (
     STEEPEST,
     circle_strip_width,
-    matched_lead,
+    match_lead,
     settle,
     two_point_lead,
 )
-from toolaxis.strategies.two_point.inputs import Work
-from toolaxis.strategies.two_point.search import PROBES, TRIED, gouging, linked, told
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
+from toolaxis.strategies.two_point.search import PROBES, TRIED, add_links, describe_contacts, gouging
 from toolaxis.strategies.two_point.strips import lay_strips, nodes, strip
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task as Judged
+from toolaxis.verify.task import VerificationTask as Judged
 from toolaxis.verify.verdict import OperationVerdict, judge
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "biquintic.json"
@@ -80,7 +80,7 @@ def formula() -> None:
     """Leans and widths of the formula, and the least radius of the sample surface."""
     print(f"R = {R:g}, d = {D} mm: one contact, two contacts (deg), widths (mm), ratio")
     for rho in (40.0, 60.0, 100.0, 240.0):
-        one, two = matched_lead(R, rho), two_point_lead(R, rho, D)
+        one, two = match_lead(R, rho), two_point_lead(R, rho, D)
         w1, w2 = circle_strip_width(R, rho, D, one, 0.0), circle_strip_width(R, rho, D, two, D)
         print(f"  rho {rho:5.0f}: {np.degrees(one):8.4f} {np.degrees(two):8.4f} {w1:8.4f} {w2:8.4f} {w2 / w1:7.4f}")
     sample = face()
@@ -103,10 +103,10 @@ def reckoned() -> None:
     for two in (False, True):
         narrowest = []
         for step in place:
-            work = Work(sample, TOOL, D, allowance=A, limits=LIMITS)
+            work = TwoPointInputs(sample, TOOL, D, allowance=A, limits=LIMITS)
             setting = work.setting(np.column_stack([place, np.full(41, step)]), 1)
             rho = 1 / setting.curvatures()[1]
-            lead = two_point_lead(R, rho, D) if two else matched_lead(R, rho)
+            lead = two_point_lead(R, rho, D) if two else match_lead(R, rho)
             pace = np.linalg.norm(sample.evaluate(setting.uv).sv, axis=1)
             narrowest.append((circle_strip_width(R, rho, D, lead, D if two else 0.0) / pace).min())
         counts.append(float(np.mean(1 / np.array(narrowest))))
@@ -114,7 +114,7 @@ def reckoned() -> None:
           f"{counts[0] / counts[1]:.3f} (printed: 29, 21, 1.38)")
 
 
-def least_constant_lead(work: Work, leaning: str) -> float:
+def least_constant_lead(work: TwoPointInputs, leaning: str) -> float:
     """The least constant lead at which no ring gouges at a grid of contacts on passes and beyond their ends, rad."""
     *_, s0, s1 = work.span
     sense = 1 if leaning == "ahead" else -1
@@ -132,7 +132,7 @@ def judged(path: ToolPath, sample: Face, spacing: float = FINE) -> OperationVerd
                         tolerance=LIMITS), spacing=spacing, threads=1)
 
 
-def reckoned_passes(work: Work, leaning: str) -> float:
+def reckoned_passes(work: TwoPointInputs, leaning: str) -> float:
     """Passes that three strips tell of."""
     *_, s0, s1 = work.span
     wide = [strip(work, s0 + share * (s1 - s0), leaning).halves.sum(axis=1) for share in PROBES]
@@ -140,7 +140,7 @@ def reckoned_passes(work: Work, leaning: str) -> float:
 
 
 @dataclass(frozen=True)
-class Row:
+class TwoPointRow:
     """One line of the table, for the picture."""
 
     title: str
@@ -149,13 +149,14 @@ class Row:
     proven: bool
 
 
-def row(title: str, job: Task, work: Work, leaning: str, proof: bool = False, must: bool = False) -> Row | None:
+def row(title: str, job: FaceProblem, work: TwoPointInputs, leaning: str, proof: bool = False,
+        must: bool = False) -> TwoPointRow | None:
     """One line of the table; where it must be proven and is not, a short one without the judge's word."""
     begun = time.perf_counter()
     where = f"{work.feed}, {leaning}"
     try:
         strips = lay_strips(work, leaning)
-        path = linked(job, work, strips)
+        path = add_links(job, work, strips)
     except ToolAxisError as reason:
         print(f"{title:34} {where:9} none: {reason}", flush=True)
         return None
@@ -171,8 +172,8 @@ def row(title: str, job: Task, work: Work, leaning: str, proof: bool = False, mu
     print(f"{title:34} {where:9} {path.passes:6d} {cut:8.0f} {seconds:>8} {verdict.scallop_max:8.4f} "
           f"{100 * verdict.share_within:7.2f} {deep:>9} {proven:>7} {taken:7.1f}{crawls}", flush=True)
     if proof and work.posture == "two-point":
-        print("   " + "; ".join(told(work, strips)), flush=True)
-    return Row(title, path, verdict, proven == "yes")
+        print("   " + "; ".join(describe_contacts(work, strips)), flush=True)
+    return TwoPointRow(title, path, verdict, proven == "yes")
 
 
 def timed(path: ToolPath) -> tuple[str, str]:
@@ -201,31 +202,31 @@ def short() -> None:
     paper(task(face(), TOOL, D, allowance=A, tolerance=GOUGE))
 
 
-def paper(job: Task) -> list[Row]:
+def paper(job: FaceProblem) -> list[TwoPointRow]:
     """Curvature matching and the formula of two contacts."""
     rows = [printed(job, posture, title) for posture, title in PRINTED]
     return [one for one in rows if one is not None]
 
 
-def printed(job: Task, posture: str, title: str) -> Row | None:
+def printed(job: FaceProblem, posture: str, title: str) -> TwoPointRow | None:
     """One of the paper's postures."""
-    return row(title, job, Work(job.worth.face, TOOL, D, "u", posture, allowance=A, limits=LIMITS), "ahead")
+    return row(title, job, TwoPointInputs(job.worth.face, TOOL, D, "u", posture, allowance=A, limits=LIMITS), "ahead")
 
 
-def feeds(job: Task) -> tuple[str, ...]:
+def feeds(job: FaceProblem) -> tuple[str, ...]:
     """Feeds that are looked at: along which passes with one contact are not far more than along the other."""
-    works = [Work(job.worth.face, TOOL, D, feed, "one-point", allowance=A, limits=LIMITS) for feed in FEEDS]
+    works = [TwoPointInputs(job.worth.face, TOOL, D, feed, "one-point", allowance=A, limits=LIMITS) for feed in FEEDS]
     counts = {work.feed: min(reckoned_passes(work, leaning) for leaning in TRIED) for work in works}
     told_of = ", ".join(f"{count:.1f} along {feed}" for feed, count in counts.items())
     print(f"passes reckoned with one contact: {told_of}")
     return tuple(feed for feed, count in counts.items() if count <= MORE * min(counts.values()))
 
 
-def fewest(title: str, job: Task, along: tuple[str, ...], posture: str, share: float) -> Row | None:
+def fewest(title: str, job: FaceProblem, along: tuple[str, ...], posture: str, share: float) -> TwoPointRow | None:
     """A gouge-free posture laid the way that is reckoned to take the fewest passes."""
     found = []
     for feed in along:
-        work = Work(job.worth.face, TOOL, D, feed, posture, allowance=A, limits=LIMITS, share=share)
+        work = TwoPointInputs(job.worth.face, TOOL, D, feed, posture, allowance=A, limits=LIMITS, share=share)
         for leaning in TRIED if posture != "sturz" else TRIED[:2]:
             own = work if posture != "sturz" else replace(work, lead=least_constant_lead(work, leaning))
             found.append((reckoned_passes(own, leaning), f"{feed}, {leaning}", own, leaning))
@@ -237,7 +238,7 @@ def fewest(title: str, job: Task, along: tuple[str, ...], posture: str, share: f
                 None)
 
 
-def steeper(title: str, job: Task, work: Work, leaning: str) -> Row | None:
+def steeper(title: str, job: FaceProblem, work: TwoPointInputs, leaning: str) -> TwoPointRow | None:
     """A constant lead, half a degree more at a time until the whole path is proven: contacts between those looked at
     may ask for more."""
     while True:
@@ -248,7 +249,7 @@ def steeper(title: str, job: Task, work: Work, leaning: str) -> Row | None:
         work = replace(work, lead=min(work.lead + np.radians(0.5), STEEPEST))
 
 
-def apart(make: Callable[..., Row | None], *given: object) -> tuple[str, Row | None]:
+def apart(make: Callable[..., TwoPointRow | None], *given: object) -> tuple[str, TwoPointRow | None]:
     """What a row prints, and the row: made in a process of its own."""
     with redirect_stdout(StringIO()) as text:
         made = make(*given)
@@ -262,7 +263,7 @@ def main() -> None:
     job = task(face(), TOOL, D, allowance=A, tolerance=GOUGE)
     along = feeds(job)
     head()
-    rows: list[Row | None] = []
+    rows: list[TwoPointRow | None] = []
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         # Two contacts take longest and go first.
         free = [pool.submit(apart, fewest, title, job, along, posture, share) for title, posture, share in COMPARED]
@@ -280,7 +281,7 @@ def main() -> None:
     print(f"deviations are drawn in {OUT / 'two-point-deviations.png'}")
 
 
-def deviations(rows: list[Row]) -> Figure:
+def deviations(rows: list[TwoPointRow]) -> Figure:
     """What each posture leaves and takes too much, seen from above the surface; beside [jang2021] Fig. 10."""
     columns = 3
     made = figure(4.2 * columns, 3.1 * -(-len(rows) // columns))

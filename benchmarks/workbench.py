@@ -49,7 +49,7 @@ def measured(path, tool, scallop, regions):
     import FreeCAD
     import FreeCADGui
     import Import
-    from freecad.toolaxis.document.inputs import Inputs
+    from freecad.toolaxis.document.inputs import JobInputs
     from freecad.toolaxis.document.kinds import is_operation
     from freecad.toolaxis.services import api
     from freecad.toolaxis.services.write_results import apply
@@ -67,7 +67,7 @@ def measured(path, tool, scallop, regions):
     from freecad.toolaxis.document.read_shapes import sculptured
 
     faces = tuple((part, name) for name in sculptured(part))
-    inputs = Inputs(faces, tool, scallop=scallop, regions=regions, **SLENDER)
+    inputs = JobInputs(faces, tool, scallop=scallop, regions=regions, **SLENDER)
     begin = time.perf_counter()
     plan = api.task(inputs)(NO_PROGRESS)
     yield "to plan", f"{time.perf_counter() - begin:.1f} s"

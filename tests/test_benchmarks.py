@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from benchmarks._bounded import Bounds, Line, Ran, python, run
+from benchmarks._bounded import Bounds, MessageLine, Ran, python, run
 from benchmarks._faces import kind_of, outcomes
 from benchmarks._rack import chosen, given
 
@@ -121,7 +121,7 @@ def test_open_faces_are_grouped_by_what_most_axes_break() -> None:
 
 
 def test_faces_lost_with_another_ones_exception_are_told_from_it() -> None:
-    lines = tuple(Line(cpu, text) for cpu, text in (
+    lines = tuple(MessageLine(cpu, text) for cpu, text in (
         (1.0, "looking for blades"), (2.0, "face 3 (1 of 3): search for the axis"), (5.0, "face 3 (1 of 3): proof"),
         (6.0, "face 7b (2 of 3): axes"), (9.0, "Traceback (most recent call last):"),
         (9.0, '  File "proof.py", line 73'), (9.0, "IndexError: index 0")))

@@ -12,7 +12,7 @@
 import build123d as bd
 
 from toolaxis.cad.ocp.export import compound_of
-from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, Piece, pieces, rest_of
+from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, OperationShapes, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.plan.plan import Plan
 
@@ -90,7 +90,7 @@ def compound(plan: Plan, part: "bd.Shape | None" = None) -> bd.Compound:
     return bd.Compound(label="plan", children=[body, *sub_surfaces(plan).values(), *operations])
 
 
-def _operation(piece: Piece) -> bd.Compound:
+def _operation(piece: OperationShapes) -> bd.Compound:
     """Passes and axis of an operation, placed at its work coordinate system."""
     lines = bd.Compound(piece.passes(local=True), label="passes", color=bd.Color(*LINES))
     axis = bd.Edge(piece.axis(), label="axis", color=bd.Color(*AXIS))
@@ -99,7 +99,7 @@ def _operation(piece: Piece) -> bd.Compound:
     return made
 
 
-def _plane(piece: Piece) -> bd.Plane:
+def _plane(piece: OperationShapes) -> bd.Plane:
     frame = piece.operation.frame
     assert frame is not None
     origin, x, z = (tuple(map(float, row)) for row in (frame.origin, frame.x, frame.z))

@@ -15,7 +15,7 @@ from typing import Any
 
 import cadquery as cq
 
-from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, Piece, piece_of, pieces, rest_of
+from toolaxis.cad.ocp.plan_shapes import AXIS, LINES, PART, OperationShapes, piece_of, pieces, rest_of
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.planning.pipeline import plan as planned
 from toolaxis.plan.plan import Plan
@@ -96,7 +96,7 @@ def assembly(plan: Plan, part: "cq.Workplane | cq.Shape | None" = None) -> cq.As
     return made
 
 
-def _operation(piece: Piece) -> cq.Assembly:
+def _operation(piece: OperationShapes) -> cq.Assembly:
     """Passes and axis of an operation in its work coordinates."""
     made = cq.Assembly(name=piece.name)
     made.add(cq.Compound(piece.passes(local=True)), name="passes", color=cq.Color(*LINES))
@@ -104,7 +104,7 @@ def _operation(piece: Piece) -> cq.Assembly:
     return made
 
 
-def _plane(piece: Piece) -> cq.Plane:
+def _plane(piece: OperationShapes) -> cq.Plane:
     frame = piece.operation.frame
     assert frame is not None
     return cq.Plane(*(cq.Vector(*map(float, row)) for row in (frame.origin, frame.x, frame.z)))

@@ -92,7 +92,7 @@ def fault(reason: BaseException) -> Fault:
     What the program raises on purpose is told in its own words; a lack of memory with what helps against it.
     """
     written = "".join(traceback.format_exception(reason))
-    words = _shortened(str(reason))
+    words = _shorten_words(str(reason))
     if isinstance(reason, ToolAxisError):
         return Fault(f"failed: {words}", written)
     where = place_of(reason)
@@ -151,7 +151,7 @@ def _of_library(path: Path) -> bool:
     return path.is_relative_to(_PYTHON) or bool({"site-packages", "dist-packages"} & set(path.parts))
 
 
-def _shortened(words: str) -> str:
+def _shorten_words(words: str) -> str:
     """An exception's words in one line, not too long."""
     line = " ".join(words.split()).rstrip(".")
     return line if len(line) <= _MOST else f"{line[:_MOST]} ..."

@@ -91,7 +91,7 @@ _HEARD: ContextVar[Progress] = ContextVar("toolaxis_progress", default=NO_PROGRE
 
 
 @contextmanager
-def heard(progress: Progress) -> Iterator[None]:
+def activate_progress(progress: Progress) -> Iterator[None]:
     """Let loops deep inside, which are handed no progress, hear in this thread whether to stop.
 
     Parameters
@@ -111,12 +111,12 @@ def breathe() -> None:
     Raises
     ------
     Cancelled
-        When the progress that is `heard` in this thread says so.
+        When the progress that is `activate_progress` in this thread says so.
     """
     _HEARD.get().check()
 
 
-class Left(NamedTuple):
+class WorkLeft(NamedTuple):
     """What is left of the work.
 
     seconds : float;  of_all : bool, whether of all pieces, or of the present step alone.
@@ -174,7 +174,7 @@ class Remaining:
             self._since = now, share
         self._stage, self._total, self._share = stage, total, share
 
-    def left(self, now: float) -> Left | None:
+    def left(self, now: float) -> WorkLeft | None:
         """What is left, or None while nothing is known of it.
 
         Parameters
@@ -184,11 +184,11 @@ class Remaining:
         """
         seconds = self._left_of_pieces(now)
         if seconds is not None:
-            return Left(seconds, True)
+            return WorkLeft(seconds, True)
         begun, start = self._since
         if self._share - start < _KNOWN or now - begun < _LONG_ENOUGH:
             return None
-        return Left((now - begun) * (1.0 - self._share) / (self._share - start), False)
+        return WorkLeft((now - begun) * (1.0 - self._share) / (self._share - start), False)
 
     def _left_of_pieces(self, now: float) -> float | None:
         """Seconds that all pieces still take, as many at a time as now and as long as those that are finished took.

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 
-def named_files(kind: str, *suffixes: str) -> dict[str, Path]:
+def find_files(kind: str, *suffixes: str) -> dict[str, Path]:
     """Files of one kind by name: from resources of a clone or of an installed wheel.
 
     Parameters

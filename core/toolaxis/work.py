@@ -79,7 +79,7 @@ _SPENT: ContextVar[Budget | None] = ContextVar("toolaxis_work", default=None)
 
 
 @contextmanager
-def limited(budget: Budget) -> Iterator[Budget]:
+def limit_work(budget: Budget) -> Iterator[Budget]:
     """Charge what is done in this thread meanwhile to a budget.
 
     Parameters

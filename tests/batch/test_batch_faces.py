@@ -8,7 +8,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
-from toolaxis.batch.labour import carried_out
+from toolaxis.batch.labour import answer_task
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.output import verify as judge
 from toolaxis.shape.part import Part
@@ -26,7 +26,7 @@ def test_a_fault_in_planning(job: list[dict[str, object]], tmp_path: Path, monke
     witness = Feasibility.witness
     monkeypatch.setattr(Feasibility, "witness", lambda self, axis: witness(self, axis) if self.face.number != 2 else
                         1 // 0)
-    answer = carried_out(read_jobs(job)[0].task(), tmp_path, {})
+    answer = answer_task(read_jobs(job)[0].task(), tmp_path, {})
     assert answer.outcome == "incomplete" and "face 2: failed: ZeroDivisionError" in answer.reason
     document = json.loads(answer.files["plan.json"])
     assert [op["orientation"]["outcome"] for op in document["operations"]] == ["feasible", "failed"]
@@ -37,6 +37,6 @@ def test_a_fault_in_judging(job: list[dict[str, object]], tmp_path: Path, monkey
     whole = judge.measure
     monkeypatch.setattr(judge, "measure", lambda task, *rest: whole(task, *rest) if task.name == "op01-face1" else
                         1 // 0)
-    answer = carried_out(read_jobs(job)[0].task(), tmp_path, {})
+    answer = answer_task(read_jobs(job)[0].task(), tmp_path, {})
     assert answer.outcome == "incomplete" and "op02-face2: failed: ZeroDivisionError" in answer.reason
     assert [op["passed"] for op in json.loads(answer.files["verdict.json"])["operations"]] == [True, False]

@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-from toolaxis.batch.hand import Hand
-from toolaxis.batch.jobfile import Wanted, read_jobs
+from toolaxis.batch.hand import WorkerProcess
+from toolaxis.batch.jobfile import CheckedJob, read_jobs
 from toolaxis.batch.run import batch
-from toolaxis.batch.task import Task
+from toolaxis.batch.task import BatchTask
 
 Jobs = list[dict[str, Any]]
 Made = Callable[[int], Jobs]
@@ -45,14 +45,14 @@ def test_a_crash_a_hang_and_a_lack_of_memory_are_told_and_stop_nobody(domes: Mad
     jobs[0] |= {"name": "crash"}
     jobs[1] |= {**NEVER, "method": "sphere", "name": "hang", "timeout": 3}
     jobs[2] |= {"name": "memory", "memory": 60}
-    task = Wanted.task
+    task = CheckedJob.task
 
-    def spoilt(job: Wanted) -> Task:
+    def spoilt(job: CheckedJob) -> BatchTask:
         made = task(job)
         spoil = {"crash": Crash(), "garbled": Garbled()}
         return replace(made, options={"spoilt": spoil[job.name]}) if job.name in spoil else made
 
-    monkeypatch.setattr(Wanted, "task", spoilt)
+    monkeypatch.setattr(CheckedJob, "task", spoilt)
     told: list[str] = []
     made = batch(jobs, tmp_path / "out", workers=2, told=told.append)
     assert [(row.outcome, row.cause) for row in made.rows] == [
@@ -83,7 +83,7 @@ class Compile:
 def test_a_process_that_had_to_compile_does_the_job_again_with_what_is_on_disk(domes: Made, tmp_path: Path) -> None:
     pytest.importorskip("numba")
     (job,) = read_jobs(domes(1))
-    task, hand = job.task(), Hand(tmp_path)
+    task, hand = job.task(), WorkerProcess(tmp_path)
     try:
         for options, count in (({"compile": Compile(tmp_path / "mark")}, "xx"), ({"none": None}, "xx")):
             hand.give(replace(task, options=options))

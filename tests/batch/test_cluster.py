@@ -45,7 +45,7 @@ class Cluster:
         assert self.address, "the scheduler did not start"
         self.workers = [self._start(folder, "worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard",
                                     "--local-directory", str(folder / f"worker-{k}")) for k in range(2)]
-        with cluster_module.connected(self.address) as client:
+        with cluster_module.connect_to_scheduler(self.address) as client:
             assert until(lambda: len(client.nthreads()) == 2), "the workers did not start"
 
     @staticmethod
@@ -110,7 +110,7 @@ def test_what_does_not_answer_leaves_nothing_that_is_closed_while_python_collect
     gc.disable()
     try:
         for address in ("tcp://127.0.0.1:1", "nonsense://x", ""):
-            with pytest.raises(InvalidInput), cluster_module.connected(address):
+            with pytest.raises(InvalidInput), cluster_module.connect_to_scheduler(address):
                 pass
         left = {one.status for one in gc.get_objects() if issubclass(type(one), distributed.Client)}
         assert left <= {"closed"}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.batch.jobfile import KEYS, Wanted, read_jobs
+from toolaxis.batch.jobfile import KEYS, CheckedJob, read_jobs
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import tool_document
 
@@ -21,7 +21,7 @@ def here(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def read(folder: Path, text: str) -> tuple[Wanted, ...]:
+def read(folder: Path, text: str) -> tuple[CheckedJob, ...]:
     (folder / "jobs.toml").write_text(text)
     return read_jobs(folder / "jobs.toml")
 

@@ -11,7 +11,7 @@ import pytest
 
 from toolaxis.cad import load
 from toolaxis.cad.step import worker as transfer
-from toolaxis.cad.step.precheck import declared_unit, read_text
+from toolaxis.cad.step.precheck import find_declared_unit, read_text
 from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError
 
 pytest.importorskip("OCP")
@@ -203,7 +203,7 @@ def test_the_unit_is_told_by_the_text_too():
     for text, unit in [(context("SI_UNIT(.MILLI.,.METRE.)"), "millimetre"), (context("SI_UNIT($, .METRE.)"), "metre"),
                        (context("CONVERSION_BASED_UNIT('INCH',#3)"), "inch"), ("", "not declared"),
                        (context("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.CENTI.,.METRE.)"), "millimetre, centimetre")]:
-        assert declared_unit((angle + text).encode()) == unit
+        assert find_declared_unit((angle + text).encode()) == unit
 
 
 def test_a_kernel_of_another_release_is_told_and_not_blamed_on_the_file(monkeypatch, tmp_path):

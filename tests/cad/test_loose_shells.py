@@ -8,7 +8,7 @@ import pytest
 
 from toolaxis.cad import load
 from toolaxis.cad.shape_data import ShapeRecord
-from toolaxis.cad.step.faces import FaceOrder, numbered, transferred
+from toolaxis.cad.step.faces import FaceOrder, number_faces, warn_of_lost_faces
 from toolaxis.cad.step.links import plain
 from toolaxis.errors import InvalidInput
 
@@ -259,7 +259,7 @@ def test_helping_geometry_is_not_missed(tmp_path):
     (((5, 6),), [5, 9], [1, 3], {6: 2}),
 ])
 def test_faces_have_the_numbers_of_the_whole_file(lists, origins, made, missing):
-    found = numbered(FaceOrder((), lists), origins)
+    found = number_faces(FaceOrder((), lists), origins)
     assert (found.made, found.missing) == (made, missing)
 
 
@@ -268,7 +268,7 @@ def test_faces_have_the_numbers_of_the_whole_file(lists, origins, made, missing)
 ])
 def test_faces_that_the_kernel_has_split_are_found(copies, origins, split):
     order = FaceOrder((), ((5, 6, 7),))
-    found = transferred(ShapeRecord(), copies, order, numbered(order, origins), origins)
+    found = warn_of_lost_faces(ShapeRecord(), copies, order, number_faces(order, origins), origins)
     assert found.split == split and found.distinct == len(set(copies))
 
 

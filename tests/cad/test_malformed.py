@@ -324,10 +324,10 @@ def test_a_face_with_an_absurd_length_is_left_out_and_the_others_keep_their_numb
 def read(path):
     """The text of a file and what the kernel makes of it, before a part is made of that."""
     from toolaxis.cad.step.precheck import read_text
-    from toolaxis.cad.step.read import _transferred
+    from toolaxis.cad.step.read import _transfer
 
     text = read_text(path)
-    return text, _transferred(path, text, 60.0).record
+    return text, _transfer(path, text, 60.0).record
 
 
 def command(capsys, *words):

@@ -13,7 +13,7 @@ import pytest
 
 from toolaxis.cli import stopping
 from toolaxis.cli.main import main
-from toolaxis.cli.stopping import Ended, Stopping, writing
+from toolaxis.cli.stopping import Ended, SignalHearing, writing
 from toolaxis.job.files.plan_folder import read_plan
 from toolaxis.job.output.post import verdict_of
 
@@ -152,7 +152,7 @@ def test_what_fails_outside_of_a_face_is_told_in_a_sentence_too(sheet: Path, tmp
     def _fail(*_: object, **__: object) -> None:
         raise KeyError("planted")
 
-    monkeypatch.setattr("toolaxis.job.planning.pipeline.chosen_faces", _fail)
+    monkeypatch.setattr("toolaxis.job.planning.pipeline.choose_faces", _fail)
     assert main(["plan", str(sheet), *FAST, "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().err
     assert "Traceback" in said and said.splitlines()[-1].startswith("toolaxis: failed: KeyError: 'planted', at ")
@@ -164,7 +164,7 @@ def test_signals_close_together_are_one_and_a_later_one_ends(monkeypatch: pytest
     now = [100.0]
     monkeypatch.setattr(stopping.time, "monotonic", lambda: now[0])
     before = signal.getsignal(signal.SIGTERM)
-    with Stopping() as heard:
+    with SignalHearing() as heard:
         assert not heard.asked()
         for sign in (signal.SIGTERM, signal.SIGTERM, signal.SIGINT):
             os.kill(os.getpid(), sign)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from toolaxis.contact.clearance.ball_bound import ball_around, enclosing_gap, least_form
-from toolaxis.contact.clearance.ball_bound_numpy import Curved, enclosing_gap_numpy
-from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.ball_bound_numpy import CurvedCells, enclosing_gap_numpy
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, motions, segment_motions
 from toolaxis.contact.placement import place
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.bounding.bounding_tree import forest
@@ -96,7 +96,7 @@ def _cases(count, rng):
          - (at[:, 0]**2 * second[:, 0] + 2 * at[:, 0] * at[:, 1] * second[:, 1] + at[:, 1]**2 * second[:, 2]) / 2)
     c = np.where(rng.random((count, 1)) < 0.5, 0.0, 1.0) * size * 0.3 * (e1 + 0.05 * rng.normal(size=(count, 3)))
     bend = np.column_stack([second.reshape(count, 9), rest])
-    return Curved(w, axis, np.stack([a, b, c], axis=1), bend, piece)
+    return CurvedCells(w, axis, np.stack([a, b, c], axis=1), bend, piece)
 
 
 def _sampled(cells, k, rng):
@@ -162,6 +162,6 @@ def test_few_cells_decide(tool):
     uv = np.stack([np.linspace(0.1, 0.9, 240), np.full(240, 0.37)], axis=1)
     tips = place(face, tool, uv, axis)
     limit = np.array([[-0.002, -np.inf, -np.inf]])
-    assert np.median(judged(tree, tool, motions(tips, axis), limit).looked) < 80
-    assert np.median(judged(tree, tool, segment_motions(tips, axis), limit).looked) < 100
-    assert np.median(bounded(tree, tool, segment_motions(tips, axis), 0.0, 0.0003, limit).looked) < 140
+    assert np.median(keeps_limits(tree, tool, motions(tips, axis), limit).looked) < 80
+    assert np.median(keeps_limits(tree, tool, segment_motions(tips, axis), limit).looked) < 100
+    assert np.median(lower_bounds(tree, tool, segment_motions(tips, axis), 0.0, 0.0003, limit).looked) < 140

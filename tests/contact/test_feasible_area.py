@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.contact.clearance.gouge import gouge
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.feasible_area import (
     critical_curvature,
@@ -67,7 +67,7 @@ def test_a_cutter_hollowed_by_nothing_needs_the_flat_limit() -> None:
 
 
 def test_on_a_hollow_cylinder_the_border_is_where_the_solid_cutter_begins_to_gouge() -> None:
-    face = Face(Cylinder(20.0, (-1.2, 1.2), (0.0, 60.0)).nurbs(), flip=True)
+    face = Face(CylindricalSurface(20.0, (-1.2, 1.2), (0.0, 60.0)).nurbs(), flip=True)
     uv = face.grid(5, 5)[12:13]
     k, normal = face.curvature(uv), face.normal(uv)
     border = float(least_lean(TOOL, (k.k1, k.k2), np.pi / 2)[0])

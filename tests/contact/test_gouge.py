@@ -14,11 +14,11 @@ from toolaxis.contact.clearance.gouge import (
     segment_gouges,
     segment_penetration,
 )
-from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, motions, segment_motions
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -216,9 +216,9 @@ def test_plain_twin_says_the_same(tool, monkeypatch):
     tree, only = forest([face]), np.array([[0.0, -np.inf, -np.inf]])
 
     def ask():
-        return (bounded(tree, tool, motions(tips, axis), 0.0, RESOLUTION, only),
-                judged(tree, tool, motions(tips, axis), only - 0.002),
-                judged(tree, tool, segment_motions(tips[:3], axis[:2]), only - 0.002))
+        return (lower_bounds(tree, tool, motions(tips, axis), 0.0, RESOLUTION, only),
+                keeps_limits(tree, tool, motions(tips, axis), only - 0.002),
+                keeps_limits(tree, tool, segment_motions(tips[:3], axis[:2]), only - 0.002))
 
     one = ask()
     monkeypatch.setattr(distances._compiled, "available", False)
@@ -243,7 +243,7 @@ def test_bad_input():
 @pytest.mark.parametrize("swapped", [False, True])
 def test_a_ball_touches_the_pole_of_a_sphere_without_gouge(radius, swapped):
     """Derivatives vanish along the border that is the pole: their bounds have to as well."""
-    cap = Sphere(7.0, v_range=(0.3, np.pi / 2)).nurbs()
+    cap = SphericalSurface(7.0, v_range=(0.3, np.pi / 2)).nurbs()
     face = Face(cap.swapped(), flip=True) if swapped else Face(cap)
     (_, _), (v0, v1) = cap.domain
     uv = np.array([[2.0, v0 + share * (v1 - v0)] for share in (1.0, 1 - 1e-6, 1 - 1e-3, 0.99, 0.9)])

@@ -8,9 +8,9 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.collision.index_moves import Stop, hull_of, trouble_between, turning
-from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import MachineSurroundings, nearest_meeting
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.kinematics import forward
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -20,7 +20,7 @@ DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40)])
 
 
-def machine(top: float, *bodies: Body) -> Machine:
+def machine(top: float, *bodies: MachineBody) -> Machine:
     linear = tuple(LinearAxis(name, way, DRIVE, -900, top if name == "Z" else 900)
                    for name, way in zip("XYZ", np.eye(3), strict=True))
     table = (RotaryAxis("C", np.array([0, 0, 1.0]), np.zeros(3), DRIVE),
@@ -34,12 +34,12 @@ def plate(x: float, y: float, z: float) -> ta.Face:
 
 
 PLATE = plate(20, 20, 10)
-AROUND = Surroundings(TOOL, (forest((PLATE,)),), 1.0)
-TABLE = Body("table", "C", "box", np.array([[-50.0, -150, -40], [50, 150, 0]]))
-HEAD = Body("head", "Z", "cylinder", np.array([[0.0, 0, 0], [0, 0, 200]]), 40.0)
+AROUND = MachineSurroundings(TOOL, (forest((PLATE,)),), 1.0)
+TABLE = MachineBody("table", "C", "box", np.array([[-50.0, -150, -40], [50, 150, 0]]))
+HEAD = MachineBody("head", "Z", "cylinder", np.array([[0.0, 0, 0], [0, 0, 200]]), 40.0)
 
 
-def mounted(top: float, *bodies: Body) -> Mounting:
+def mounted(top: float, *bodies: MachineBody) -> Mounting:
     return Mounting(machine(top, *bodies), (0.0, 0.0, 0.0), TOOL.gauge_length)
 
 
@@ -55,7 +55,7 @@ def test_a_table_that_swings_up_to_the_tool(top: float, free: bool) -> None:
 
 def test_the_axes_may_turn_in_any_order() -> None:
     """At A 90 the plate's corner only comes up where C has not turned yet: no straight way from angles to angles is."""
-    long = Body("table", "C", "box", np.array([[-30.0, -200, -20], [30, 200, 0]]))
+    long = MachineBody("table", "C", "box", np.array([[-30.0, -200, -20], [30, 200, 0]]))
     top = 100 + 150.0
     way = ((0.0, 0.0), (radians(90), radians(90)))
     mounting = mounted(top, long, HEAD)
@@ -71,7 +71,7 @@ def tips(mounting: Mounting, rotary: np.ndarray, top: float) -> np.ndarray:
 def test_what_is_proven_clear_is_clear_wherever_the_axes_stand() -> None:
     """Random turns and heights: stations sampled in the whole rectangle of angles, by the check for standing axes."""
     rng, clear, met = np.random.default_rng(8), 0, 0
-    cradle = Body("cradle", "A", "box", np.array([[-160.0, -60, -90], [160, 60, -50]]))
+    cradle = MachineBody("cradle", "A", "box", np.array([[-160.0, -60, -90], [160, 60, -50]]))
     for _ in range(16):
         top = rng.uniform(150, 290)
         mounting = mounted(top, TABLE, cradle, HEAD)
@@ -91,12 +91,12 @@ def test_what_is_proven_clear_is_clear_wherever_the_axes_stand() -> None:
 
 def test_up_over_and_down() -> None:
     """A post beside the part stands in the way over, where X and Y may bend off; higher up it does not."""
-    wall = Body("post", "bed", "box", np.array([[60.0, -20, -50], [80, 20, 300]]))
+    wall = MachineBody("post", "bed", "box", np.array([[60.0, -20, -50], [80, 20, 300]]))
     mounting = mounted(350.0, TABLE, HEAD, wall)
     a, b = Stop(np.array([-15.0, 0, 40]), np.zeros(2)), Stop(np.array([25.0, 0, 40]), np.zeros(2))
     assert trouble_between(mounting, a, b, AROUND) != "", "the head is 40 mm wide"
     assert trouble_between(mounted(350.0, TABLE, HEAD), a, b, AROUND) == ""
-    far = Body("post", "bed", "box", np.array([[100.0, -20, -50], [120, 20, 300]]))
+    far = MachineBody("post", "bed", "box", np.array([[100.0, -20, -50], [120, 20, 300]]))
     assert trouble_between(mounted(350.0, TABLE, HEAD, far), a, b, AROUND) == ""
     behind = Stop(np.array([200.0, 0, 40]), np.zeros(2))
     found = trouble_between(mounted(350.0, TABLE, HEAD, far), a, behind, AROUND)
@@ -106,7 +106,7 @@ def test_up_over_and_down() -> None:
 
 def test_x_and_y_may_go_over_in_any_way() -> None:
     """A post in the corner of the rectangle, beside the straight line."""
-    corner = Body("post", "bed", "box", np.array([[150.0, -10, -50], [170, 10, 300]]))
+    corner = MachineBody("post", "bed", "box", np.array([[150.0, -10, -50], [170, 10, 300]]))
     mounting = mounted(350.0, TABLE, HEAD, corner)
     a, b = Stop(np.array([0.0, 0, 40]), np.zeros(2)), Stop(np.array([160.0, 160, 40]), np.zeros(2))
     assert "post" in trouble_between(mounting, a, b, AROUND)

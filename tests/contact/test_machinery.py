@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 import toolaxis as ta
-from toolaxis.collision.machine_collision import Surroundings, free_solutions, nearest_meeting, words
+from toolaxis.collision.machine_collision import MachineSurroundings, free_solutions, nearest_meeting, words
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.kinematics import forward, linear_coordinates
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -17,8 +17,8 @@ from toolaxis.shape.bounding.bounding_tree import forest
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40)])
-TABLE = Body("table", "C", "box", np.array([[-200.0, -200, -40], [200, 200, 0]]))
-HEAD = Body("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 60.0)
+TABLE = MachineBody("table", "C", "box", np.array([[-200.0, -200, -40], [200, 200, 0]]))
+HEAD = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 60.0)
 UP, TURN, TILT = np.array([0.0, 0, 1]), np.array([0.0, 0, 1]), np.array([0.0, 1, 0])
 
 
@@ -26,12 +26,12 @@ def linear() -> tuple[LinearAxis, ...]:
     return tuple(LinearAxis(name, way, DRIVE, -900, 900) for name, way in zip("XYZ", np.eye(3), strict=True))
 
 
-def head_table(*bodies: Body) -> Machine:
+def head_table(*bodies: MachineBody) -> Machine:
     return Machine("head-table", linear(), (RotaryAxis("C", TURN, np.zeros(3), DRIVE),),
                    (RotaryAxis("B", TILT, np.zeros(3), DRIVE, -2.2, 2.2),), bodies=bodies)
 
 
-def trunnion(*bodies: Body) -> Machine:
+def trunnion(*bodies: MachineBody) -> Machine:
     return Machine("trunnion", linear(), (RotaryAxis("C", TURN, np.zeros(3), DRIVE),
                                           RotaryAxis("A", np.array([1.0, 0, 0]), np.array([0.0, 0, 30]), DRIVE, -2, 2)),
                    bodies=bodies)
@@ -42,8 +42,8 @@ def plate(size: tuple[float, float] = (40.0, 30.0), height: float = 0.0) -> ta.F
     return ta.Face.from_bspline(np.stack([x, y, np.full_like(x, height)], axis=-1))
 
 
-def around(*faces: ta.Face, required: float = 1.0) -> Surroundings:
-    return Surroundings(TOOL, (forest(faces or (plate(),)),), required)
+def around(*faces: ta.Face, required: float = 1.0) -> MachineSurroundings:
+    return MachineSurroundings(TOOL, (forest(faces or (plate(),)),), required)
 
 
 def test_the_angle_at_which_a_head_first_touches_the_table() -> None:
@@ -90,7 +90,7 @@ def test_somewhere_along_the_path() -> None:
     assert abs(found.motion - int(np.argmin(tips[:, 2]))) <= 1
 
 
-def sampled(body: Body, count: int, rng: np.random.Generator) -> np.ndarray:
+def sampled(body: MachineBody, count: int, rng: np.random.Generator) -> np.ndarray:
     """Points of a body, its corners and rims among them."""
     if body.kind == "box":
         low, high = body.points
@@ -106,10 +106,10 @@ def sampled(body: Body, count: int, rng: np.random.Generator) -> np.ndarray:
 def test_no_bound_is_above_what_sampled_points_show() -> None:
     """Everything moved by 4 x 4 matrices of the test's own, point clouds against boxes and cylinders."""
     rng = np.random.default_rng(11)
-    bodies = (TABLE, Body("cradle", "A", "box", np.array([[-260.0, -80, -90], [260, 80, -45]])),
-              Body("post", "bed", "cylinder", np.array([[0.0, 300, -200], [0, 300, 300]]), 50.0),
-              Body("head", "Z", "box", np.array([[-70.0, -60, 0], [70, 90, 200]])),
-              Body("slide", "Y", "box", np.array([[-90.0, 150, 100], [90, 220, 400]])))
+    bodies = (TABLE, MachineBody("cradle", "A", "box", np.array([[-260.0, -80, -90], [260, 80, -45]])),
+              MachineBody("post", "bed", "cylinder", np.array([[0.0, 300, -200], [0, 300, 300]]), 50.0),
+              MachineBody("head", "Z", "box", np.array([[-70.0, -60, 0], [70, 90, 200]])),
+              MachineBody("slide", "Y", "box", np.array([[-90.0, 150, 100], [90, 220, 400]])))
     machine = trunnion(*bodies)
     mounting = Mounting(machine, (-20.0, -15.0, 10.0), TOOL.gauge_length)
     met = 0
@@ -134,7 +134,7 @@ def test_no_bound_is_above_what_sampled_points_show() -> None:
     assert 2 < met < 23
 
 
-def _turned_back(body: Body, rotary: np.ndarray) -> np.ndarray:
+def _turned_back(body: MachineBody, rotary: np.ndarray) -> np.ndarray:
     """From machine coordinates to where the body stands at zero: the tool turns by the angles relative to the part."""
     c, a = rotary
     turn = np.array([[1, 0, 0, 0], [0, cos(a), -sin(a), 0], [0, sin(a), cos(a), 0], [0, 0, 0, 1.0]])
@@ -145,7 +145,7 @@ def _turned_back(body: Body, rotary: np.ndarray) -> np.ndarray:
     return {"C": spin @ tilt, "A": tilt, "bed": np.eye(4)}[body.carried]
 
 
-def _to_body(body: Body, points: np.ndarray) -> float:
+def _to_body(body: MachineBody, points: np.ndarray) -> float:
     rows = points[:3].T
     if body.kind == "box":
         low, high = body.points
@@ -172,9 +172,9 @@ def test_a_head_against_a_wall_of_the_part() -> None:
 
 def test_a_part_against_the_cradle_that_it_turns_in() -> None:
     """A long part on a turning table swings into the cradle's wall."""
-    wall = Body("cradle", "A", "box", np.array([[-20.0, 90, -40], [20, 110, 60]]))
-    machine = trunnion(Body("table", "C", "cylinder", np.array([[0.0, 0, -20], [0, 0, 0]]), 60.0), wall,
-                       Body("head", "Z", "cylinder", np.array([[0.0, 0, 0], [0, 0, 100]]), 40.0))
+    wall = MachineBody("cradle", "A", "box", np.array([[-20.0, 90, -40], [20, 110, 60]]))
+    machine = trunnion(MachineBody("table", "C", "cylinder", np.array([[0.0, 0, -20], [0, 0, 0]]), 60.0), wall,
+                       MachineBody("head", "Z", "cylinder", np.array([[0.0, 0, 0], [0, 0, 100]]), 40.0))
     bar = plate((100.0, 10.0), 50.0)
     mounting = Mounting(machine, (0.0, -5.0, 0.0), TOOL.gauge_length)
     # the tool turns by C relative to the part, so the part turns by -C, a bar from x 0 to 100 and y -5 to 5
@@ -200,8 +200,8 @@ def test_a_body_inside_the_part_counts_as_met() -> None:
     mounting = Mounting(head_table(TABLE, HEAD), (0.0, 0.0, 500.0), TOOL.gauge_length)
     found = nearest_meeting(mounting, [0.0, 0.0], [[0.0, 0, 0]], around(*faces))
     assert found is not None and found.distance < 0 and (found.one, found.other) == ("head", "part")
-    post = Body("post", "bed", "box", np.array([[100.0, 100, 400], [120, 120, 600]]))
-    high = Body("head", "B", "cylinder", np.array([[0.0, 0, 900], [0, 0, 950]]), 20.0)
+    post = MachineBody("post", "bed", "box", np.array([[100.0, 100, 400], [120, 120, 600]]))
+    high = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 900], [0, 0, 950]]), 20.0)
     mounting = Mounting(head_table(post, high), (0.0, 0.0, 500.0), TOOL.gauge_length)
     found = nearest_meeting(mounting, [0.0, 0.0], [[0.0, 0, 0]], around(*faces))
     assert found is not None and (found.one, found.other) == ("post", "part")
@@ -217,8 +217,8 @@ def test_bodies_are_not_judged_where_something_is_not_known() -> None:
 
 
 def test_words_of_a_machine_without_rotary_axes() -> None:
-    machine = Machine("plain", linear(), bodies=(Body("table", "bed", "box", TABLE.points),
-                                                 Body("head", "Z", "cylinder", HEAD.points, 60.0)))
+    machine = Machine("plain", linear(), bodies=(MachineBody("table", "bed", "box", TABLE.points),
+                                                 MachineBody("head", "Z", "cylinder", HEAD.points, 60.0)))
     mounting = Mounting(machine, (0.0, 0.0, -90.0), TOOL.gauge_length)
     found = nearest_meeting(mounting, np.empty(0), [[0.0, 0, 10]], around())
     assert found is not None and found.distance < 0

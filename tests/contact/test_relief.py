@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.contact.clearance import queries as distances
-from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, motions, segment_motions
 from toolaxis.contact.clearance.relief import relief_over, relief_over_numpy
 from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
@@ -51,7 +51,7 @@ def test_depth_less_what_the_faces_miss(height, compiled, monkeypatch):
     cells = stair(height)
     x = np.array([-1.5, -0.3, -0.1, -0.02, 0.0, 0.3, 0.9, 1.5])
     tips = np.column_stack([x, np.zeros(8), np.linspace(-0.004, 0.001, 8)])
-    found = np.maximum(-bounded(cells, BALL, motions(tips, [0, 0, 1]), 0.0, 1e-5).lower[:, 0], 0.0)
+    found = np.maximum(-lower_bounds(cells, BALL, motions(tips, [0, 0, 1]), 0.0, 1e-5).lower[:, 0], 0.0)
     assert found == pytest.approx(sampled(cells, tips), abs=2.5e-5)
 
 
@@ -62,9 +62,9 @@ def test_a_cutter_on_the_lower_face_is_free_beside_the_seam():
         tips = np.column_stack([x, np.zeros(81), np.where(x > 0, height, 0.0)])
         required = np.tile([-0.0005, -np.inf, -np.inf], (2, 1))
         moves = segment_motions(tips, [0, 0, 1])
-        assert (judged(stair(height), BALL, moves, required).blocked < 0).all()
+        assert (keeps_limits(stair(height), BALL, moves, required).blocked < 0).all()
         plain = forest(stair(height).faces)
-        assert (judged(plain, BALL, moves, required).blocked >= 0).any()
+        assert (keeps_limits(plain, BALL, moves, required).blocked >= 0).any()
 
 
 @pytest.mark.parametrize("compiled", [True, False])
@@ -78,7 +78,7 @@ def test_what_is_deeper_is_found(tolerance, compiled, monkeypatch):
 
     def blocked(x, depth_in_higher):
         tip = [[x, 0.0, height - depth_in_higher]]
-        return judged(cells, BALL, motions(tip, [0, 0, 1]), required).blocked[0] >= 0
+        return keeps_limits(cells, BALL, motions(tip, [0, 0, 1]), required).blocked[0] >= 0
 
     assert not blocked(0.2, tolerance + height - 3e-4) and blocked(0.2, tolerance + height + 3e-4)
     assert not blocked(2.0, tolerance - 3e-4) and blocked(2.0, tolerance + 3e-4)
@@ -89,7 +89,7 @@ def test_distances_are_not_enlarged():
     """Only depths are less; where the cutter stays away its distance is the same."""
     cells = stair(0.006)
     tips = [[0.1, 0.0, 0.5], [0.1, 0.0, 0.008]]
-    far = bounded(cells, BALL, motions(tips, [0, 0, 1]), 5.0, 1e-5).lower[:, 0]
+    far = lower_bounds(cells, BALL, motions(tips, [0, 0, 1]), 5.0, 1e-5).lower[:, 0]
     assert far == pytest.approx([0.494, 0.002], abs=2e-5)
 
 
@@ -97,8 +97,8 @@ def test_stock_is_kept_with_the_step_taken_off():
     cells = stair(0.006)
     left = cells.missing(cells.mismatch._replace(stock=0.3))
     tip = [[0.2, 0.0, 0.3]]
-    assert bounded(left, BALL, motions(tip, [0, 0, 1]), 5.0, 1e-5).lower[0, 0] == pytest.approx(0.3, abs=2e-5)
-    assert bounded(cells, BALL, motions(tip, [0, 0, 1]), 5.0, 1e-5).lower[0, 0] == pytest.approx(0.294, abs=2e-5)
+    assert lower_bounds(left, BALL, motions(tip, [0, 0, 1]), 5.0, 1e-5).lower[0, 0] == pytest.approx(0.3, abs=2e-5)
+    assert lower_bounds(cells, BALL, motions(tip, [0, 0, 1]), 5.0, 1e-5).lower[0, 0] == pytest.approx(0.294, abs=2e-5)
 
 
 def test_bounds_over_balls_hold_and_the_twin_agrees():

@@ -9,15 +9,15 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.second_order import contact_forms, relative_forms
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.analytic import Cylinder, Plane
+from toolaxis.shape.analytic import CylindricalSurface, PlanarSurface
 from toolaxis.shape.face import Face
-from toolaxis.strategies.roughness.section_width import expected_widths, section_width
+from toolaxis.strategies.roughness.section_width import expect_widths, section_width
 from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(10, 3)
-FACES = {"plane": Face(Plane((-30.0, 30.0), (-30.0, 30.0)).nurbs()),
-         "hollow cylinder": Face(Cylinder(40.0, (-1.0, 1.0), (-30.0, 30.0)).nurbs(), flip=True),
-         "convex cylinder": Face(Cylinder(40.0, (-1.0, 1.0), (-30.0, 30.0)).nurbs())}
+FACES = {"plane": Face(PlanarSurface((-30.0, 30.0), (-30.0, 30.0)).nurbs()),
+         "hollow cylinder": Face(CylindricalSurface(40.0, (-1.0, 1.0), (-30.0, 30.0)).nurbs(), flip=True),
+         "convex cylinder": Face(CylindricalSurface(40.0, (-1.0, 1.0), (-30.0, 30.0)).nurbs())}
 
 
 def _section(face, tool, uv, axis, scallop, feed, side):
@@ -61,7 +61,7 @@ def test_the_ends_are_those_of_the_torus(name: str, direction: float) -> None:
 
 
 def test_the_expected_range_of_the_paper() -> None:
-    low, high = expected_widths(TOOL, np.radians(20.0), 0.1)
+    low, high = expect_widths(TOOL, np.radians(20.0), 0.1)
     assert (round(low, 4), round(high, 4)) == (2.1529, 3.1529)
 
 
@@ -119,4 +119,4 @@ def test_bad_input() -> None:
     with pytest.raises(InvalidInput, match="scallop height"):
         section_width(FACES["plane"], TOOL, [[0, 0]], [0, 0, 1], 0.0)
     with pytest.raises(InvalidInput, match="between 0 and 90"):
-        expected_widths(TOOL, 0.0, 0.1)
+        expect_widths(TOOL, 0.0, 0.1)

@@ -40,7 +40,7 @@ def test_the_twin_gives_the_same_widths(name, feed):
     kinds = [(strip_width, True)] + ([(step_widths, False)] if isinstance(feed, str) else [])
     for function, sections in kinds:
         kernel = function(face, tool, uv, axes, 0.02, feed, 0.1)
-        geometry, sizes = strip._checked(face, tool, 0.02, 0.1)
+        geometry, sizes = strip._check_inputs(face, tool, 0.02, 0.1)
         twin, found = half_widths_numpy(geometry, strip.contact_rows(uv, feed, sections), axes, sizes)
         assert found.mean() > 0.8
         twin = twin[:, ::-1] if sections else twin

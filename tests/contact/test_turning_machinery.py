@@ -7,19 +7,19 @@ import pytest
 from scipy.optimize import brentq
 
 import toolaxis as ta
-from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import MachineSurroundings, nearest_meeting
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.kinematics import forward, linear_coordinates
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.strategies.common.machine_collision import Motions, meeting_in_motion, motions
+from toolaxis.strategies.common.machine_collision import MachineMotions, meeting_in_motion, motions
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (10, 40)])
-HEAD = Body("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 60.0)
-TABLE = Body("table", "C", "box", np.array([[-200.0, -200, -40], [200, 200, 0]]))
+HEAD = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 60.0)
+TABLE = MachineBody("table", "C", "box", np.array([[-200.0, -200, -40], [200, 200, 0]]))
 
 
 def linear() -> tuple[LinearAxis, ...]:
@@ -31,11 +31,11 @@ def plate() -> ta.Face:
     return ta.Face.from_bspline(np.stack([x, y, 0 * x], axis=-1))
 
 
-def around(required: float) -> Surroundings:
-    return Surroundings(TOOL, (forest((plate(),)),), required)
+def around(required: float) -> MachineSurroundings:
+    return MachineSurroundings(TOOL, (forest((plate(),)),), required)
 
 
-def along(mounting: Mounting, tips: np.ndarray, rotary: np.ndarray) -> Motions:
+def along(mounting: Mounting, tips: np.ndarray, rotary: np.ndarray) -> MachineMotions:
     at = linear_coordinates(mounting.machine, tips, rotary, TOOL.gauge_length, mounting.table_from_part)
     _, axes = forward(mounting.machine, np.hstack([at, rotary]), TOOL.gauge_length, mounting.table_from_part)
     return motions(tips, axes, rotary, at, np.arange(len(tips)))
@@ -66,10 +66,10 @@ def test_a_head_that_tilts_down_to_the_table() -> None:
 @pytest.mark.parametrize("seed", [0, 1, 3, 4])
 def test_what_is_free_at_every_position_is_free_on_the_way_and_nothing_else(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    bodies = (Body("table", "C", "box", np.array([[-150.0, -90, -40], [150, 90, 0]])),
-              Body("cradle", "A", "box", np.array([[-260.0, -80, -90], [260, 80, -45]])),
-              Body("head", "Z", "box", np.array([[-70.0, -60, 0], [70, 90, 200]])),
-              Body("slide", "Y", "box", np.array([[-90.0, 150, 100], [90, 220, 400]])))
+    bodies = (MachineBody("table", "C", "box", np.array([[-150.0, -90, -40], [150, 90, 0]])),
+              MachineBody("cradle", "A", "box", np.array([[-260.0, -80, -90], [260, 80, -45]])),
+              MachineBody("head", "Z", "box", np.array([[-70.0, -60, 0], [70, 90, 200]])),
+              MachineBody("slide", "Y", "box", np.array([[-90.0, 150, 100], [90, 220, 400]])))
     machine = Machine("trunnion", linear(), (RotaryAxis("C", np.array([0.0, 0, 1]), np.zeros(3), DRIVE), RotaryAxis(
         "A", np.array([1.0, 0, 0]), np.array([0.0, 0, 30]), DRIVE, -2, 2)), bodies=bodies)
     mounting = Mounting(machine, (-20.0, -15.0, 10.0), TOOL.gauge_length)
@@ -83,7 +83,7 @@ def test_what_is_free_at_every_position_is_free_on_the_way_and_nothing_else(seed
         assert meeting_in_motion(mounting, way, around(0.7 * least - 0.3)) is None
 
 
-def _positions(way: Motions) -> list[tuple[np.ndarray, np.ndarray]]:
+def _positions(way: MachineMotions) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(way.linear[k, 0], way.rotary[k, 0]) for k in range(0, len(way.arrival), 5)]
 
 
@@ -97,7 +97,7 @@ def _distance(mounting: Mounting, joints: tuple[np.ndarray, np.ndarray]) -> floa
 
 def test_a_cutter_that_leans_over_the_table_beside_the_part() -> None:
     """The tip stays 20 mm above the table; the corner, centred 5 mm aside and 1 mm up, comes down as the tool leans."""
-    slim = Body("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 50]]), 5.0)
+    slim = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 50]]), 5.0)
     machine = Machine("head-table", linear(), (RotaryAxis("C", np.array([0.0, 0, 1]), np.zeros(3), DRIVE),),
                       (RotaryAxis("B", np.array([0.0, 1, 0]), np.zeros(3), DRIVE, -2.2, 2.2),), bodies=(TABLE, slim))
     mounting = Mounting(machine, (0.0, 0.0, 20.0), TOOL.gauge_length)

@@ -9,21 +9,21 @@ import pytest
 from toolaxis.contact.clearance.gouge import penetration, segment_gouges
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import unit
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.two_point.contact import (
     TOUCH,
     balance,
     circle_strip_width,
-    matched_lead,
-    raised,
+    gouge_free_lean,
+    lower_to_contact,
+    match_lead,
     settle,
-    sunk,
     two_point_lead,
 )
 from toolaxis.strategies.two_point.gouge_check import turning_gouges
-from toolaxis.strategies.two_point.rings import Setting, Stand, rings, stand_of
+from toolaxis.strategies.two_point.rings import ContactSet, Posture, rings, stand_of
 from toolaxis.tools.tool import Tool
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "biquintic.json"
@@ -33,12 +33,12 @@ ROWS = [(40, 48.5904, 46.3712, 23.0002, 31.2769), (60, 30.0000, 28.1881, 22.4108
 
 def trough(radius, half=0.6, length=80.0, hollow=True):
     """Part of a cylinder along v, seen from inside or from outside."""
-    return Face(Cylinder(radius, (-half, half), (0.0, length)).nurbs(), flip=hollow)
+    return Face(CylindricalSurface(radius, (-half, half), (0.0, length)).nurbs(), flip=hollow)
 
 
 def along(face, uv, radius=30.0, tolerance=0.03, allowance=0.0, tool=None):
     uv = np.atleast_2d(uv)
-    return Setting(face, tool or Tool.flat(2 * radius), uv, face.evaluate(uv).sv, tolerance, allowance)
+    return ContactSet(face, tool or Tool.flat(2 * radius), uv, face.evaluate(uv).sv, tolerance, allowance)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def biquintic():
 
 @pytest.mark.parametrize("rho, one, two, narrow, wide", ROWS)
 def test_rows_of_the_formula(rho, one, two, narrow, wide):
-    first, second = matched_lead(30.0, rho), two_point_lead(30.0, rho, 0.03)
+    first, second = match_lead(30.0, rho), two_point_lead(30.0, rho, 0.03)
     found = [*np.degrees([first, second]), circle_strip_width(30.0, rho, 0.03, first, 0.0),
              circle_strip_width(30.0, rho, 0.03, second, 0.03)]
     np.testing.assert_allclose(found, [one, two, narrow, wide], atol=1e-4)
@@ -60,10 +60,10 @@ def test_formula_as_printed_and_the_gain_in_width():
     found = two_point_lead(radius, rho, d)
     np.testing.assert_allclose(found, printed, atol=1e-9)
     gain = (circle_strip_width(radius, rho, d, found, d)
-            / circle_strip_width(radius, rho, d, matched_lead(radius, rho), 0.0))
+            / circle_strip_width(radius, rho, d, match_lead(radius, rho), 0.0))
     assert gain.max() == pytest.approx(1.3785, abs=1e-4) and rho[gain.argmax()] == pytest.approx(82, abs=2)
     thin = circle_strip_width(radius, 100.0, 1e-8, two_point_lead(radius, 100.0, 1e-8), 1e-8)
-    one = circle_strip_width(radius, 100.0, 1e-8, matched_lead(radius, 100.0), 0.0)
+    one = circle_strip_width(radius, 100.0, 1e-8, match_lead(radius, 100.0), 0.0)
     assert thin / one == pytest.approx(2**0.5, abs=1e-3)
 
 
@@ -94,7 +94,7 @@ def test_on_a_trough_the_settled_lean_is_the_formulas(tool, allowance):
     np.testing.assert_allclose(stand.lift, 0.03, atol=1e-9)
     np.testing.assert_allclose(ring.sides, 0.0, atol=TOUCH / 10)
     one, _ = settle(along(trough(100.0), [[0.0, 40.0]], allowance=allowance, tool=tool), 0.0)
-    assert one.lean[0] == pytest.approx(float(matched_lead(tool.flat_radius, rho)), abs=5e-4)
+    assert one.lean[0] == pytest.approx(float(match_lead(tool.flat_radius, rho)), abs=5e-4)
 
 
 def test_on_a_ridge_there_is_one_contact_at_the_least_lean():
@@ -113,13 +113,13 @@ def test_where_the_cutter_does_not_fit_it_stays_above():
 def test_true_posture_at_the_middle_of_the_sample_surface(biquintic):
     """The formula gives 17.368 degrees and gouges; 17.684 do not."""
     uv = np.array([[0.5, 0.5]])
-    setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
+    setting = ContactSet(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
     stand, ring = settle(setting, 0.03)
     assert np.degrees(stand.lean[0]) == pytest.approx(17.684, abs=1e-3)
     np.testing.assert_allclose(ring.sides, 0.0, atol=TOUCH)
     assert penetration(setting.tool, ring.tip, ring.axis, (biquintic,)).max() < 0.001
     across = 1 / setting.curvatures()[1][0]
-    formula = Stand(np.atleast_1d(two_point_lead(30.0, across, 0.03)), np.zeros(1), np.array([0.03]))
+    formula = Posture(np.atleast_1d(two_point_lead(30.0, across, 0.03)), np.zeros(1), np.array([0.03]))
     assert np.degrees(formula.lean[0]) == pytest.approx(17.368, abs=1e-3)
     printed = rings(setting, formula)
     assert printed.least[0] < -0.015
@@ -130,9 +130,9 @@ def test_true_posture_at_the_middle_of_the_sample_surface(biquintic):
 def test_no_gouge_is_seen_where_heights_beside_the_contact_differ(biquintic, place, sense):
     """On the border the face bends on one side only: the least height is the contact's all the same."""
     uv = np.array([place])
-    setting = Setting(biquintic, Tool.flat(60), uv, sense * biquintic.evaluate(uv).su, 0.03)
+    setting = ContactSet(biquintic, Tool.flat(60), uv, sense * biquintic.evaluate(uv).su, 0.03)
     for lean in np.radians([20.0, 25.0, 40.0]):
-        ring = rings(setting, Stand(np.array([lean]), np.zeros(1), np.zeros(1)))
+        ring = rings(setting, Posture(np.array([lean]), np.zeros(1), np.zeros(1)))
         assert ring.height.min() >= -1e-9 and ring.least[0] >= -1e-9
     stand, ring = settle(setting, 0.0)
     assert np.degrees(stand.lean[0]) < 21.0 and ring.least[0] >= -1e-5
@@ -141,8 +141,8 @@ def test_no_gouge_is_seen_where_heights_beside_the_contact_differ(biquintic, pla
 def test_the_least_height_between_angles(biquintic):
     """Against the ring of a cutter turned by parts of the step between angles."""
     uv = np.array([[0.8, 0.3]])
-    setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
-    ring = rings(setting, Stand(np.radians([17.0]), np.zeros(1), np.zeros(1)))
+    setting = ContactSet(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
+    ring = rings(setting, Posture(np.radians([17.0]), np.zeros(1), np.zeros(1)))
     ahead = unit(np.cross(np.cross(ring.axis, setting.frame.feed), ring.axis))
     angle = np.linspace(-np.pi, np.pi, 2401)[:, None]
     points = ring.tip + 30.0 * (np.cos(angle) * ahead + np.sin(angle) * np.cross(ring.axis, ahead))
@@ -154,8 +154,8 @@ def test_the_least_height_between_angles(biquintic):
 
 def test_heights_of_rings_are_distances(biquintic):
     uv = np.array([[0.4, 0.55]])
-    setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
-    ring = rings(setting, Stand(np.array([0.35]), np.array([0.1]), np.array([0.03])))
+    setting = ContactSet(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
+    ring = rings(setting, Posture(np.array([0.35]), np.array([0.1]), np.array([0.03])))
     foot = biquintic.evaluate(ring.uv[0]).point
     points = foot + ring.height[0][:, None] * biquintic.normal(ring.uv[0])
     inside = ((ring.uv[0] > 0.01) & (ring.uv[0] < 0.99)).all(axis=1)
@@ -167,7 +167,7 @@ def test_heights_of_rings_are_distances(biquintic):
 
 def test_sides_are_balanced_by_turning_aside(biquintic):
     uv = np.array([[0.3, 0.15], [0.5, 0.2]])
-    setting = Setting(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
+    setting = ContactSet(biquintic, Tool.flat(60), uv, biquintic.evaluate(uv).su, 0.03)
     turned = balance(setting, 0.03)
     assert np.isfinite(turned).all() and (np.abs(turned) > 1e-4).all()
     even, uneven = settle(setting, 0.03, turned)[1].sides, settle(setting, 0.03)[1].sides
@@ -177,18 +177,18 @@ def test_sides_are_balanced_by_turning_aside(biquintic):
 
 def test_raised_and_sunk_touch():
     setting = along(trough(100.0), [0.0, 40.0])
-    low = Stand(np.array([0.1]), np.zeros(1), np.array([0.03]))
-    stand, ring = raised(setting, low)
+    low = Posture(np.array([0.1]), np.zeros(1), np.array([0.03]))
+    stand, ring = gouge_free_lean(setting, low)
     assert stand.lean[0] == pytest.approx(float(two_point_lead(30.0, 100.0, 0.03)), abs=2e-5) and ring.least[0] > -2e-5
-    above = Stand(np.array([0.6]), np.zeros(1), np.array([0.5]))
-    stand, ring = sunk(setting, above)
+    above = Posture(np.array([0.6]), np.zeros(1), np.array([0.5]))
+    stand, ring = lower_to_contact(setting, above)
     assert stand.lift[0] == pytest.approx(0.0, abs=1e-5) and ring.least[0] == pytest.approx(0.0, abs=1e-5)
 
 
 def test_how_a_cutter_stands_is_read_from_tip_and_axis(biquintic):
     uv = np.array([[0.3, 0.4], [0.8, 0.7]])
-    setting = Setting(biquintic, Tool.torus(60, 4), uv, biquintic.evaluate(uv).su, 0.03, 0.5)
-    stand = Stand(np.array([0.3, 0.5]), np.array([0.2, -0.4]), np.array([0.02, 0.3]))
+    setting = ContactSet(biquintic, Tool.torus(60, 4), uv, biquintic.evaluate(uv).su, 0.03, 0.5)
+    stand = Posture(np.array([0.3, 0.5]), np.array([0.2, -0.4]), np.array([0.02, 0.3]))
     ring = rings(setting, stand)
     again = stand_of(setting, ring.tip, ring.axis)
     for name in ("lean", "direction", "lift"):

@@ -7,7 +7,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.axis_motion import axis_motion
 from toolaxis.machine.library import load_machine
-from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.section import section
 
 MACHINE = load_machine("four-axis-a")
@@ -51,7 +51,7 @@ def test_baselines_follow_the_normal_of_an_ellipse():
     one = section(np.column_stack([40 * np.cos(t), 12 * np.sin(t)]))
     smooth = SmoothSection(one)
     s = np.linspace(0, one.length, 1500)
-    plain = unscheduled(smooth, s, 0.1)
+    plain = constant_angles(smooth, s, 0.1)
     points = smooth.points(s)
     normal = np.arctan2(points[:, 1] / 12**2, points[:, 0] / 40**2)
     assert np.abs(np.angle(np.exp(1j * (plain - 0.1 - normal)))).max() < 1e-3

@@ -6,7 +6,7 @@ from scipy.linalg import solveh_banded
 
 from toolaxis.feed import interior_point as barrier
 from toolaxis.feed.interior_point import SpeedProblem, greatest_speeds, system_numpy, value_numpy
-from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solved
+from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solve_pentadiagonal
 from toolaxis.numeric import jit as compiled
 
 
@@ -68,10 +68,10 @@ def test_five_diagonals_as_scipy(n: int) -> None:
     bands[1, 0] = bands[0, :2] = 0.0
     expected = solveh_banded(bands[-min(n, 3):], right)
     spent, step = bands.copy(), right.copy()
-    assert solved(spent, step)
+    assert solve_pentadiagonal(spent, step)
     assert np.allclose(step, expected, rtol=1e-12, atol=1e-14)
     bands[2, n // 2] = -1.0
-    assert not solved(bands.copy(), right.copy())
+    assert not solve_pentadiagonal(bands.copy(), right.copy())
 
 
 def test_the_same_speeds_without_numba(monkeypatch: pytest.MonkeyPatch) -> None:

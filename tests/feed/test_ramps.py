@@ -7,7 +7,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.feed.jerk_profile import profile
 from toolaxis.feed.limits import AxisBounds
 from toolaxis.feed.time_optimal import schedule_curve
-from toolaxis.feed.velocity_ramps import Ramps, ramps
+from toolaxis.feed.velocity_ramps import VelocityRamps, ramps
 
 MIKRON = AxisBounds(np.full(3, 500.0), np.array([2500.0, 3000.0, 2100.0]), np.full(3, 5000.0))
 
@@ -20,7 +20,7 @@ def _pass(seed: int, bend: float = 1.0) -> np.ndarray:
     return np.stack([x, bend * heights[0], bend * heights[1]], axis=1)
 
 
-def _worst(found: Ramps, bounds: AxisBounds, feed: float) -> float:
+def _worst(found: VelocityRamps, bounds: AxisBounds, feed: float) -> float:
     """The greatest share of a limit that an axis takes, sampled; speed of the path against the feed too."""
     worst = 0.0
     for k, length in enumerate(np.diff(found.borders)):

@@ -9,24 +9,24 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.path.mending import Made
+from toolaxis.path.mending import FurtherPasses
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import Task, searched, task
+from toolaxis.search.fixed_axis import FaceProblem, find_axis, task
 
 TOOL = ta.Tool.ball(diameter=8, stickout=40)
 
 
-class Unmended(Task):
+class Unmended(FaceProblem):
     """Passes as they are laid, without further ones over what they leave."""
 
-    def completed(self, placed: Layout) -> Made:
+    def completed(self, placed: Layout) -> FurtherPasses:
         """The passes as they come."""
         path = self.traced(placed)
-        return Made(placed, path, self.left_by(path))
+        return FurtherPasses(placed, path, self.left_by(path))
 
 
-def bound(kind: type[Task]) -> Task:
+def bound(kind: type[FaceProblem]) -> FaceProblem:
     """A task on a face beyond whose slanting border no pass may run out."""
     x, y = np.meshgrid(np.linspace(0, 8, 4), np.linspace(0, 10, 4), indexing="ij")
     slanted = (np.array([[0.05, 0.05], [0.95, 0.3], [0.3, 0.95]]),)
@@ -39,10 +39,10 @@ def bound(kind: type[Task]) -> Task:
 
 
 def test_axes_are_refused_whose_passes_leave_what_the_cutter_may_stand_on() -> None:
-    found, path = searched(bound(Unmended))
+    found, path = find_axis(bound(Unmended))
     assert found.outcome == "not_found" and found.axis is None and path is None
     assert sum("stay higher than the scallop limit" in why for why in found.reasons) > 1, "find another case"
-    mended, passes = searched(bound(Task))
+    mended, passes = find_axis(bound(FaceProblem))
     assert mended.outcome == "feasible" and mended.unreached == 0
     np.testing.assert_allclose(passes.axis, np.broadcast_to(mended.axis, passes.axis.shape), atol=1e-12)
 

@@ -11,7 +11,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cli.main import main
-from toolaxis.job.files.plan_folder import staged, write_plan
+from toolaxis.job.files.plan_folder import stage_folder, write_plan
 
 
 def _flat(*rows: list[float]) -> ta.Face:
@@ -24,7 +24,7 @@ def test_verify_says_how_much_is_left_to_clean_up(tmp_path: Path, capsys: pytest
     made = ta.plan(faces, ta.Tool.ball(diameter=4, stickout=30), 0.2, faces=[1], machine="cone:-0.1,0,1,2")
     share = made.operations[0].orientation.unreached
     assert 0.05 < share < 0.5
-    with staged(tmp_path / "plan") as stage:
+    with stage_folder(tmp_path / "plan") as stage:
         write_plan(made, stage.folder)
         stage.publish()
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) in (0, 1)
@@ -36,7 +36,7 @@ def test_verify_says_how_much_is_left_to_clean_up(tmp_path: Path, capsys: pytest
 
 def test_nothing_is_said_of_what_is_not_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made = ta.plan([_flat([0, 0, 0], [14, 0, 0], [0, 8, 0])], ta.Tool.ball(diameter=4, stickout=30), 0.2, faces=[1])
-    with staged(tmp_path / "plan") as stage:
+    with stage_folder(tmp_path / "plan") as stage:
         write_plan(made, stage.folder)
         stage.publish()
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) == 0

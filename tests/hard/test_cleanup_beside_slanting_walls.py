@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.search.fixed_axis import evaluate_axis, task
-from toolaxis.verify.task import Task as Judged
+from toolaxis.verify.task import VerificationTask as Judged
 from toolaxis.verify.verdict import judge
 
 

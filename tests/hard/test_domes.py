@@ -7,11 +7,11 @@ import pytest
 import toolaxis as ta
 from toolaxis.contact.strip.scallop import step_from_scallop
 from toolaxis.path.parametrization import IsoChart
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 
 
 def cap(low: float = 0.9) -> ta.Face:
-    return ta.Face(Sphere(7.0, v_range=(low, pi / 2)).nurbs())
+    return ta.Face(SphericalSurface(7.0, v_range=(low, pi / 2)).nurbs())
 
 
 def test_a_dome_is_planned_and_passes() -> None:

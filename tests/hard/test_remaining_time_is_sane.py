@@ -72,7 +72,7 @@ def test_lines_of_a_search_hold_no_absurd_time(capsys, monkeypatch):
     """What was reported by the face of which that was said: steps that begin again, some after next to nothing."""
     clock = iter(range(0, 100_000, 7))
     monkeypatch.setattr(display.time, "monotonic", lambda: float(next(clock)))
-    with display.shown_progress(lambda: False) as progress:
+    with display.show_progress(lambda: False) as progress:
         inner = progress.within("face 4 (1 of 1)")
         for count in range(64, 1400, 64):
             inner.report("axes", count, 0)

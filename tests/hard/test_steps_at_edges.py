@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import SKIN, TOUCHING, Group
-from toolaxis.feasibility.violations import CUTTER, Witness
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, CheckSurfaces
+from toolaxis.feasibility.violations import CUTTER, Violation
 from toolaxis.search.messages import sentence
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
@@ -25,8 +25,9 @@ def plane(corner, one, two, number):
 def test_the_step_is_named(step):
     top, side = plane([0, 0, 0], [20, 0, 0], [0, 10, 0], 1), plane([20, 0, -9], [0, 10, 0], [0, 0, 9 + step], 2)
     far = [-1.0, 0.5, 1.0]
-    groups = (Group(SKIN, (top,), np.array([-0.001, *far[1:]])), Group(TOUCHING, (side,), np.array([-0.001, *far[1:]])))
-    found = Witness(CUTTER, 0.002, "2", np.array([20.0, 4.0, -0.1]), np.array([1.0, 0.4]), -0.003)
+    groups = (CheckSurfaces(SKIN, (top,), np.array([-0.001, *far[1:]])),
+              CheckSurfaces(TOUCHING, (side,), np.array([-0.001, *far[1:]])))
+    found = Violation(CUTTER, 0.002, "2", np.array([20.0, 4.0, -0.1]), np.array([1.0, 0.4]), -0.003)
     said = sentence(found, Feasibility(top, Tool.ball(6), groups, Tolerance(gouge=0.002)))
     assert said.startswith("the cutter gouges face 2 behind an edge by 0.003 mm at (20, 4, -0.1); 0.002 mm is allowed")
     assert ("Face 2 stands 0.03 mm out over face 1" in said) == (step == 0.03)

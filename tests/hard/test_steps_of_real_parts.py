@@ -12,13 +12,13 @@ import pytest
 
 from toolaxis.cad.load import load
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.contact.clearance.queries import judged, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, segment_motions
 from toolaxis.contact.placement import tips
-from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, Group, grouped
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, CheckSurfaces, group_surroundings
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
 
@@ -55,22 +55,25 @@ def test_a_pass_along_the_edge_is_free(case, tolerance, parts):
     seam = next(seam for seam in part.seams if set(seam.faces) == {case.face, case.behind})
     assert seam.step == pytest.approx(case.step, abs=2e-4)
     limit = Tolerance(gouge=tolerance)
-    groups = {group.role: group for group in grouped(part.face(case.face), limit, part=part)}
+    groups = {group.role: group for group in group_surroundings(part.face(case.face), limit, part=part)}
     places, axis = stroke_along(case, part)
     moves = segment_motions(places, axis)
     for role, group in groups.items():
         if role == OTHER:
             continue
         required = np.tile([-tolerance, -np.inf, -np.inf], (len(group.faces), 1))
-        assert (judged(group.cells, case.tool, moves, required).blocked < 0).all(), role
+        assert (keeps_limits(group.cells, case.tool, moves, required).blocked < 0).all(), role
     behind = groups[TOUCHING]
     required = np.tile([-0.002, -np.inf, -np.inf], (len(behind.faces), 1))
-    strict = Group(TOUCHING, behind.faces, behind.required)
-    assert (judged(strict.cells, case.tool, moves, required).blocked >= 0).any(), "nothing taken off: it is refused"
+    strict = CheckSurfaces(TOUCHING, behind.faces, behind.required)
+    assert (keeps_limits(strict.cells, case.tool, moves,
+                         required).blocked >= 0).any(), "nothing taken off: it is refused"
     kind = np.full(len(places), Motion.CUT, dtype=np.int8)
     own = [face for face in groups[SKIN].faces if face.number != case.face]
-    found = judge(Task("op", places, np.tile(axis, (len(places), 1)), kind, case.tool.profile, (part.face(case.face),),
-                       0.02, left=(part.face(case.face),), skin=tuple(own), touching=behind.faces, tolerance=limit))
+    found = judge(VerificationTask("op", places, np.tile(axis, (len(places), 1)), kind, case.tool.profile,
+                                   (part.face(case.face),),
+                                   0.02, left=(part.face(case.face),), skin=tuple(own), touching=behind.faces,
+                                   tolerance=limit))
     assert found.passed, found.reasons
 
 

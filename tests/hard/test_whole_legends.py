@@ -8,7 +8,7 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.report.figures.plots import operation_picture, widths_picture
 from toolaxis.shape.part import Part
 
@@ -24,7 +24,7 @@ def test_no_legend_leaves_the_picture(size, tool):
     path = ToolPath(points, points, rows, rows, np.full(20, Motion.CUT, dtype=np.int8), np.array([0, 20]))
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
     op = Operation(1, face, Orientation(axis, "u", 1, 1.0, 40.0, 2.5, outcome="feasible"), path, frame)
-    plan = Plan(Part.from_faces([face]), tool, Inputs(0.02), (op,), (), np.zeros(3), "complete")
+    plan = Plan(Part.from_faces([face]), tool, PlanInputs(0.02), (op,), (), np.zeros(3), "complete")
     made = operation_picture(plan, op)
     made.canvas.draw()
     for ax in made.axes:

@@ -27,9 +27,9 @@ def small_plan() -> Plan:
 @pytest.fixture
 def folder(small_plan: Plan, tmp_path: Path) -> Path:
     """The written form of that plan."""
-    from toolaxis.job.files.plan_folder import staged, write_plan
+    from toolaxis.job.files.plan_folder import stage_folder, write_plan
 
-    with staged(tmp_path / "plan") as stage:
+    with stage_folder(tmp_path / "plan") as stage:
         write_plan(small_plan, stage.folder)
         stage.publish()
     return tmp_path / "plan"

@@ -10,10 +10,10 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
-from toolaxis.job.planning.parallel import abreast, checked_workers, how_it_ended
-from toolaxis.progress import NO_PROGRESS, Progress, breathe, heard
+from toolaxis.job.planning.parallel import abreast, check_workers, how_it_ended
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress, breathe
 
-several = pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux")
+several = pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux")
 
 
 @several
@@ -171,7 +171,7 @@ def test_a_worker_never_hears_a_stop_itself():
         return index
 
     asked = iter([False] * 3)
-    with heard(Progress(None, lambda: next(asked, True))):
+    with activate_progress(Progress(None, lambda: next(asked, True))):
         assert abreast(_work, 2, 2, NO_PROGRESS).results == {0: 0, 1: 1}
 
 
@@ -193,7 +193,7 @@ def test_the_end_of_a_process_in_words(code, said):
 @pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2"])
 def test_a_wrong_number_of_workers_is_refused(workers):
     with pytest.raises(InvalidInput, match="workers is"):
-        checked_workers(workers)
+        check_workers(workers)
 
 
 @several

@@ -11,7 +11,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.inputs.spec import with_rings
 from toolaxis.job.output.pictures import draw_plan
 from toolaxis.shape.joining.closed_rings import ring_around
-from toolaxis.strategies.blade.layers import closed_parameter
+from toolaxis.strategies.blade.layers import find_closed_parameter
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
 
@@ -76,7 +76,7 @@ def test_one_face_of_a_blade_brings_those_around_it():
     assert [set(ring_around(part, number)) for number in (1, 163, 3, 161)] == [{1, 3, 161, 163}] * 4
     assert ring_around(part, 2) == ()
     joined, numbers = with_rings(part, [3, 2, 1])
-    assert numbers == [3, 2] and closed_parameter(joined.face(3)) in "uv" and not joined.face(2).members
+    assert numbers == [3, 2] and find_closed_parameter(joined.face(3)) in "uv" and not joined.face(2).members
     assert {member.face.number for member in joined.face(3).members} == {1, 3, 161, 163}
     again, numbers = with_rings(joined, [3])
     assert again is joined and numbers == [3]

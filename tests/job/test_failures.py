@@ -12,20 +12,20 @@ import pytest
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.job.files.plan_folder import PLAN, read_plan, staged, write_plan
+from toolaxis.job.files.plan_folder import PLAN, read_plan, stage_folder, write_plan
 from toolaxis.job.output import verify as judge
 from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning import clean_up_zones as zones
 from toolaxis.job.planning import planner as planning
 from toolaxis.job.planning import timing
-from toolaxis.job.planning.parallel import checked_workers
+from toolaxis.job.planning.parallel import check_workers
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
 from toolaxis.strategies.constant_lead import search
 
 TOOL = ta.Tool.ball(6)
 SCALLOP, LIMITS = 0.2, "cone:0,0,1,8"
-FORKED = pytest.param(2, marks=pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux"))
+FORKED = pytest.param(2, marks=pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux"))
 
 
 def sheets(count: int = 3) -> Part:
@@ -74,7 +74,7 @@ def test_a_fault_in_a_search_costs_its_face(workers: int, raised: Exception, sai
     planted(monkeypatch, raised)
     made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=workers)
     checked(made, said)
-    with staged(tmp_path / "out") as stage:
+    with stage_folder(tmp_path / "out") as stage:
         write_plan(made, stage.folder)
         stage.publish()
     document = json.loads((tmp_path / "out" / PLAN).read_text())
@@ -97,7 +97,7 @@ def slow(asked: dict[str, object], workers: int) -> object:
     slow({"method": "one"}, 2), slow({"method": "sectors"}, 2), slow({"method": "ball"}, 1)], ids=str)
 def test_in_every_way_to_plan(asked: dict[str, object], workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     planted(monkeypatch, IndexError("planted"))
-    made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=min(workers, checked_workers(workers)),
+    made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=min(workers, check_workers(workers)),
                    **asked)  # type: ignore[arg-type]
     checked(made, "IndexError: planted")
 
@@ -132,7 +132,7 @@ def test_of_two_faces_that_fail_each_has_its_own_reason(monkeypatch: pytest.Monk
         assert sorted(reasons) == [1, 2] and all(f"face {number}" in why for number, why in reasons.items()), reasons
 
 
-@pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux")
+@pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux")
 def test_a_worker_that_dies_costs_its_face(monkeypatch: pytest.MonkeyPatch) -> None:
     whole, here = Feasibility.witness, os.getpid()
 
@@ -182,12 +182,12 @@ def test_a_fault_of_the_whole_keeps_every_face_and_the_plan_incomplete(monkeypat
     def _fail(*_: object, **__: object) -> None:
         raise IndexError("planted")
 
-    monkeypatch.setattr("toolaxis.job.planning.pipeline.timed", _fail)
+    monkeypatch.setattr("toolaxis.job.planning.pipeline.add_times", _fail)
     made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1)
     assert all(op.done for op in made.operations) and made.outcome == "incomplete"
     (fault,) = made.faults
     assert fault.sentence.startswith("failed: IndexError") and "Traceback" in fault.traceback
-    with staged(tmp_path / "out") as stage:
+    with stage_folder(tmp_path / "out") as stage:
         write_plan(made, stage.folder)
         stage.publish()
     document = json.loads((tmp_path / "out" / PLAN).read_text())
@@ -203,7 +203,7 @@ def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(monkeypatch:
     made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), folder.apt_text
     monkeypatch.setattr(folder, "apt_text", lambda path, tool, name, *rest: 1 // 0 if name.endswith("face2") else
                         whole(path, tool, name, *rest))
-    with staged(tmp_path / "out") as stage:
+    with stage_folder(tmp_path / "out") as stage:
         written = write_plan(made, stage.folder)
         stage.publish()
     assert [op.done for op in written.operations] == [True, False, True] and written.outcome == "incomplete"

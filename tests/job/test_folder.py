@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.job.files.plan_folder import OF_PLAN, OF_VERDICT, read_plan, staged, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, OF_VERDICT, read_plan, stage_folder, write_plan
 from toolaxis.plan.plan import Plan
 
 
@@ -31,7 +31,7 @@ def test_a_plan_is_read_back_as_it_was_written(small_plan: Plan, folder: Path) -
 
 
 def test_nothing_appears_when_writing_fails(small_plan: Plan, tmp_path: Path) -> None:
-    with pytest.raises(RuntimeError), staged(tmp_path / "a" / "b") as stage:
+    with pytest.raises(RuntimeError), stage_folder(tmp_path / "a" / "b") as stage:
         write_plan(small_plan, stage.folder)
         raise RuntimeError("the power went")
     assert names(tmp_path) == []
@@ -41,7 +41,7 @@ def test_an_earlier_plan_is_replaced_and_the_users_files_stay(small_plan: Plan, 
     (folder / "notes.txt").write_text("mine")
     (folder / "op07-face9.apt").write_text("old")
     (folder / "verdict.json").write_text("{}")
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         write_plan(small_plan, stage.folder)
         assert "op07-face9.apt" in names(folder), "the old plan stands until the new one is whole"
         stage.publish(OF_PLAN)
@@ -53,7 +53,7 @@ def test_an_earlier_verdict_goes_with_its_pictures_and_the_plan_stays(folder: Pa
     for name in ("verdict.json", "verdict-maps.npz", "op02-face2-verdict.png"):
         (folder / name).write_text("old")
     (folder / "op01-face1-passes.png").write_text("of the plan")
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         (stage.folder / "verdict.json").write_text("{}")
         stage.publish(OF_VERDICT)
     assert names(folder) == sorted([*before, "op01-face1-passes.png", "verdict.json"])
@@ -61,7 +61,7 @@ def test_an_earlier_verdict_goes_with_its_pictures_and_the_plan_stays(folder: Pa
 
 def test_an_earlier_plan_stays_when_the_new_one_fails(small_plan: Plan, folder: Path) -> None:
     before = {name: (folder / name).read_bytes() for name in names(folder)}
-    with pytest.raises(RuntimeError), staged(folder) as stage:
+    with pytest.raises(RuntimeError), stage_folder(folder) as stage:
         write_plan(small_plan, stage.folder)
         raise RuntimeError
     assert {name: (folder / name).read_bytes() for name in names(folder)} == before

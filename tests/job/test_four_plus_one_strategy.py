@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.output.post import posted
+from toolaxis.job.output.post import post_plan
 from toolaxis.plan.plan import Plan
 
 TOOL, MACHINE = "torus:12x1", "mikron-ucp-710"
@@ -35,7 +35,7 @@ def test_its_program_holds_one_rotary_axis_still(plan, tmp_path) -> None:
     write_plan(plan, tmp_path)
     again = read_plan(tmp_path)
     assert again.inputs.method == "four-plus-one"
-    text = next(text for file, text in posted(again, "fanuc", again.machine).items() if file.startswith("program"))
+    text = next(text for file, text in post_plan(again, "fanuc", again.machine).items() if file.startswith("program"))
     blocks = [line for line in text.splitlines() if line.startswith("G1 X")]
     spans = [np.ptp([float(found[1]) for found in (re.search(rf"{name}(-?[\d.]+)", line) for line in blocks) if found])
              for name in "AC"]

@@ -8,8 +8,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cli.main import main
-from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
-from toolaxis.job.planning.clean_up_zones import WHOLLY, told
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.job.planning.clean_up_zones import WHOLLY, describe_zones
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
@@ -30,9 +30,9 @@ def leaving(op: Operation, share: float, at_wall: bool = True) -> tuple[Zone, ..
 def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) -> None:
     (op,) = small_plan.operations
     assert 8 < mean_width(op.face) < 12 == 2 * small_plan.tool.radius
-    kept = told(op, leaving(op, WHOLLY - 0.02), small_plan.tool)
+    kept = describe_zones(op, leaving(op, WHOLLY - 0.02), small_plan.tool)
     assert kept.done and not kept.left and kept.orientation.unreached == pytest.approx(WHOLLY - 0.02)
-    gone = told(op, leaving(op, WHOLLY + 0.02), small_plan.tool)
+    gone = describe_zones(op, leaving(op, WHOLLY + 0.02), small_plan.tool)
     assert gone.left and not gone.done and gone.orientation.axis is None
     assert gone.orientation.passes == 0 and gone.orientation.unreached == 1.0
     assert sum(zone.area for zone in gone.zones) == pytest.approx(op.face.area, rel=1e-12)
@@ -43,14 +43,14 @@ def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) 
 
 def test_a_face_that_is_wider_than_the_cutter_keeps_its_operation(small_plan: Plan) -> None:
     (op,) = small_plan.operations
-    assert told(op, leaving(op, 0.97), SLIM).done
-    assert told(op, leaving(op, 0.97, at_wall=False), small_plan.tool).done, "an undercut is no clean-up face"
+    assert describe_zones(op, leaving(op, 0.97), SLIM).done
+    assert describe_zones(op, leaving(op, 0.97, at_wall=False), small_plan.tool).done, "an undercut is no clean-up face"
 
 
 def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
     (op,) = small_plan.operations
     zones = leaving(op, 0.1, at_wall=False)
-    made = told(told(op, zones, small_plan.tool), zones, small_plan.tool)
+    made = describe_zones(describe_zones(op, zones, small_plan.tool), zones, small_plan.tool)
     (said,) = [why for why in made.orientation.reasons if why.startswith("undercut")]
     at = op.face.evaluate(zones[0].loops[0].mean(axis=0)[None]).point[0]
     assert f"{zones[0].area:.2f} mm2, around {place(at)}:" in said and not np.allclose(at, 0)
@@ -92,7 +92,7 @@ def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_p
     assert footed.outcome == "complete" and floor.done and fillet.left
     assert "0.61 mm wide" in fillet.orientation.reasons[0] and "fillet of 0.40 mm" in fillet.orientation.reasons[0]
     assert fillet.zones[0].area == pytest.approx(fillet.face.area, rel=1e-12) == pytest.approx(16.5, abs=0.5)
-    with staged(tmp_path / "plan") as stage:
+    with stage_folder(tmp_path / "plan") as stage:
         write_plan(footed, stage.folder)
         stage.publish()
     again = read_plan(tmp_path / "plan")

@@ -10,12 +10,12 @@ import pytest
 import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
 from toolaxis.cli.main import parser
-from toolaxis.contact.clearance.queries import bounded, motions
+from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import plan_document, plan_from
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, limited, spend, up_to
+from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, limit_work, spend, up_to
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=50, holder=[(10, 0), (10, 40)])
@@ -115,18 +115,18 @@ def test_a_moving_axis_is_allowed_several_times_the_limit(strategy: str) -> None
 
 def test_bounds_are_charged_while_a_budget_is_there() -> None:
     cells, tips = forest((sheet(),)), np.tile([10.0, 8.0, 5.0], (50, 1))
-    with limited(Budget(1e6)) as budget:
-        found = bounded(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
+    with limit_work(Budget(1e6)) as budget:
+        found = lower_bounds(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
     assert budget.done >= found.looked.sum() / UNIT > 0
     done = budget.done
-    bounded(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
+    lower_bounds(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
     assert budget.done == done
-    with pytest.raises(OutOfWork, match="work limit of 1:"), limited(Budget(1.0)):
-        bounded(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
+    with pytest.raises(OutOfWork, match="work limit of 1:"), limit_work(Budget(1.0)):
+        lower_bounds(cells, TOOL, motions(tips, [0, 0, 1.0]), 1.0, 0.001)
 
 
 def test_a_part_of_what_is_left_can_be_kept() -> None:
-    with limited(Budget(10.0)) as budget:
+    with limit_work(Budget(10.0)) as budget:
         spend(2 * UNIT)
         with pytest.raises(OutOfWork), up_to(0.5):
             for _ in range(9):
@@ -143,7 +143,7 @@ def test_a_part_of_what_is_left_can_be_kept() -> None:
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_limit_is_a_finite_number_above_zero(limit: float) -> None:
     with pytest.raises(InvalidInput, match="limit is"):
-        Inputs(0.1, limit=limit)
+        PlanInputs(0.1, limit=limit)
 
 
 def test_a_plan_says_what_it_was_limited_to(plans: dict[float, Plan]) -> None:
@@ -153,7 +153,7 @@ def test_a_plan_says_what_it_was_limited_to(plans: dict[float, Plan]) -> None:
     assert document["inputs"]["limit"] == 8000.0
     del document["inputs"]["limit"]  # a plan of before
     before = plan_from(document, plan.part, plan.obstacles, [None])
-    assert before.inputs == replace(plan.inputs, limit=Inputs(0.1).limit)
+    assert before.inputs == replace(plan.inputs, limit=PlanInputs(0.1).limit)
 
 
 def test_the_command_and_batches_take_a_limit(tmp_path: Path) -> None:

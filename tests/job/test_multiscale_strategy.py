@@ -13,7 +13,7 @@ from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.roughness.pictures import draw_roughness, front_picture, study
 from toolaxis.strategies.roughness.roughness import arithmetic_roughness
 from toolaxis.strategies.roughness.section_width import (
-    expected_widths,
+    expect_widths,
     section_parameters,
     section_points,
     section_width,
@@ -56,7 +56,7 @@ def test_strips_are_as_wide_as_expected_and_the_machine_follows(plan) -> None:
     inside = (found.distance < 1e-6) & ((found.uv > 0.02) & (found.uv < 0.98)).all(axis=1)
     uv, axis = found.uv[inside][::3], op.path.axis[cut][inside][::3]
     wide = section_width(op.face, plan.tool, uv, axis, H, op.orientation.feed).sum(axis=1)
-    low, high = expected_widths(plan.tool, np.radians(20.0), H)
+    low, high = expect_widths(plan.tool, np.radians(20.0), H)
     assert len(wide) > 20 and wide.min() > low - 5e-3 and wide.max() < high + 5e-3
     assert len(following(plan.machine.machine, op.path).rotary) >= len(op.path.cl)
     assert any("um allowed" in why for why in op.orientation.reasons)

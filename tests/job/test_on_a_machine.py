@@ -12,7 +12,7 @@ from toolaxis.feed.fixed_axis_time import index_time
 from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
 from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning.edit_axis import try_axis, with_operations
-from toolaxis.job.planning.timing import timed
+from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.setup import Mounting
 from toolaxis.report.tables import plan_table
 
@@ -118,22 +118,22 @@ def test_index_moves_are_part_of_the_time(plan) -> None:
     """Up, turn, over and down, each from rest to rest, between two operations that stand at different angles."""
     op = plan.operations[0]
     other = try_axis(plan, op, (0.05, -0.3, 0.95))
-    two = timed(replace(plan, operations=(op, replace(other, number=2))))
+    two = add_times(replace(plan, operations=(op, replace(other, number=2))))
     first, second = (one.time for one in two.operations)
     assert first == op.time and second.index > 0 and two.seconds == pytest.approx(first.total + second.total)
     turn = index_time(plan.machine.machine, first.rotary, second.rotary)
     assert turn > 0 and second.index > turn + 0.5  # retracts included
-    bare = timed(replace(two, machine=Mounting(plan.machine.machine)))
+    bare = add_times(replace(two, machine=Mounting(plan.machine.machine)))
     assert bare.operations[1].time.index == pytest.approx(turn)
     assert "without retracts" in (plan_table(bare).caption or "")
-    same = timed(replace(plan, operations=(op, replace(op, number=2))))
+    same = add_times(replace(plan, operations=(op, replace(op, number=2))))
     assert 0.5 < same.operations[1].time.index < second.index + 1.0
 
 
 def test_a_machine_that_does_not_state_its_limits_is_told(plan) -> None:
     machine = plan.machine.machine
     x = replace(machine.linear[0], drive=replace(machine.linear[0].drive, jerk=None))
-    unknown = timed(replace(plan, machine=replace(plan.machine, machine=replace(machine,
+    unknown = add_times(replace(plan, machine=replace(plan.machine, machine=replace(machine,
                                                                                linear=(x, *machine.linear[1:])))))
     assert not unknown.timed and unknown.operations[0].time is None
     assert unknown.seconds == pytest.approx(replace(unknown, machine=None).seconds)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from toolaxis.job.files.plan_folder import read_plan, staged, write_json, write_plan
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_json, write_plan
 from toolaxis.job.files.verdict_maps import write_views
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document, verify_plan
@@ -35,7 +35,7 @@ Open = Callable[..., Any]
 @pytest.fixture(scope="module")
 def page(small_plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("browser") / "wavy"
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         write_plan(small_plan, stage.folder)
         stage.publish()
     plan = read_plan(folder)

@@ -14,7 +14,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.job.output.pictures import draw_verdict
 from toolaxis.job.planning.blade_clearances import tightest
-from toolaxis.job.planning.blade_pattern import recognised, shared_out, too_narrow
+from toolaxis.job.planning.blade_pattern import find_pattern, group_blade_faces, too_narrow
 from toolaxis.job.planning.edit_axis import with_operations
 from toolaxis.plan.document import plan_document
 from toolaxis.plan.orientation import Orientation
@@ -25,12 +25,12 @@ from toolaxis.report.figures.hatch_fill import COLOUR
 from toolaxis.report.figures.plan_overview import overview_picture
 from toolaxis.report.tables import baselines_table
 from toolaxis.search.fixed_axis import evaluate_axis
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.part import Body, Part
-from toolaxis.verify.task import Task
-from toolaxis.verify.turned_copies import Measured
+from toolaxis.verify.task import VerificationTask
+from toolaxis.verify.turned_copies import OperationMeasurement
 from toolaxis.verify.verdict import measure
 
 COUNT = 4
@@ -59,7 +59,7 @@ def sides(how: str = "") -> list[Face]:
 
 def wheel(count: int = COUNT, change: tuple[str, ...] = ()) -> Part:
     """Blades around a cylinder, some with other parameters, missing or moved."""
-    hub = Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
+    hub = Face(CylindricalSurface(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
     faces = [hub]
     for k in range(count):
         how = change[k] if k < len(change) else ""
@@ -78,7 +78,7 @@ def ring(count: int = 6) -> Part:
     bend = 1 - (y / half) ** 2
     lens = [Face.from_bspline(np.dstack([25 + bulge * bend, y, z]), flip=flip)
             for bulge, flip in ((2.0, False), (-1.0, True))]
-    hub = Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
+    hub = Face(CylindricalSurface(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
     return Part.from_faces([hub, *(face.transformed(turn(2 * np.pi * k / count)) for k in range(count)
                                    for face in lens)])
 
@@ -135,7 +135,7 @@ def test_what_is_the_same_at_each_blade_is_measured_and_drawn_once(monkeypatch: 
     made = ta.plan(wheel(), tool, 0.15, regions=1)
     measured = []
 
-    def counted(task: Task, *more: Any) -> Measured:
+    def counted(task: VerificationTask, *more: Any) -> OperationMeasurement:
         measured.append(task.name)
         return measure(task, *more)
 
@@ -217,13 +217,13 @@ def test_what_gets_another_axis_is_no_copy_any_more(plan: Plan) -> None:
 
 @pytest.mark.parametrize("how", ["missing", "moved"])
 def test_a_broken_pattern_is_planned_face_by_face_with_a_warning(how: str) -> None:
-    pattern, warnings = recognised(wheel(6, ("", "", how)))
+    pattern, warnings = find_pattern(wheel(6, ("", "", how)))
     assert pattern is None
     assert len(warnings) == 1 and "missing or moved" in warnings[0] and "planned by itself" in warnings[0]
 
 
 def test_blades_that_touch_are_refused() -> None:
-    pattern, warnings = recognised(ring())
+    pattern, warnings = find_pattern(ring())
     assert pattern is None
     assert len(warnings) == 1 and "touch" in warnings[0]
 
@@ -233,7 +233,7 @@ def test_a_stray_body_is_told_and_not_machined() -> None:
     tiny = [face.transformed(np.diag([0.005, 0.005, 0.005, 1.0])) for face in sides()]
     part = Part.from_faces([*whole.faces, *tiny])
     part = replace(part, bodies=(Body("solid", (len(part.faces) - 1, len(part.faces)), True),))
-    pattern, warnings = recognised(part)
+    pattern, warnings = find_pattern(part)
     assert pattern is not None and warnings == () and pattern.rest == ()
     assert any("faces 10, 11 belong to stray bodies" in text for text in pattern.part.warnings)
 
@@ -258,23 +258,23 @@ def test_many_small_facets_are_left_to_clean_up() -> None:
            for bulge, flip in ((2.0, False), (0.5, True))]
     hub = wheel().faces[0]
     part = Part.from_faces([hub, *(face.transformed(turn(np.pi / 2 * k)) for k in range(4) for face in cut)])
-    pattern, _ = recognised(part)
+    pattern, _ = find_pattern(part)
     assert pattern is not None
-    share = shared_out(pattern, ta.Tool.torus(diameter=6, corner_radius=1), 0.1)
+    share = group_blade_faces(pattern, ta.Tool.torus(diameter=6, corner_radius=1), 0.1)
     assert share.left.keys() == {2, 3} and share.divided == () and share.refused == {}
     assert "24 facets" in share.left[2] and "left to clean-up as a whole" in share.left[2]
-    few = shared_out(pattern, ta.Tool.torus(diameter=2, corner_radius=0.5), 0.1)
+    few = group_blade_faces(pattern, ta.Tool.torus(diameter=2, corner_radius=0.5), 0.1)
     assert few.left == {} and len(few.divided) == 2
 
 
 def test_a_part_without_blades_is_not_warned_of() -> None:
     loose = Part.from_faces([face.transformed(turn(0.3 * k * k)) for k in range(3) for face in sides()])
-    assert recognised(loose) == (None, ())
+    assert find_pattern(loose) == (None, ())
 
 
 def test_a_gap_narrower_than_the_tool_is_infeasible_and_names_the_widest() -> None:
     part = wheel(12)
-    pattern, _ = recognised(part)
+    pattern, _ = find_pattern(part)
     assert pattern is not None
     wide, slim = (ta.Tool.torus(diameter=d, corner_radius=0.5) for d in (14.0, 6.0))
     assert too_narrow(pattern, slim, 0.1) == {}
@@ -291,9 +291,9 @@ def test_a_gap_narrower_than_the_tool_is_infeasible_and_names_the_widest() -> No
 
 @pytest.mark.parametrize(("diameter", "left"), [(10, True), (6, False)])
 def test_fillets_tighter_than_the_cutter_are_left_to_a_smaller_one(diameter: float, left: bool) -> None:
-    pattern, _ = recognised(ta.load(BLISK))
+    pattern, _ = find_pattern(ta.load(BLISK))
     assert pattern is not None
-    found = shared_out(pattern, ta.Tool.torus(diameter, 1), 0.1)
+    found = group_blade_faces(pattern, ta.Tool.torus(diameter, 1), 0.1)
     fillets = {face.number for face in pattern.first if pattern.blades.side_of(face.number) == "fillet"}
     assert fillets
     assert {face.number for face in found.whole} & fillets == (set() if left else fillets)
@@ -307,7 +307,7 @@ def test_tools_keep_clear_of_all_of_a_face_though_only_pieces_of_it_are_machined
     if not path.exists():
         pytest.skip(f"{path} is not there: set TOOLAXIS_SHARED")
     part = ta.load(path)
-    pattern, _ = recognised(part)
+    pattern, _ = find_pattern(part)
     assert pattern is not None
     assert all(pattern.part.face(face.number) is face for face in part.faces)
     assert len([piece for piece in pattern.rest if piece.number == 88]) >= 9

@@ -15,8 +15,8 @@ from nc_plans import a_plan, axes_at
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
-from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
-from toolaxis.job.output.post import posted
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.job.output.post import post_plan
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
@@ -34,7 +34,7 @@ def plan_at(angles: np.ndarray = ANGLES) -> Plan:
 def folder(tmp_path: Path) -> Path:
     """The folder of a plan of three operations on two orientations."""
     out = tmp_path / "made"
-    with staged(out) as stage:
+    with stage_folder(out) as stage:
         write_plan(plan_at(), stage.folder)
         stage.publish()
     return out
@@ -59,7 +59,7 @@ def test_the_plan_s_own_machine_is_taken(tmp_path: Path) -> None:
     plan = replace(a_plan(axes_at(machine, ANGLES, where[:3, :3]), np.random.default_rng(3)),
                    machine=Mounting(machine, where))
     folder = tmp_path / "made"
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         write_plan(plan, stage.folder)
         stage.publish()
     assert main(["post", str(folder), "--dialect", "iso"]) == 0
@@ -91,7 +91,7 @@ def test_apt_needs_no_machine_and_is_what_plan_wrote(folder: Path) -> None:
 
 def test_a_new_plan_takes_old_programs_away(folder: Path) -> None:
     assert main(["post", str(folder), "--dialect", "fanuc", "--machine", "mikron-ucp-710"]) == 0
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         write_plan(plan_at(ANGLES[:1]), stage.folder)
         stage.publish()
     assert not list(folder.glob("program-*")) and not list(folder.glob("setup-*"))
@@ -100,7 +100,8 @@ def test_a_new_plan_takes_old_programs_away(folder: Path) -> None:
 def test_what_was_read_posts_as_what_was_planned(folder: Path) -> None:
     """CL files hold tips to 1e-6 mm, so that a last digit may turn out one higher or lower."""
     mounting = Mounting(load_machine("mikron-ucp-710"))
-    read, made = (posted(plan, "siemens", mounting)["program-siemens.mpf"] for plan in (read_plan(folder), plan_at()))
+    read, made = (post_plan(plan, "siemens", mounting)["program-siemens.mpf"]
+                  for plan in (read_plan(folder), plan_at()))
     number = re.compile(r"-?\d+\.\d+")
     assert number.sub("#", read) == number.sub("#", made)
     assert np.allclose([float(v) for v in number.findall(read)], [float(v) for v in number.findall(made)], rtol=0,
@@ -147,7 +148,7 @@ def test_an_axis_between_two_steps_is_refused_with_its_angle() -> None:
     angles = np.radians([[10.4, -20.0]])
     plan = a_plan(axes_at(machine, angles, np.eye(3)), np.random.default_rng(3))
     with pytest.raises(InvalidInput, match=r"0\.\d+ deg from the one that the passes were made for") as caught:
-        posted(plan, "linuxcnc", Mounting(machine))
+        post_plan(plan, "linuxcnc", Mounting(machine))
     away = float(str(caught.value).split("axis ")[1].split()[0])
     assert away == pytest.approx(degrees(np.arccos(1 - (1 - np.cos(np.radians(0.4))) * np.sin(np.radians(20)) ** 2)),
                                  abs=1e-3)

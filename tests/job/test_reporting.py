@@ -17,7 +17,7 @@ import pytest
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.files.plan_folder import read_plan, staged, write_json, write_plan
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_json, write_plan
 from toolaxis.job.files.verdict_maps import read_views, write_views
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document, verify_plan
@@ -84,7 +84,7 @@ def judged(folder: Path) -> Path:
 
 
 def written(plan: Plan, folder: Path) -> Path:
-    with staged(folder) as stage:
+    with stage_folder(folder) as stage:
         write_plan(plan, stage.folder)
         stage.publish()
     return folder
@@ -257,10 +257,10 @@ def test_names_are_text_and_never_code(small_plan: Plan, tmp_path: Path) -> None
                    operations=(replace(op, face=face),))
     folder = tmp_path / wild
     folder.mkdir()
-    from toolaxis.report.html.page import Beside
+    from toolaxis.report.html.page import PlanFiles
     from toolaxis.report.html.page import page as page_of
 
-    text = page_of(plan, Beside(source=wild), wild)
+    text = page_of(plan, PlanFiles(source=wild), wild)
     found = Page(text)
     assert not [tag for tag, _ in found.tags if tag == "img"] and "alert(2)</script>" not in text
     assert len(re.findall(r"<script", text.split("</style>")[1].split("plotly.js v")[0])) == len(found.data) + 1

@@ -9,12 +9,12 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.inputs.spec import chosen_faces, parse_faces
+from toolaxis.job.inputs.spec import choose_faces, parse_faces
 from toolaxis.job.planning.sub_surfaces import Target, by_axis
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 
 
 def net(height: float, nx: int = 6, ny: int = 6, size: tuple[float, float] = (24.0, 16.0)) -> np.ndarray:
@@ -147,13 +147,13 @@ def test_wrong_arguments(change: dict[str, object], said: str) -> None:
 def test_faces_by_number_and_by_default() -> None:
     faces = [replace(ta.Face.from_bspline(net(1.0)), kind=kind) for kind in ("plane", "bspline", "cone", "torus")]
     part = ta.Part.from_faces(faces)
-    assert [f.number for f in chosen_faces(part, None)] == [2, 4]
-    assert [f.number for f in chosen_faces(part, "all")] == [1, 2, 3, 4]
-    assert [f.number for f in chosen_faces(part, "4,1-2,2")] == [4, 1, 2]
-    assert [f.number for f in chosen_faces(replace(part, selected=(3,)), None)] == [3]
+    assert [f.number for f in choose_faces(part, None)] == [2, 4]
+    assert [f.number for f in choose_faces(part, "all")] == [1, 2, 3, 4]
+    assert [f.number for f in choose_faces(part, "4,1-2,2")] == [4, 1, 2]
+    assert [f.number for f in choose_faces(replace(part, selected=(3,)), None)] == [3]
     assert parse_faces("3, 5-8") == (3, 5, 6, 7, 8) and parse_faces("ALL") == "all"
     with pytest.raises(ta.InvalidInput, match="none of the part's 1 faces is sculptured"):
-        chosen_faces(ta.Part.from_faces(faces[:1]), None)
+        choose_faces(ta.Part.from_faces(faces[:1]), None)
 
 
 def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -161,12 +161,12 @@ def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeyp
 
     search = job.searched
 
-    def fails_on_the_first(task: Task, *rest: object, **more: object) -> object:
+    def fails_on_the_first(task: FaceProblem, *rest: object, **more: object) -> object:
         if task.worth.face.number == 1:
             raise ta.UnsupportedGeometry("face 1 is made of water")
         return search(task, *rest, **more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(job, "searched", fails_on_the_first)
+    monkeypatch.setattr(job, "find_axis", fails_on_the_first)
     part = ta.Part.from_faces([ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.0) + np.array([0, 40.0, 0]))])
     made = ta.plan(part, "torus:12x1", 0.1)
     assert made.outcome == "incomplete"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.job.planning.planner import REFUSED, Job
+from toolaxis.job.planning.planner import REFUSED, PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS
@@ -14,11 +14,11 @@ DOWN, LEANING = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.6, 0.8])
 
 
 @pytest.fixture(scope="module")
-def job(small_plan: Plan) -> Job:
-    return Job(small_plan.part, small_plan.tool, small_plan.inputs, None, (), np.zeros(3))
+def job(small_plan: Plan) -> PlanningJob:
+    return PlanningJob(small_plan.part, small_plan.tool, small_plan.inputs, None, (), np.zeros(3))
 
 
-def test_the_cheapest_of_the_other_shared_axes_serves(job: Job, small_plan: Plan) -> None:
+def test_the_cheapest_of_the_other_shared_axes_serves(job: PlanningJob, small_plan: Plan) -> None:
     (op,) = small_plan.operations
     good = op.orientation.axis
     made = job._operation(Target(op.face, DOWN, True, (LEANING, good)), (0, 1), NO_PROGRESS)
@@ -27,7 +27,7 @@ def test_the_cheapest_of_the_other_shared_axes_serves(job: Job, small_plan: Plan
     assert any(why.startswith(REFUSED) and "another shared axis" in why for why in made.orientation.reasons)
 
 
-def test_its_own_shared_axis_comes_first_and_a_search_last(job: Job, small_plan: Plan) -> None:
+def test_its_own_shared_axis_comes_first_and_a_search_last(job: PlanningJob, small_plan: Plan) -> None:
     (op,) = small_plan.operations
     own = job._operation(Target(op.face, LEANING, True, (op.orientation.axis,)), (0, 1), NO_PROGRESS)
     assert np.allclose(own.orientation.axis, LEANING) and own.orientation.length > op.orientation.length

@@ -10,10 +10,10 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.job.files.plan_folder import read_plan, staged, write_plan
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.inputs.spec import parse_faces, with_joined
 from toolaxis.job.output.verify import _task
-from toolaxis.numeric.knots import restricted
+from toolaxis.numeric.knots import restrict_spline
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.nurbs import NurbsSurface
 
@@ -31,9 +31,9 @@ def patches(face: ta.Face) -> list[ta.Face]:
     """Four patches between knot lines; each but the first one is written with u and v exchanged, reversed, or both."""
     surface, found = face.surface, []
     for u in pairwise(LINES[0]):
-        ku, net = restricted(surface.knots_u, surface.control, 3, *u)
+        ku, net = restrict_spline(surface.knots_u, surface.control, 3, *u)
         for v in pairwise(LINES[1]):
-            kv, own = restricted(surface.knots_v, net.swapaxes(0, 1), 3, *v)
+            kv, own = restrict_spline(surface.knots_v, net.swapaxes(0, 1), 3, *v)
             found.append(NurbsSurface(ku, kv, own.swapaxes(0, 1), (3, 3)))
     back = NurbsSurface(-3 * found[1].knots_u[::-1], found[1].knots_v, found[1].control[::-1], (3, 3))
     return [replace(face, surface=found[0]), replace(face, surface=back, flip=True),
@@ -56,7 +56,7 @@ def test_the_plan_of_joined_patches_is_that_of_the_whole_surface(joined_plan: Pl
 
 
 def test_the_written_form_names_all_faces_and_joins_them_again(joined_plan: Plan, tmp_path: Path) -> None:
-    with staged(tmp_path / "plan") as stage:
+    with stage_folder(tmp_path / "plan") as stage:
         write_plan(joined_plan, stage.folder)
         stage.publish()
     document = json.loads((tmp_path / "plan" / "plan.json").read_text())

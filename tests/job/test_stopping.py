@@ -13,7 +13,7 @@ from toolaxis.feasibility import normal_cells
 from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan
-from toolaxis.progress import Progress, breathe, heard
+from toolaxis.progress import Progress, activate_progress, breathe
 from toolaxis.shape import nurbs
 
 POINTS, MOTIONS = 250_000, 256
@@ -51,10 +51,10 @@ class Counted:
 def test_a_loop_hears_only_whom_its_thread_listens_to() -> None:
     stop = Progress(None, lambda: True)
     breathe()
-    with heard(stop):
+    with activate_progress(stop):
         with pytest.raises(Cancelled):
             breathe()
-        with heard(Progress()):
+        with activate_progress(Progress()):
             breathe()
         other = Thread(target=breathe)
         other.start()
@@ -108,7 +108,7 @@ def test_ranges_of_angles_are_the_same_in_pieces_of_any_size(small_plan: Plan,
     found = field.range_of_angles(axis, *limits)
     monkeypatch.setattr(normal_cells, "_AT_ONCE", 7)
     counted = Counted(monkeypatch)
-    with heard(counted.progress):
+    with activate_progress(counted.progress):
         pieces = NormalField(field.face).range_of_angles(axis, *limits)
     assert all(np.array_equal(one, other) for one, other in zip(found, pieces, strict=True))
     assert 0 < counted.most["points"] <= 7

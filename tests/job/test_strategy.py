@@ -7,8 +7,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
-from toolaxis.job.planning.comparison import compared
-from toolaxis.job.planning.timing import timed
+from toolaxis.job.planning.comparison import compare_methods
+from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.plan import Plan
@@ -75,13 +75,13 @@ def test_the_picture_s_tool_stands_as_it_does_on_the_pass(plan) -> None:
 
 def test_a_machine_times_the_path_and_not_below_what_its_feed_takes(plan) -> None:
     machine = Mounting(ta.load_machine("mikron-ucp-710"))
-    made = timed(replace(plan, machine=machine))
+    made = add_times(replace(plan, machine=machine))
     time = made.operations[0].time
     assert made.timed and time is not None and time.cut > plan.length / (plan.inputs.feedrate / 60)
     assert time.cut < 1.5 * plan.length / (plan.inputs.feedrate / 60) and len(time.rotary) == 2
     assert "collision with the machine itself" in made.not_checked
     short = replace(machine.machine, table=tuple(replace(axis, low=0.3, high=0.4) for axis in machine.machine.table))
-    lost = timed(replace(plan, machine=Mounting(short)))
+    lost = add_times(replace(plan, machine=Mounting(short)))
     assert not lost.timed and lost.operations[0].orientation.reasons[-1].startswith("not timed: ")
     assert any("not timed" in one.text for one in warnings_of(lost, None))
 
@@ -94,12 +94,12 @@ def test_a_path_on_which_the_axis_jumps_is_told(plan) -> None:
     leant = op.path.axis.copy()
     leant[k:] = leant[k:] + np.array([0.0, 1.0, 0.0])
     jumping = replace(plan, machine=machine, operations=(replace(op, path=replace(op.path, axis=unit(leant))),))
-    made = timed(timed(jumping))
+    made = add_times(add_times(jumping))
     told = [why for why in made.operations[0].orientation.reasons if why.startswith("the feed falls below")]
     assert made.timed and len(told) == 1 and any(told[0] in one.text for one in warnings_of(made, None))
     place = np.array([float(word) for word in told[0].partition("[")[2].partition("]")[0].split(",")])
     assert np.linalg.norm(place - op.path.cl[k]) < 5.0
-    fine = timed(replace(plan, machine=machine))
+    fine = add_times(replace(plan, machine=machine))
     assert not any(why.startswith("the feed falls") for why in fine.operations[0].orientation.reasons)
 
 
@@ -107,7 +107,7 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
     def methods(machine: Mounting | None) -> list[str]:
         asked = []
         made = replace(plan, machine=machine, inputs=replace(plan.inputs, method="sphere"))
-        compared(made, [plan.operations[0].face], lambda name, some: (asked.append(name), plan)[1])
+        compare_methods(made, [plan.operations[0].face], lambda name, some: (asked.append(name), plan)[1])
         return asked
 
     assert "sturz" in methods(Mounting(ta.load_machine("mikron-ucp-710")))

@@ -11,15 +11,15 @@ import toolaxis as ta
 from toolaxis.errors import Cancelled
 from toolaxis.job.planning import blade_copies as turned
 from toolaxis.job.planning.blade_copies import spread_out
-from toolaxis.job.planning.blade_pattern import recognised
-from toolaxis.job.planning.parallel import checked_workers
+from toolaxis.job.planning.blade_pattern import find_pattern
+from toolaxis.job.planning.parallel import check_workers
 from toolaxis.job.planning.planner import went_on
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.fixed_axis import task
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.part import Part
@@ -45,7 +45,7 @@ def sides(how=""):
 
 def wheel(change="", *further):
     """Four blades around a cylinder, the second another one; further faces stand around."""
-    faces = [Face(Cylinder(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")]
+    faces = [Face(CylindricalSurface(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")]
     for k in range(COUNT):
         move = turn(2 * np.pi * k / COUNT)
         if k == 1 and change == "moved":
@@ -79,7 +79,7 @@ def first():
 
 
 def spread(first, part):
-    pattern, warnings = recognised(part)
+    pattern, warnings = find_pattern(part)
     assert pattern is not None and warnings == ()
     planner = Planner()
     return spread_out(pattern, replace(first, part=part), planner, NO_PROGRESS), planner, pattern
@@ -140,7 +140,7 @@ def test_where_passes_laid_anew_are_refused_the_axis_is_searched_too(first):
         limits = parse_limits("cone:" + ",".join(map(str, -first.operations[0].orientation.axis)) + ",5")
         return task(face, TOOL, SCALLOP, limits, (), part=part, progress=progress)
 
-    pattern, _ = recognised(wheel("thick"))
+    pattern, _ = find_pattern(wheel("thick"))
     planner = Planner()
     planner.task = _shut
     found = spread_out(pattern, replace(first, part=pattern.part), planner, NO_PROGRESS)
@@ -149,7 +149,7 @@ def test_where_passes_laid_anew_are_refused_the_axis_is_searched_too(first):
 
 
 def test_a_stop_keeps_the_blades_that_were_finished(first):
-    pattern, _ = recognised(wheel())
+    pattern, _ = find_pattern(wheel())
     planner, seen = Planner(), []
 
     def _report(stage, done, total):
@@ -170,7 +170,7 @@ def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
         if name.startswith("blade 4") and stage in name:
             asked.append(name)
 
-    pattern, _ = recognised(wheel("thick"))
+    pattern, _ = find_pattern(wheel("thick"))
     stop = Progress(_report, lambda: bool(asked))
     whole = turned.with_zones
     if stage == "clean-up zones":
@@ -179,7 +179,7 @@ def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
             return whole(plan, op, progress)
 
         monkeypatch.setattr(turned, "with_zones", _zones)
-    with heard(stop):
+    with activate_progress(stop):
         found = went_on(replace(first, part=pattern.part), lambda plan: spread_out(pattern, plan, Planner(), stop))
     assert found.outcome == "cancelled" and all(op.done for op in found.operations)
     assert len(found.operations) == (3 if stage.startswith("proof") else 4)
@@ -211,7 +211,7 @@ def test_a_fault_on_one_blade_costs_that_operation_there(first, monkeypatch):
     assert [op.done for op in found.operations].count(True) == 3 and found.outcome == "incomplete"
 
 
-@pytest.mark.skipif(checked_workers(2) == 1, reason="processes are only forked on Linux")
+@pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux")
 def test_a_process_that_dies_over_a_blade_costs_that_blade(first, monkeypatch):
     whole, here = turned._proven, os.getpid()
 
@@ -221,7 +221,7 @@ def test_a_process_that_dies_over_a_blade_costs_that_blade(first, monkeypatch):
         return whole(op, *rest)
 
     monkeypatch.setattr(turned, "_proven", _proven)
-    pattern, _ = recognised(wheel())
+    pattern, _ = find_pattern(wheel())
     planner = Planner()
     planner.workers = 2
     found = spread_out(pattern, replace(first, part=pattern.part), planner, NO_PROGRESS)

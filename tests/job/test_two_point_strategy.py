@@ -7,13 +7,13 @@ import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.report.tables import plan_table
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 
 H = 0.03
 
 
 def trough(radius=40.0, half=0.2, hollow=True) -> ta.Face:
-    return ta.Face(Cylinder(radius, (-half, half), (0.0, 16.0)).nurbs(), flip=hollow)
+    return ta.Face(CylindricalSurface(radius, (-half, half), (0.0, 16.0)).nurbs(), flip=hollow)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.body_poses import bed_from_body, beside_part, part_from_bed, standing
 from toolaxis.machine.kinematics import forward
 from toolaxis.machine.library import library, load_machine, machine_from_toml, machine_to_toml
@@ -131,4 +131,5 @@ def test_a_body_on_a_turned_cradle() -> None:
     machine = load_machine("mikron-ucp-710")
     point = bed_from_body(machine, "A", [0.3, radians(90)]) @ np.array([0, 0, 10.0, 1])
     assert np.allclose(point[:3], [0, 10, 0], atol=1e-12)
-    assert Body("a", "bed", "box", np.array([[1.0, 1, 1], [0, 0, 0]])).convex.centre[0, 0].tolist() == [0.5, 0.5, 0.5]
+    assert MachineBody("a", "bed", "box", np.array([[1.0, 1, 1], [0, 0, 0]])).convex.centre[0, 0].tolist() == [0.5,
+                                                                                                               0.5, 0.5]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.machine.limits import AllOf, Cone, RotaryRanges, parse_limits, written
+from toolaxis.machine.limits import AllOf, Cone, RotaryRanges, format_limits, parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 
 
@@ -92,8 +92,8 @@ def test_a_cone_of_nothing_is_its_direction():
                                   "cone:0,0,1,60+rotary:tilt=0..50"])
 def test_what_is_written_is_read_back(text: str) -> None:
     limits = parse_limits(text)
-    again = parse_limits(written(limits))
+    again = parse_limits(format_limits(limits))
     axes = np.random.default_rng(0).normal(size=(500, 3))
     np.testing.assert_allclose(again.excess(axes), limits.excess(axes), atol=1e-12)
-    assert written(again) == written(limits)
-    assert written(None) == ""
+    assert format_limits(again) == format_limits(limits)
+    assert format_limits(None) == ""

@@ -6,7 +6,16 @@ from scipy.optimize import linprog
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.axis import LinearAxis
-from toolaxis.machine.feed_polytopes import Level, alignments, along, best_along, best_angles, box, pole_zone, preferred
+from toolaxis.machine.feed_polytopes import (
+    Level,
+    alignments,
+    along,
+    best_along,
+    best_angles,
+    box,
+    pole_zone,
+    preferred_direction,
+)
 from toolaxis.machine.kinematics import part_from_machine
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.machine import Machine
@@ -33,7 +42,7 @@ def test_table_2() -> None:
     printed = {Level.VELOCITY: (0.8660, 3.6373, 8.6603), Level.ACCELERATION: (0.7390, 4.4340, 7.3899),
                Level.JERK: (0.8660, 3.6373, 8.6603)}
     for level, row in printed.items():
-        assert np.allclose(preferred(MIKRON, level)[1] / 1000, row, atol=5.1e-5)
+        assert np.allclose(preferred_direction(MIKRON, level)[1] / 1000, row, atol=5.1e-5)
 
 
 def test_the_diagonal_feed_has_its_two_trivial_solutions() -> None:

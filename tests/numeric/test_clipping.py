@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygons import inside, slabs
 
 shapely = pytest.importorskip("shapely")
@@ -35,7 +35,7 @@ def test_both_sides_are_what_shapely_cuts(loops, axis, limit):
         low, high = (limit, 100.0) if above else (-100.0, limit)
         box = shapely.box(low, -100, high, 100) if axis == 0 else shapely.box(-100, low, 100, high)
         expected = whole.intersection(box)
-        ours = clipped(loops, axis, limit, above)
+        ours = clip_half_plane(loops, axis, limit, above)
         assert region(ours).symmetric_difference(expected).area < 1e-9
 
 
@@ -43,19 +43,19 @@ def test_points_stay_inside_or_outside():
     loops = (star(5), 0.2 * star(6))
     uv = np.random.default_rng(0).uniform(-1, 1, (2000, 2))
     before = inside(slabs(loops), uv)
-    right, left = clipped(loops, 0, 0.1, True), clipped(loops, 0, 0.1, False)
+    right, left = clip_half_plane(loops, 0, 0.1, True), clip_half_plane(loops, 0, 0.1, False)
     after = np.where(uv[:, 0] > 0.1, inside(slabs(right), uv), inside(slabs(left), uv))
     assert (before == after).all()
 
 
 def test_nothing_remains_beyond_the_end():
-    assert clipped((SQUARE,), 0, 4.0, True) == ()
-    assert clipped((), 0, 1.0, True) == ()
+    assert clip_half_plane((SQUARE,), 0, 4.0, True) == ()
+    assert clip_half_plane((), 0, 1.0, True) == ()
 
 
 def test_separate_polygons_keep_their_own_holes():
     far = SQUARE + np.array([10, 0])
-    groups = grouped((SQUARE, far, HOLE + np.array([10, 0]), HOLE, 0.2 * SQUARE + np.array([1.6, 1.6])))
+    groups = outer_with_holes((SQUARE, far, HOLE + np.array([10, 0]), HOLE, 0.2 * SQUARE + np.array([1.6, 1.6])))
     assert sorted(len(group) for group in groups) == [1, 2, 2]
     for group in groups:
         if len(group) == 2:
@@ -89,7 +89,7 @@ def test_edges_along_the_line_leave_sound_pieces_and_no_slivers(name, low, size)
             left = whole.intersection(shapely.box(a, -9, b, 9) if axis == 0 else shapely.box(-9, a, 9, b))
             wanted = [one for one in getattr(left, "geoms", [left]) if one.area > 1e-6]
             found = [[(loop - low) / size for loop in group]
-                     for group in grouped(clipped(moved, axis, low + size * limit, above))]
+                     for group in outer_with_holes(clip_half_plane(moved, axis, low + size * limit, above))]
             ours = [shapely.Polygon(group[0], group[1:]) for group in found]
             assert len(ours) == len(wanted), (off, axis, limit)
             assert all(one.is_valid for one in ours)
@@ -99,5 +99,5 @@ def test_edges_along_the_line_leave_sound_pieces_and_no_slivers(name, low, size)
 def test_a_loop_that_touches_another_is_no_hole_of_it():
     beside = np.array([[4.0, 1], [4, 3], [5, 2]])
     inner = np.array([[4.0, 1], [4, 3], [3, 2]])
-    assert [len(group) for group in grouped((SQUARE, beside))] == [1, 1]
-    assert [len(group) for group in grouped((SQUARE, inner))] == [2]
+    assert [len(group) for group in outer_with_holes((SQUARE, beside))] == [1, 1]
+    assert [len(group) for group in outer_with_holes((SQUARE, inner))] == [2]

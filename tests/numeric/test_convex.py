@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from toolaxis.numeric.support_functions import boxes, hull, places, segments, separation, turned_body
+from toolaxis.numeric.support_functions import boxes, hull, places, revolve_body, segments, separation
 
 RNG = np.random.default_rng(5)
 
@@ -17,10 +17,10 @@ def test_boxes_and_cylinders_at_known_distances() -> None:
     assert separation([box], [boxes([13, 14, 0], [20, 20, 10])])[0] == pytest.approx(5)
     assert separation([box], [boxes([7, 4, 0], [20, 20, 10])])[0] == pytest.approx(-3)
     assert separation([box], [boxes([10, 0, 0], [20, 10, 10])])[0] == pytest.approx(0, abs=1e-9)
-    above, beside = turned_body([[5, 5, 20], [5, 5, 50]], [5, 5]), turned_body([[20, 5, 5], [20, 5, 50]], [5, 5])
+    above, beside = revolve_body([[5, 5, 20], [5, 5, 50]], [5, 5]), revolve_body([[20, 5, 5], [20, 5, 50]], [5, 5])
     assert separation([box], [above])[0] == pytest.approx(10)
     assert 5 - 1e-3 <= separation([box], [beside])[0] <= 5 + 1e-9
-    round_one = turned_body([[20, 5, 5], [21, 5, 5]], 0.0, 4.0)
+    round_one = revolve_body([[20, 5, 5], [21, 5, 5]], 0.0, 4.0)
     assert 6 - 1e-3 <= separation([box], [round_one])[0] <= 6 + 1e-9
 
 
@@ -30,7 +30,7 @@ def test_a_leaning_cylinder_over_a_box(tilt: float) -> None:
     angle = radians(tilt)
     axis = np.array([sin(angle), 0.0, cos(angle)])
     low = 40.0 * axis
-    found = separation([turned_body([low, low + 30 * axis], 12.0)], [boxes([-500, -500, -20], [500, 500, 0])])[0]
+    found = separation([revolve_body([low, low + 30 * axis], 12.0)], [boxes([-500, -500, -20], [500, 500, 0])])[0]
     assert found == pytest.approx(40 * cos(angle) - 12 * sin(angle), abs=1e-3)
 
 
@@ -60,7 +60,7 @@ def test_no_bound_is_above_the_distance_of_any_two_points() -> None:
         pose[:3, :3] = Rotation.random(random_state=int(RNG.integers(1 << 30))).as_matrix()
         pose[:3, 3] = box[0]
         solid = boxes(-box[1], box[1]).moved(pose)
-        found = separation([turned_body(ends, radius), segments(way)], [solid])[0]
+        found = separation([revolve_body(ends, radius), segments(way)], [solid])[0]
         axis = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
         n, m = 4000, RNG.uniform(0, 1, (3, 4000))
         across = np.cross(axis, RNG.normal(size=(n, 3)))
@@ -77,7 +77,7 @@ def test_no_bound_is_above_the_distance_of_any_two_points() -> None:
 
 def test_many_pairs_at_once_are_the_pairs_one_by_one() -> None:
     low = RNG.normal(size=(40, 3)) * 15
-    many, one = boxes(low, low + RNG.uniform(1, 9, (40, 3))), turned_body([[0, 0, -3], [0, 0, 6]], [4, 2])
+    many, one = boxes(low, low + RNG.uniform(1, 9, (40, 3))), revolve_body([[0, 0, -3], [0, 0, 6]], [4, 2])
     at = places(RNG.normal(size=(40, 3)))
     whole = separation([one, at], [many])
     for k in range(40):
@@ -99,7 +99,7 @@ def test_along_the_axis_of_a_turned_disc_rounding_is_no_direction() -> None:
         turn = Rotation.random(random_state=seed).as_matrix()
         pose = np.eye(4)
         pose[:3, :3] = turn
-        cylinder = turned_body([[0, 0, 0], [0, 0, 100]], 55.0).moved(pose)
+        cylinder = revolve_body([[0, 0, 0], [0, 0, 100]], 55.0).moved(pose)
         way = (turn @ [0.0, 0, 1.0])[None]
         way = way / np.linalg.norm(way)
         assert (cylinder.support(way) @ way[0])[0] == pytest.approx(100.0, abs=1e-5)

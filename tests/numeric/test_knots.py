@@ -5,7 +5,14 @@ import pytest
 from scipy.interpolate import BSpline
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.knots import distinct_inner, elevated, insert_knot, refined, restricted, unrolled
+from toolaxis.numeric.knots import (
+    distinct_inner,
+    elevate_degree,
+    insert_knot,
+    insert_knots,
+    restrict_spline,
+    unroll_periodic,
+)
 
 
 def spline(degree, clamped=True, seed=0):
@@ -39,7 +46,7 @@ def test_inserting_a_knot_changes_nothing(degree, clamped):
 @pytest.mark.parametrize("low, high", [(0.0, 5.0), (0.3, 4.1), (0.0, 1.7), (2.2, 5.0)])
 def test_a_piece_lies_on_the_whole_and_is_clamped(degree, clamped, low, high):
     knots, control = spline(degree, clamped)
-    own_knots, own = restricted(knots, control, degree, low, high)
+    own_knots, own = restrict_spline(knots, control, degree, low, high)
     assert (own_knots[:degree + 1] == low).all()
     assert (own_knots[-degree - 1:] == high).all()
     t = np.linspace(low, high, 50)[:-1]
@@ -51,7 +58,7 @@ def test_a_piece_that_begins_at_a_full_knot():
     knots = np.array([0.0, 0, 0, 1, 1, 2, 2, 2])
     control = np.random.default_rng(4).normal(size=(5, 3))
     for low, high in ((0.0, 1.0), (1.0, 2.0)):
-        own_knots, own = restricted(knots, control, 2, low, high)
+        own_knots, own = restrict_spline(knots, control, 2, low, high)
         assert len(own) == 3
         t = np.linspace(low, high, 9)[:-1]
         assert np.abs(value(own_knots, own, 2, t) - value(knots, control, 2, t)).max() < 1e-13
@@ -61,7 +68,7 @@ def test_a_piece_that_begins_at_a_full_knot():
 def test_a_piece_outside_the_range_is_refused(low, high):
     knots, control = spline(3)
     with pytest.raises(InvalidInput, match="must be a part of"):
-        restricted(knots, control, 3, low, high)
+        restrict_spline(knots, control, 3, low, high)
 
 
 @pytest.mark.parametrize("low, high", [(0.0, 4.0), (3.2, 4.7), (-9.3, -1.0), (1.0, 13.5)])
@@ -70,7 +77,7 @@ def test_a_periodic_spline_repeats_itself_when_unrolled(low, high):
     inner = np.array([0.0, 0.5, 1.7, 2.0, 3.1])
     flat = np.array([inner[k % n] + period * (k // n) for k in range(-degree, n + degree + 1)])
     control = np.random.default_rng(2).normal(size=(n, 3))
-    knots, own = unrolled(flat, control, degree, low, high)
+    knots, own = unroll_periodic(flat, control, degree, low, high)
     wrapped = control[np.arange(n + degree) % n]
     t = np.linspace(low, high, 60)[:-1]
     assert np.abs(value(knots, own, degree, t) - value(flat, wrapped, degree, np.mod(t, period))).max() < 1e-12
@@ -91,7 +98,7 @@ def test_knots_that_differ_by_rounding_stay_one_knot():
     control = np.random.default_rng(2).normal(size=(8, 3))
     low = float(knots[3] + 3e-15)
     for shift in (0.0, period):
-        own, net = unrolled(full, control, 3, low + shift, low + shift + period)
+        own, net = unroll_periodic(full, control, 3, low + shift, low + shift + period)
         gaps = np.diff(np.unique(own))
         assert gaps.min() > 1.0
         assert len(net) == len(own) - 4
@@ -103,7 +110,7 @@ def test_knots_that_differ_by_rounding_stay_one_knot():
 @pytest.mark.parametrize("more", [0, 1, 3])
 def test_a_higher_degree_changes_nothing(degree, more):
     knots, control = spline(degree)
-    raised, net = elevated(knots, control, degree, degree + more)
+    raised, net = elevate_degree(knots, control, degree, degree + more)
     assert len(raised) == len(net) + degree + more + 1 and net.shape[1:] == control.shape[1:]
     t = np.linspace(0, 5, 97)
     assert np.abs(value(raised, net, degree + more, t) - value(knots, control, degree, t)).max() < 1e-11
@@ -115,7 +122,7 @@ def test_a_higher_degree_changes_nothing(degree, more):
 def test_more_knots_change_nothing(degree):
     knots, control = spline(degree)
     target = np.sort(np.concatenate([knots, [0.7, 2.0, 2.0][:degree]]))
-    net = refined(knots, control, degree, target)
+    net = insert_knots(knots, control, degree, target)
     t = np.linspace(0, 5, 97)
     assert np.abs(value(target, net, degree, t) - value(knots, control, degree, t)).max() < 1e-12
-    assert refined(knots, control, degree, knots) is control
+    assert insert_knots(knots, control, degree, knots) is control

@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divided, united, without
+from toolaxis.numeric.polygon_boolean import divide_polygon, unite_polygons, without
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
@@ -30,7 +30,7 @@ def area(loops: tuple[np.ndarray, ...]) -> float:
                                    circle(2, 2, 2.4), circle(4, 2, 0.5)])
 def test_two_sides_are_the_whole(other: np.ndarray) -> None:
     hole = circle(2.7, 1.9, 0.8)
-    within, beyond = divided((SQUARE, hole), (other,))
+    within, beyond = divide_polygon((SQUARE, hole), (other,))
     assert area(within) + area(beyond) == pytest.approx(16 - abs(signed_area(hole)), rel=1e-12)
     uv = np.random.default_rng(1).uniform(-1, 5, (2000, 2))
     whole, cut = inside(slabs((SQUARE, hole)), uv), inside(slabs((other,)), uv)
@@ -51,20 +51,20 @@ def test_random_polygons_agree_with_shapely() -> None:
         if len(loops) < 2:
             continue
         one, other = map(shapely.Polygon, loops)
-        within, beyond = divided((loops[0],), (loops[1],))
+        within, beyond = divide_polygon((loops[0],), (loops[1],))
         assert area(within) == pytest.approx(one.intersection(other).area, rel=1e-9)
         assert area(beyond) == pytest.approx(one.difference(other).area, rel=1e-9)
 
 
 def test_nothing_divides_into_nothing() -> None:
-    assert divided((), (SQUARE,)) == ((), ())
-    assert divided((SQUARE,), ()) == ((), (SQUARE,))
+    assert divide_polygon((), (SQUARE,)) == ((), ())
+    assert divide_polygon((SQUARE,), ()) == ((), (SQUARE,))
 
 
 def test_a_corner_on_a_border_is_refused_or_right() -> None:
     wedge = np.array([[2.0, 4.0], [1.0, 6.0], [3.0, 6.0]])
     try:
-        within, beyond = divided((SQUARE,), (wedge,))
+        within, beyond = divide_polygon((SQUARE,), (wedge,))
     except InvalidInput:
         return
     assert area(within) == pytest.approx(0, abs=1e-9)
@@ -100,7 +100,7 @@ def test_a_saddle_gives_lines_that_do_not_cross() -> None:
 
 def test_a_polygon_without_a_piece_of_it_is_the_rest() -> None:
     hole = circle(2.7, 1.9, 0.8)
-    within, beyond = divided((SQUARE, hole), (circle(4, 2, 1.7),))
+    within, beyond = divide_polygon((SQUARE, hole), (circle(4, 2, 1.7),))
     rest = without((SQUARE, hole), within)
     assert area(rest) == pytest.approx(area(beyond), rel=1e-12)
     uv = np.random.default_rng(7).uniform(-1, 5, (2000, 2))
@@ -110,7 +110,7 @@ def test_a_polygon_without_a_piece_of_it_is_the_rest() -> None:
 
 def test_polygons_beside_each_other_become_one():
     right = np.array([[4.0, 1.0], [7.0, 0.0], [7.0, 6.0], [4.0, 6.0]])
-    whole = united((SQUARE, circle(1, 1, 0.5)), (right, circle(6, 3, 0.5)))
+    whole = unite_polygons((SQUARE, circle(1, 1, 0.5)), (right, circle(6, 3, 0.5)))
     parts = area((SQUARE, circle(1, 1, 0.5))) + area((right, circle(6, 3, 0.5)))
     assert len(whole) == 3 and area(whole) == pytest.approx(parts)
     assert inside(slabs(whole), np.array([[4.0, 3.0], [3.9, 0.5], [4.1, 0.5], [4.1, 5.0]])).tolist() == [True, True,

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from toolaxis.numeric.simplify_polyline import thinned, thinned_loop
+from toolaxis.numeric.simplify_polyline import simplify_loop, simplify_polyline
 
 
 def farthest(points: np.ndarray, kept: np.ndarray) -> float:
@@ -24,7 +24,7 @@ def farthest(points: np.ndarray, kept: np.ndarray) -> float:
 def test_no_point_is_farther_than_the_bound(bound: float) -> None:
     t = np.linspace(0, 7, 400)
     points = np.stack([5 * np.cos(t), 5 * np.sin(t), t + np.random.default_rng(1).normal(0, 0.01, 400)], axis=1)
-    kept = thinned(points, bound)
+    kept = simplify_polyline(points, bound)
     assert farthest(points, kept) <= bound + 1e-3
     assert kept[0] == 0 and kept[-1] == 399 and (np.diff(kept) > 0).all()
     if bound == 0.3:  # an arc of r = 5 needs a chord for every 2 acos(1 - 0.3 / 5)
@@ -33,17 +33,17 @@ def test_no_point_is_farther_than_the_bound(bound: float) -> None:
 
 def test_straight_lines_keep_their_ends_and_a_negative_bound_keeps_all() -> None:
     line = np.linspace([0.0, 1, 2], [3.0, 4, 9], 50)
-    assert thinned(line, 1e-9).tolist() == [0, 49]
-    assert thinned(line, -1.0).tolist() == list(range(50))
-    assert thinned(line[:1], 1.0).tolist() == [0] and thinned(line[:0], 1.0).tolist() == []
+    assert simplify_polyline(line, 1e-9).tolist() == [0, 49]
+    assert simplify_polyline(line, -1.0).tolist() == list(range(50))
+    assert simplify_polyline(line[:1], 1.0).tolist() == [0] and simplify_polyline(line[:0], 1.0).tolist() == []
 
 
 def test_loops_keep_three_vertices_and_their_shape() -> None:
     t = np.linspace(0, 2 * np.pi, 300, endpoint=False)
     ring = np.stack([np.cos(t), np.sin(t)], axis=1)
-    kept = thinned_loop(ring, 0.01)
+    kept = simplify_loop(ring, 0.01)
     closed = np.concatenate([kept, [300]])
     assert farthest(np.vstack([ring, ring[:1]]), closed) <= 0.0101 and len(kept) < 60
-    assert len(thinned_loop(ring, 10.0)) == 3
+    assert len(simplify_loop(ring, 10.0)) == 3
     square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
-    assert thinned_loop(square, 0.1).tolist() == [0, 1, 2, 3]
+    assert simplify_loop(square, 0.1).tolist() == [0, 1, 2, 3]

@@ -6,24 +6,24 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric import sequencing as tours
-from toolaxis.numeric.sequencing import Steps, in_order, shortest
+from toolaxis.numeric.sequencing import TransitionCosts, in_order, shortest
 
 
-def random_steps(seed: int, things: int = 5, groups: int = 5, holes: float = 0.0) -> Steps:
+def random_steps(seed: int, things: int = 5, groups: int = 5, holes: float = 0.0) -> TransitionCosts:
     rng = np.random.default_rng(seed)
     counts = rng.integers(1, 4, things)
     owner = np.repeat(np.arange(things), counts)
     cost = rng.uniform(0.1, 9, (len(owner), len(owner)))
     cost[rng.uniform(size=cost.shape) < holes] = np.inf
-    return Steps(cost, owner, rng.integers(0, groups, things), rng.uniform(0, 2, len(owner)))
+    return TransitionCosts(cost, owner, rng.integers(0, groups, things), rng.uniform(0, 2, len(owner)))
 
 
-def cohesive(steps: Steps, order: tuple[int, ...]) -> bool:
+def cohesive(steps: TransitionCosts, order: tuple[int, ...]) -> bool:
     names = steps.group[list(order)].tolist()
     return len([k for k in range(len(names)) if k == 0 or names[k] != names[k - 1]]) == len(set(names))
 
 
-def cheapest(steps: Steps) -> float:
+def cheapest(steps: TransitionCosts) -> float:
     """All orders, all states."""
     best = np.inf
     states = [np.flatnonzero(steps.owner == thing) for thing in range(steps.things)]
@@ -35,7 +35,7 @@ def cheapest(steps: Steps) -> float:
     return best
 
 
-def told(steps: Steps, states: tuple[int, ...]) -> float:
+def told(steps: TransitionCosts, states: tuple[int, ...]) -> float:
     return float(steps.start[states[0]] + sum(steps.cost[a, b] for a, b in pairwise(states)))
 
 
@@ -72,11 +72,12 @@ def test_what_is_not_exact_keeps_groups_together_and_is_within_its_bound(seed: i
 def test_many_things_on_a_line_are_found_in_their_order() -> None:
     places = np.random.default_rng(2).permutation(30).astype(float)
     cost = np.abs(places[:, None] - places)
-    steps = Steps(cost, np.arange(30), np.arange(30), places)
+    steps = TransitionCosts(cost, np.arange(30), np.arange(30), places)
     found = shortest(steps)
     assert found.cost == pytest.approx(29.0) and found.bound <= 29.0
 
 
 def test_one_thing() -> None:
-    found = shortest(Steps(np.zeros((2, 2)), np.zeros(2, dtype=int), np.zeros(1, dtype=int), np.array([3.0, 2.0])))
+    found = shortest(TransitionCosts(np.zeros((2, 2)), np.zeros(2, dtype=int), np.zeros(1, dtype=int),
+                                     np.array([3.0, 2.0])))
     assert (found.states, found.cost) == ((1,), 2.0)

@@ -10,17 +10,17 @@ from toolaxis.contact.clearance.branch_and_bound import BUDGET
 from toolaxis.contact.clearance.gouge import segment_penetration
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER
-from toolaxis.feasibility.violations import BACK, FREE, GOUGE, WANDERS, Witness
+from toolaxis.feasibility.violations import BACK, FREE, GOUGE, WANDERS, Violation
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.pass_count import count
 from toolaxis.plan.orientation import OUTCOMES, REASONS
 from toolaxis.progress import Progress
 from toolaxis.search import infeasibility as impossible
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
-from toolaxis.search.hemisphere import Candidate, repaired, search
-from toolaxis.search.path_check import Proof, prove
+from toolaxis.search.hemisphere import CountedAxis, next_in_lobe, search
+from toolaxis.search.path_check import PathCheck, prove
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -106,13 +106,13 @@ def test_a_corner_too_large_is_proven_infeasible(make):
 
 
 def test_no_proof_is_drawn_from_a_search_that_was_given_up(make, monkeypatch):
-    measured = impossible.bounded
+    measured = impossible.lower_bounds
 
     def given_up(*asked):
         found = measured(*asked)
         return found._replace(lower=found.lower - 5.0, looked=found.looked + BUDGET)
 
-    monkeypatch.setattr(impossible, "bounded", given_up)
+    monkeypatch.setattr(impossible, "lower_bounds", given_up)
     assert impossible.corner_too_large(task(make.bowl(9.0, size=5), Tool.ball(8), H).feasibility) == ""
 
 
@@ -186,10 +186,10 @@ def test_the_proof_sees_one_bad_motion(make):
 
 def test_a_refused_axis_is_left_for_another(make):
     job = task(make.seeded(78), TOOL, H)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     best = search(ledger)[0]
-    other = repaired(ledger, best, Witness(WANDERS, 0.1))
-    assert isinstance(other, Candidate) and angle_between(other.axis, best.axis) > radians(0.1)
+    other = next_in_lobe(ledger, best, Violation(WANDERS, 0.1))
+    assert isinstance(other, CountedAxis) and angle_between(other.axis, best.axis) > radians(0.1)
     assert other.value >= best.value * 0.999
 
 
@@ -198,7 +198,8 @@ def test_what_the_proof_refuses_is_not_given(make, monkeypatch):
 
     def strict(path, *rest, **more):
         calls.append(path.axis[0])
-        return Proof(Witness(GOUGE, 0.001, "1", distance=-0.003)) if len(calls) == 1 else prove(path, *rest, **more)
+        return PathCheck(Violation(GOUGE, 0.001, "1", distance=-0.003)) if len(calls) == 1 else prove(path, *rest,
+                                                                                                      **more)
 
     monkeypatch.setattr("toolaxis.search.fixed_axis.prove", strict)
     found = best_axis(face, TOOL, H)

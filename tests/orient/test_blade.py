@@ -17,19 +17,19 @@ from toolaxis.numeric.vectors import rotation
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.smooth_skins import join
-from toolaxis.strategies.blade.clearance_limits import Room
-from toolaxis.strategies.blade.layers import Ring, along_blade, closed_parameter
+from toolaxis.strategies.blade.clearance_limits import BladeSurroundings
+from toolaxis.strategies.blade.layers import Ring, along_blade, find_closed_parameter
 from toolaxis.strategies.blade.plan import BladeSearch, blade
-from toolaxis.strategies.blade.schedule import Layer, Swing, plane_of, reschedule, swing_of
+from toolaxis.strategies.blade.schedule import Layer, SwivelAxis, plane_of, reschedule, swing_of
 from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.strategies.common.path_check import prove_moving
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.verdict import Task as Judged
+from toolaxis.verify.verdict import VerificationTask as Judged
 from toolaxis.verify.verdict import judge
 
 H = 0.05
 TOOL = Tool.ball(8, stickout=90, holder=[(15, 0), (15, 60)])
-UP = Swing(np.array([0.0, 0.0, 1.0]))
+UP = SwivelAxis(np.array([0.0, 0.0, 1.0]))
 
 
 def platform(height=-8.0, size=40.0):
@@ -142,7 +142,7 @@ def test_the_room_inside_a_channel_is_free_and_what_it_takes_off_is_not(turbine)
     tool = Tool.ball(8, stickout=30, holder=[(18, 0), (18, 60)])
     job = task(turbine, tool, H, surroundings=(platform(-30.0, 30.0),))
     search = BladeSearch(job, "least")
-    room = Room(tool, job.feasibility.groups, search.swing)
+    room = BladeSurroundings(tool, job.feasibility.groups, search.swing)
     planes, some, left = search.planes()
     assert left == (0.0, 0.0)
     turn, wide = search.turns[some][-1], planes[-1].wide
@@ -201,10 +201,10 @@ def test_curves_and_clearances_that_do_not_exist_are_named():
 
 
 def test_a_closed_face_tells_its_parameter(turbine):
-    assert closed_parameter(turbine) == "u"
+    assert find_closed_parameter(turbine) == "u"
     turned = Face.from_bspline(turbine.surface.control[..., :3].transpose(1, 0, 2), (3, 3),
                                (turbine.surface.knots_v, turbine.surface.knots_u), flip=True)
-    assert closed_parameter(turned) == "v"
+    assert find_closed_parameter(turned) == "v"
 
 
 def test_a_blade_of_a_blisk_closes_where_its_faces_are_joined():
@@ -212,14 +212,14 @@ def test_a_blade_of_a_blisk_closes_where_its_faces_are_joined():
     with pytest.raises(UnsupportedGeometry, match="would turn by 41 degrees"):
         join(part, (1, 163, 3, 161))
     with pytest.raises(InvalidInput, match="does not close around a blade"):
-        closed_parameter(part.face(1))
+        find_closed_parameter(part.face(1))
     face = join(part, (1, 163, 3, 161), corner=np.pi).face(1)
-    assert closed_parameter(face) == "u"
+    assert find_closed_parameter(face) == "u"
     ring = Ring(face, "u", along_blade(face, "u"), 3.0)
     low, high = ring.span
     assert high - low > 40
     along = ring.places(1e-3)
     found = reschedule([Layer(ring.at(along, np.full(len(along), z))[2]) for z in np.linspace(low, high, 5)],
-                       Swing(ring.direction), curve="least")
+                       SwivelAxis(ring.direction), curve="least")
     assert min(one.wide.width for one in found) > np.radians(90)
     assert max(one.peak / one.bound for one in found) < 3

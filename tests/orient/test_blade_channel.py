@@ -5,7 +5,7 @@ import pytest
 from benchmarks._blades import FAMILIES, even, offset, profile, sections
 
 from toolaxis.errors import InvalidInput
-from toolaxis.strategies.blade.angle_channel import Channel, channel
+from toolaxis.strategies.blade.angle_channel import AngleChannel, channel
 from toolaxis.strategies.blade.key_points import best_rule, key_curve
 from toolaxis.strategies.blade.minimum_acceleration import least_curve, least_peak
 from toolaxis.strategies.blade.section import base_of, section
@@ -142,7 +142,7 @@ def test_curves_rise_keep_to_the_channel_and_the_bound_is_below_them(name):
 
 def test_the_bound_of_a_wide_channel_is_that_of_full_acceleration_and_braking():
     s = np.linspace(0, 100.0, 401)
-    free = Channel(s, -np.full(401, 9.0), np.full(401, 9.0))
+    free = AngleChannel(s, -np.full(401, 9.0), np.full(401, 9.0))
     assert least_peak(free, 0.0, 1.0, 401) == pytest.approx(4 / 100**2, rel=2e-2)
     assert least_peak(free, 0.0, 1.0, 401) <= 4 / 100**2 * (1 + 1e-9)
     made = least_curve(free, 0.0, 1.0, rise=1e-3)

@@ -9,12 +9,12 @@ from toolaxis.errors import InvalidInput
 from toolaxis.post.apt import apt_text
 from toolaxis.post.read_apt import read_apt
 from toolaxis.strategies.blade.reschedule import reschedule_path, swing_of_path
-from toolaxis.strategies.blade.schedule import Swing
+from toolaxis.strategies.blade.schedule import SwivelAxis
 from toolaxis.strategies.blade.section import section
 from toolaxis.tools.tool import Tool
 
 TOOL = Tool.ball(6, flute_length=20)
-UP = Swing(np.array([0.0, 0.0, 1.0]))
+UP = SwivelAxis(np.array([0.0, 0.0, 1.0]))
 
 
 def path(name="steam", turns=3.3, count=240, start=37, flip=False, lean=0.1):
@@ -25,7 +25,7 @@ def path(name="steam", turns=3.3, count=240, start=37, flip=False, lean=0.1):
     z = np.arange(len(k)) / count
     x, y = UP.plane
     theta = (one.ahead[:-1] + one.behind[:-1])[k] / 2 - np.pi / 2
-    axis = Swing(UP.direction, lean).axes(theta)
+    axis = SwivelAxis(UP.direction, lean).axes(theta)
     centre = one.points[k][:, :1] * x + one.points[k][:, 1:] * y + z[:, None] * UP.direction
     if flip:
         axis, centre = axis[::-1], centre[::-1]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import MachineSurroundings, nearest_meeting
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.limits import Cone
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -17,17 +17,17 @@ from toolaxis.shape.bounding.bounding_tree import forest
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])
-TABLE = Body("table", "C", "cylinder", np.array([[0.0, 0, -60], [0, 0, 0]]), 300.0)
-HEAD = Body("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 70.0)
+TABLE = MachineBody("table", "C", "cylinder", np.array([[0.0, 0, -60], [0, 0, 0]]), 300.0)
+HEAD = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 70.0)
 
 
-def machine(*bodies: Body) -> Machine:
+def machine(*bodies: MachineBody) -> Machine:
     linear = tuple(LinearAxis(name, way, DRIVE, -900, 900) for name, way in zip("XYZ", np.eye(3), strict=True))
     return Machine("small", linear, (RotaryAxis("C", np.array([0, 0, 1.0]), np.zeros(3), DRIVE),),
                    (RotaryAxis("B", np.array([0, 1.0, 0]), np.zeros(3), DRIVE, -2.2, 2.2),), bodies=bodies)
 
 
-def mounting(*bodies: Body) -> Mounting:
+def mounting(*bodies: MachineBody) -> Mounting:
     return Mounting(machine(*bodies), (-20.0, -15.0, 25.0), TOOL.gauge_length)
 
 
@@ -56,7 +56,7 @@ def test_another_axis_is_found_and_keeps_its_distance(slope: ta.Face) -> None:
     assert tilts[1] < tilts[0] - 0.5
     rows = mounting(TABLE, HEAD).solutions(found.axis)
     tips = ta.passes(slope, TOOL, found.axis, 0.2, feed=found.feed).cl
-    around = Surroundings(TOOL, (forest((slope,)),), 0.9)
+    around = MachineSurroundings(TOOL, (forest((slope,)),), 0.9)
     assert any(nearest_meeting(mounting(TABLE, HEAD), row, tips, around) is None for row in rows)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from toolaxis.feasibility.check_points import contacts_at
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -29,7 +29,8 @@ def test_walls_are_near_within_their_exact_distance():
 
 
 def test_watching_later_is_watching_from_the_start():
-    groups = (Group(SKIN, (FLOOR,), np.array([-0.002, 0.5, 1.0])), Group(OTHER, WALLS, np.array([0.1, 0.5, 1.0])))
+    groups = (CheckSurfaces(SKIN, (FLOOR,), np.array([-0.002, 0.5, 1.0])),
+              CheckSurfaces(OTHER, WALLS, np.array([0.1, 0.5, 1.0])))
     one = Feasibility(FLOOR, Tool.ball(6), groups, Tolerance())
     more = np.random.default_rng(6).uniform(size=(2, 7, 2))
     assert len(one.sparse.uv) == len(one.watching(more[0]).sparse.uv) - 7

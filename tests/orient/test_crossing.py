@@ -5,11 +5,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.feasibility.surroundings import grouped
+from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.job.planning.blade_clearances import tightest
 from toolaxis.search.fixed_axis import task
-from toolaxis.search.link_heights import OVER, Crossing, height_over
-from toolaxis.strategies.common.path_check import MovingCrossing
+from toolaxis.search.link_heights import OVER, LinkClearance, height_over
+from toolaxis.strategies.common.path_check import MovingLinkClearance
 from toolaxis.tolerances import Tolerance
 
 TOOL = ta.Tool.torus(diameter=8, corner_radius=1, stickout=40, holder=[(10, 0), (10, 30)])
@@ -69,7 +69,7 @@ def test_a_lift_stays_where_something_stands_between_or_the_way_is_long(sheet: t
     ends = np.array([[20.0, 10, 3.0], [50.0, 10, 3.0], [5.0, 9, 3.0]])
     begins = ends + np.array([[3.0, 0, 0], [3.0, 0, 0], [9.0, 0, 0]])
     post = box(21, 22, 9, 11, 4.0)
-    over = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=post), AXIS, 60.0).beside(ends, begins)
+    over = LinkClearance(TOOL, group_surroundings(sheet, Tolerance(), obstacles=post), AXIS, 60.0).beside(ends, begins)
     assert np.isnan(over[0]).all(), "a post stands between"
     assert np.allclose(over[1], [51.5, 10, 3.0]), "nothing is in the way"
     assert np.isnan(over[2]).all(), "nine millimetres are not beside"
@@ -87,7 +87,7 @@ def cutter_distance(points: np.ndarray, tip: np.ndarray) -> float:
 
 def test_a_link_over_a_box_goes_above_it(sheet: ta.Face) -> None:
     walls = box(24, 34, -3, 33, 14.0)
-    crossing = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=walls), AXIS, 60.0)
+    crossing = LinkClearance(TOOL, group_surroundings(sheet, Tolerance(), obstacles=walls), AXIS, 60.0)
     ends, begins = np.array([[5.0, 10, 3.0], [5.0, 10, 3.0]]), np.array([[52.0, 10, 3.0], [9.0, 11, 3.0]])
     over, beside = crossing.heights(ends, begins)
     assert beside == pytest.approx(max(ends[1] @ AXIS, begins[1] @ AXIS) + 1.0)
@@ -101,17 +101,17 @@ def test_a_link_over_a_box_goes_above_it(sheet: ta.Face) -> None:
 
 def test_a_link_between_walls_too_near_rises_to_the_top(sheet: ta.Face) -> None:
     roof = box(-20, 80, 12, 40, 50.0)
-    crossing = Crossing(TOOL, grouped(sheet, Tolerance(), obstacles=roof), AXIS, 70.0)
+    crossing = LinkClearance(TOOL, group_surroundings(sheet, Tolerance(), obstacles=roof), AXIS, 70.0)
     assert crossing.heights(np.array([[5.0, 9, 3.0]]), np.array([[52.0, 9, 3.0]])) == pytest.approx([70.0])
 
 
 @pytest.mark.parametrize(("scallop", "lift"), [(0.02, 1.0), (0.05, 1.0), (0.2, 8.0), (0.5, 20.0)])
 def test_links_keep_what_passes_leave_standing(sheet: ta.Face, scallop: float, lift: float) -> None:
     tips, normal = np.array([[20.0, 15, 1.0], [40.0, 15, 1.0]]), np.array([0.0, 0, 1])
-    crossing = Crossing(TOOL, grouped(sheet, Tolerance()), normal, 60.0, over=height_over(scallop))
+    crossing = LinkClearance(TOOL, group_surroundings(sheet, Tolerance()), normal, 60.0, over=height_over(scallop))
     height, = crossing.heights(tips[:1], tips[1:])
     assert height == pytest.approx(1.0 + lift)
-    moving = MovingCrossing(TOOL, grouped(sheet, Tolerance()), over=height_over(scallop))
+    moving = MovingLinkClearance(TOOL, group_surroundings(sheet, Tolerance()), over=height_over(scallop))
     for up in (lift, 0.3 * height_over(scallop)):
         ends = [(tip + up * normal)[None] for tip in tips]
         free, = moving.clear(*ends, normal[None], normal[None], True)
@@ -138,9 +138,9 @@ def test_links_at_a_large_scallop_height_pass_the_judge_between_boxes(sheet: ta.
 
 def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,
                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.search.fixed_axis import FaceProblem
 
-    laid, axes = Task.laid, []
+    laid, axes = FaceProblem.laid, []
 
     def _laid(self, axis, feed):
         axes.append(axis)
@@ -148,7 +148,7 @@ def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.F
             raise ta.InvalidInput("strip width is [0, 0] at uv [0.5, 0.5] of face 1")
         return laid(self, axis, feed)
 
-    monkeypatch.setattr(Task, "laid", _laid)
+    monkeypatch.setattr(FaceProblem, "laid", _laid)
     found = ta.best_axis(sheet, TOOL, 0.01)  # many passes: the order is that of the counts
     assert found.outcome == "feasible" and not np.array_equal(found.axis, axes[0])
     assert any("strip width is [0, 0]" in reason for reason in found.reasons)

@@ -13,24 +13,24 @@ from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.search.fastest_setup import cutting_seconds, fastest
-from toolaxis.search.kinematic_setup import Domain, Stretch, allowed_angles, rotary_grid, setup
+from toolaxis.search.kinematic_setup import Domain, PassSegment, are_angles_allowed, rotary_grid, setup
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 MANTA = np.array([[0.0, 0, 100, 100], [0, 0, 100, 100], [100, 100, 0, 0], [100, 100, 0, 0]])
 
 
-def _rules(count: int) -> tuple[Stretch, ...]:
+def _rules(count: int) -> tuple[PassSegment, ...]:
     """Rules of the paraboloid z = (y^2 - x^2)/500."""
     found = []
     for c in np.linspace(-97, 97, count):
         x = np.array([max(-50, -50 - c), min(50, 50 - c)])
         normals = np.stack([2 * x / 500, -2 * (x + c) / 500, np.ones(2)], axis=1)
-        found.append(Stretch(np.stack([x, x + c, ((x + c) ** 2 - x * x) / 500], axis=1),
-                             normals / np.linalg.norm(normals, axis=1, keepdims=True)))
+        found.append(PassSegment(np.stack([x, x + c, ((x + c) ** 2 - x * x) / 500], axis=1),
+                                 normals / np.linalg.norm(normals, axis=1, keepdims=True)))
     return tuple(found)
 
 
-def _manta(count: int, points: int = 120) -> tuple[Stretch, ...]:
+def _manta(count: int, points: int = 120) -> tuple[PassSegment, ...]:
     """Centres of a ball of radius 8 mm over the Manta, feed along y."""
     v = np.linspace(0, 1, points)
 
@@ -45,15 +45,15 @@ def _manta(count: int, points: int = 120) -> tuple[Stretch, ...]:
         zv = 3 * _basis(v, 2) @ np.diff(across @ MANTA)
         normals = np.stack([-zu / 600, -zv / 600, np.ones(points)], axis=1)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        found.append(Stretch(np.stack([np.full(points, 600 * u), 600 * v, z], axis=1) + 8 * normals, normals))
+        found.append(PassSegment(np.stack([np.full(points, 600 * u), 600 * v, z], axis=1) + 8 * normals, normals))
     return tuple(found)
 
 
-def _compared(passes: tuple[Stretch, ...], feed: float, step: float) -> float:
+def _compared(passes: tuple[PassSegment, ...], feed: float, step: float) -> float:
     """The found set-up's time over the best on a grid."""
     feeds = Feeds(feed / 60, tolerance=0.01)
     grid = rotary_grid(MIKRON, radians(step))
-    grid = grid[allowed_angles(MIKRON, grid, passes, Domain())]
+    grid = grid[are_angles_allowed(MIKRON, grid, passes, Domain())]
     found, seconds = fastest(MIKRON, passes, feeds)
     assert seconds == pytest.approx(float(cutting_seconds(MIKRON, passes, found.rotary, feeds)[0]), rel=1e-9)
     assert seconds <= cutting_seconds(MIKRON, passes, setup(MIKRON, passes).rotary, feeds)[0] * (1 + 1e-9)

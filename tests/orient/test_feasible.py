@@ -9,7 +9,7 @@ from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.point_check import deepest, deepest_numpy
-from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, grouped
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, group_surroundings
 from toolaxis.feasibility.violations import BACK, CUTTER, FREE, GOUGE, HOLDER, LIMITS, WANDERS
 from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
@@ -23,7 +23,7 @@ HELD = Tool.torus(8, 1, stickout=30, holder=[(12, 0), (12, 30)])
 
 def judge(face, tool=TOOL, limits=None, tolerance=None, **around):
     tolerance = Tolerance.of(tolerance)
-    return Feasibility(face, tool, grouped(face, tolerance, **around), tolerance, limits)
+    return Feasibility(face, tool, group_surroundings(face, tolerance, **around), tolerance, limits)
 
 
 def depth_by_points(face, tool, axis, extra=()):
@@ -126,7 +126,8 @@ def test_cloud_twin_agrees(make):
 
 def test_groups_sort_faces_by_their_edges(make):
     part = make.floor_and_wall()
-    groups = grouped(part.faces[0], Tolerance(), part=part, obstacles=make.flat([0, 0, 50], [5, 0, 0], [0, 5, 0]))
+    groups = group_surroundings(part.faces[0], Tolerance(), part=part,
+                                obstacles=make.flat([0, 0, 50], [5, 0, 0], [0, 5, 0]))
     assert [(g.role, len(g.faces)) for g in groups] == [(SKIN, 1), (TOUCHING, 1), (OTHER, 2)]
     assert groups[1].faces[0].number == 3
     np.testing.assert_allclose(groups[0].required, [-0.01, 0.5, 1.0])
@@ -135,7 +136,7 @@ def test_groups_sort_faces_by_their_edges(make):
 
 def test_obstacles_must_be_faces(make):
     with pytest.raises(InvalidInput, match="obstacles"):
-        grouped(make.seeded(1), Tolerance(), obstacles=7)
+        group_surroundings(make.seeded(1), Tolerance(), obstacles=7)
 
 
 def test_next_to_a_wall_the_zone_the_cutter_covers_is_left(make):

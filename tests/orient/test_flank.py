@@ -8,7 +8,7 @@ import pytest
 from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.search.direction_grid import own_frame, spiral
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import task
 from toolaxis.search.flank_axes import flank_axes
 from toolaxis.search.hemisphere import search
@@ -50,7 +50,7 @@ def test_there_are_none_where_no_direction_is_meant(make) -> None:
 def test_a_search_is_no_worse_than_all_axes_around_the_flank() -> None:
     """They lie a degree apart."""
     job = task(Face.from_bspline(lens()), TOOL, 0.15)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     found = search(ledger)
     middle = own_frame(job.feasibility.normals.samples, flank_axes(job.feasibility)[0])
     around = spiral(middle, radians(1), radians(5))

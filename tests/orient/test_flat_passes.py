@@ -8,16 +8,16 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.search.fixed_axis import task
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
-from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, matched_lead, two_point_lead
-from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, match_lead, two_point_lead
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
 from toolaxis.strategies.two_point.lean_field import field_of
 from toolaxis.strategies.two_point.postures import BEHIND, CONVEX, REASONS, TWO, postures
-from toolaxis.strategies.two_point.search import gouging, told, two_point
+from toolaxis.strategies.two_point.search import describe_contacts, gouging, two_point
 from toolaxis.strategies.two_point.strips import lane, lay_strips, next_strip, places, strip
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
 TOOL, H, RHO = Tool.flat(20), 0.03, 40.0
@@ -25,7 +25,7 @@ TOOL, H, RHO = Tool.flat(20), 0.03, 40.0
 
 def trough(hollow=True, half=0.45, trims=()):
     """Part of a cylinder along v, 36 mm wide, seen from inside or from outside."""
-    return Face(Cylinder(RHO, (-half, half), (0.0, 30.0)).nurbs(), trims, flip=hollow)
+    return Face(CylindricalSurface(RHO, (-half, half), (0.0, 30.0)).nurbs(), trims, flip=hollow)
 
 
 def basin():
@@ -35,9 +35,9 @@ def basin():
     return Face.from_bspline(np.stack([x, y, height], axis=-1), (3, 3))
 
 
-@pytest.mark.parametrize("posture, lean, lift", [("two-point", two_point_lead, H), ("one-point", matched_lead, 0.0)])
+@pytest.mark.parametrize("posture, lean, lift", [("two-point", two_point_lead, H), ("one-point", match_lead, 0.0)])
 def test_strips_on_a_trough_are_the_formulas(posture, lean, lift):
-    work = Work(trough(), TOOL, H, "v", posture)
+    work = TwoPointInputs(trough(), TOOL, H, "v", posture)
     found = strip(work, 0.0)
     lead = lean(10.0, RHO, H) if posture == "two-point" else lean(10.0, RHO)
     chord = float(circle_strip_width(10.0, RHO, H, lead, lift))
@@ -53,10 +53,10 @@ def test_strips_on_a_trough_are_the_formulas(posture, lean, lift):
 
 def test_reasons_for_one_contact():
     along = np.array([15.0])
-    assert postures(Work(trough(), TOOL, H, "v"), along, 0.0, 1).reason[0] == TWO
-    ridge = postures(Work(trough(hollow=False), TOOL, H, "v"), along, 0.0, 1)
+    assert postures(TwoPointInputs(trough(), TOOL, H, "v"), along, 0.0, 1).reason[0] == TWO
+    ridge = postures(TwoPointInputs(trough(hollow=False), TOOL, H, "v"), along, 0.0, 1)
     assert ridge.reason[0] == CONVEX and ridge.contacts[0] == 1
-    crosswise = postures(Work(trough(half=0.8), TOOL, H, "u", "one-point"), np.array([0.0]), 15.0, 1)
+    crosswise = postures(TwoPointInputs(trough(half=0.8), TOOL, H, "u", "one-point"), np.array([0.0]), 15.0, 1)
     assert crosswise.reason[0] == CONVEX and REASONS[CONVEX].endswith("not hollow across the feed")
     assert np.degrees(crosswise.stand.lean[0]) == pytest.approx(np.degrees(np.arcsin(10 / RHO)), abs=0.05)
 
@@ -66,8 +66,8 @@ def test_leans_are_raised_until_nothing_gouges(posture, share):
     """Along the feed the basin is as hollow as across it from its middle on, which the paper's leans leave out."""
     face = basin()
     along = np.linspace(0.1, 0.9, 9)
-    printed = postures(Work(face, TOOL, H, "u", posture, share=share), along, 0.4, 1)
-    free = postures(Work(face, TOOL, H, "u", f"{posture}-raised", share=share), along, 0.4, 1)
+    printed = postures(TwoPointInputs(face, TOOL, H, "u", posture, share=share), along, 0.4, 1)
+    free = postures(TwoPointInputs(face, TOOL, H, "u", f"{posture}-raised", share=share), along, 0.4, 1)
     assert printed.ring.least.min() < -0.01 and free.ring.least.min() >= -2e-5
     assert (free.stand.lean >= printed.stand.lean - 1e-12).all()
     assert (free.stand.lean - printed.stand.lean).max() > 1e-3
@@ -77,7 +77,7 @@ def test_leans_are_raised_until_nothing_gouges(posture, share):
 
 
 def test_next_strip_meets_what_is_covered():
-    work = Work(trough(), TOOL, H, "v", "one-point")
+    work = TwoPointInputs(trough(), TOOL, H, "v", "one-point")
     first = strip(work, -0.3)
     covered = first.step + first.halves[:, 1]
     beside = next_strip(work, covered, 0.05, "ahead")
@@ -91,7 +91,7 @@ def test_next_strip_meets_what_is_covered():
 
 
 def test_ways_to_lean_and_their_mirror():
-    work = Work(trough(), TOOL, H, "v")
+    work = TwoPointInputs(trough(), TOOL, H, "v")
     ahead, back = lane(work, 0.1, 1), lane(work, 0.1, -1)
     np.testing.assert_allclose(ahead.halves[10:-10], back.halves[10:-10], rtol=0.02)
     assert (ahead.reach[5:-5, 1] > places(work)[5:-5]).all() and (back.reach[5:-5, 0] < places(work)[5:-5]).all()
@@ -112,7 +112,7 @@ def test_the_judge_passes_two_point_contact(planned):
     face, job, found, path = planned
     assert found.outcome == "feasible" and path is not None, found.reasons
     assert found.passes == path.passes and any("two contacts" in why for why in found.reasons)
-    verdict = judge(Task("trough", path.cl, path.axis, path.kind, TOOL.profile, (face,), H, 0.1))
+    verdict = judge(VerificationTask("trough", path.cl, path.axis, path.kind, TOOL.profile, (face,), H, 0.1))
     assert verdict.passed and verdict.gouge_max < 0.002 and verdict.scallop_max < 1.03 * H, verdict.reasons
     assert len(gouging(job, path)) == 0
 
@@ -127,21 +127,22 @@ def test_lower_tips_are_not_proven(planned):
 
 def test_two_contacts_take_fewer_passes_than_one(planned):
     _, _, found, _ = planned
-    work = Work(trough(), TOOL, H, "v", "one-point", allowance=0.1)
+    work = TwoPointInputs(trough(), TOOL, H, "v", "one-point", allowance=0.1)
     assert found.feed == "v" and found.passes < len(lay_strips(work))
-    assert told(work, (strip(work, 0.0),)) == (f"{REASONS[BEHIND]} on 100.0 % of the passes",)
+    assert describe_contacts(work, (strip(work, 0.0),)) == (f"{REASONS[BEHIND]} on 100.0 % of the passes",)
 
 
 def test_bad_input_is_refused():
     with pytest.raises(InvalidInput, match="posture is 'three'"):
-        Work(trough(), TOOL, H, "v", "three")
+        TwoPointInputs(trough(), TOOL, H, "v", "three")
     with pytest.raises(InvalidInput, match="feed is 'w'"):
-        Work(trough(), TOOL, H, "w")
+        TwoPointInputs(trough(), TOOL, H, "w")
     with pytest.raises(InvalidInput, match=r"share of the tolerance is 1\.5"):
-        Work(trough(), TOOL, H, "v", "formula", share=1.5)
+        TwoPointInputs(trough(), TOOL, H, "v", "formula", share=1.5)
     with pytest.raises(InvalidInput, match="lead is 90"):
-        Work(trough(), TOOL, H, "v", "sturz", np.pi / 2)
+        TwoPointInputs(trough(), TOOL, H, "v", "sturz", np.pi / 2)
     with pytest.raises(InvalidInput, match="flat bottom"):
-        Work(trough(), Tool.ball(8), H)
+        TwoPointInputs(trough(), Tool.ball(8), H)
     with pytest.raises(InvalidInput, match=r"comes within|too narrow"):
-        lay_strips(Work(Face(Cylinder(8.0, (-0.8, 0.8), (0.0, 30.0)).nurbs(), flip=True), TOOL, H, "v", "one-point"))
+        lay_strips(TwoPointInputs(Face(CylindricalSurface(8.0, (-0.8, 0.8), (0.0, 30.0)).nurbs(), flip=True), TOOL, H,
+                                  "v", "one-point"))

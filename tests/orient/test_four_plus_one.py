@@ -8,23 +8,23 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feasibility.surroundings import SKIN, Group
+from toolaxis.feasibility.surroundings import SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import GOUGE
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.path_check import prove_moving
-from toolaxis.strategies.four_plus_one.clamp_angle import Clamping
+from toolaxis.strategies.four_plus_one.clamp_angle import ClampSearch
 from toolaxis.strategies.four_plus_one.links import free_angles, on_the_circle
 from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedChart, ClampedCut
 from toolaxis.strategies.four_plus_one.search import (
-    Finder,
+    FourPlusOneSearch,
     _ways,
-    clamped_range,
+    clampable_angles,
     four_plus_one,
     machine_of,
-    screened,
+    screen_angles,
 )
 from toolaxis.tools.tool import Tool
 
@@ -40,9 +40,9 @@ MIKRON = load_machine("mikron-ucp-710")
 @pytest.fixture(scope="module")
 def searched():
     """One search, with the clamped angles that it ranks before passes are laid."""
-    job, ranked, found = task(seeded(5, 1.2), TOOL, H, Mounting(MIKRON)), [], Finder.found
+    job, ranked, found = task(seeded(5, 1.2), TOOL, H, Mounting(MIKRON)), [], FourPlusOneSearch.found
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Finder, "found", lambda self, fixed: ranked.extend(found(self, fixed)) or ranked)
+        patch.setattr(FourPlusOneSearch, "found", lambda self, fixed: ranked.extend(found(self, fixed)) or ranked)
         return job, *four_plus_one(job), ranked
 
 
@@ -102,10 +102,10 @@ def test_both_solutions_of_the_machine_are_told(which: int) -> None:
 def test_no_other_clamped_angle_is_counted_shorter(searched) -> None:
     """The first that is ranked, against angles all over the range and beside it: within 1 %."""
     job, best = searched[0], searched[3][0]
-    finder = Finder(Clamping(job, machine_of(job)))
+    finder = FourPlusOneSearch(ClampSearch(job, machine_of(job)))
     clamp, others = best.candidate.clamp, []
     for which, axis in enumerate(MIKRON.rotary):
-        for angle in clamped_range(axis, np.radians(150.0)):
+        for angle in clampable_angles(axis, np.radians(150.0)):
             others += [(finder.search.clamp(which, float(angle)), feed) for feed in ("u", "v")]
     others += [(finder.search.clamp(clamp.which, clamp.angle + np.radians(off)), best.candidate.feed)
                for off in (-0.5, 0.5)]
@@ -132,7 +132,7 @@ def test_the_free_angle_goes_on_from_pass_to_pass(found) -> None:
 
 def test_screening_takes_places_that_are_better_than_their_neighbours(found) -> None:
     job = found[0]
-    rows = screened(Clamping(job, machine_of(job)), np.radians(12.0))
+    rows = screen_angles(ClampSearch(job, machine_of(job)), np.radians(12.0))
     lengths = [one.length for one in rows]
     assert lengths == sorted(lengths) and len(set(np.round(lengths, 6))) == len(lengths)
 
@@ -171,7 +171,7 @@ def test_a_component_that_is_not_there_is_not_to_blame() -> None:
     path = ToolPath(np.zeros((2, 3)), np.zeros((2, 3)), axis, axis, np.full(2, Motion.LINK, dtype=np.int8),
                     np.array([0, 2]))
     floor = flat([-20, -20, 0], [40, 0, 0], [0, 40, 0])
-    group = Group(SKIN, (floor,), np.array([-0.002, 0.5, 1.0]))
+    group = CheckSurfaces(SKIN, (floor,), np.array([-0.002, 0.5, 1.0]))
     witness = prove_moving(path, Tool.ball(8), (group,)).witness
     assert witness is not None and witness.reason == GOUGE and np.allclose(witness.point, 0, atol=1.0)
 
@@ -202,7 +202,7 @@ def test_a_field_goes_on_ever_slower_beyond_its_nodes() -> None:
 def test_a_wall_is_kept_clear_of() -> None:
     part = floor_and_wall()
     job = task(part.face(1), TOOL, H, Mounting(MIKRON), part=part)
-    search = Clamping(job, machine_of(job))
+    search = ClampSearch(job, machine_of(job))
     for which in (0, 1):
         one = search.standing(search.clamp(which, np.radians(-20.0)), "u")
         if one is not None:
@@ -213,9 +213,9 @@ def test_a_wall_is_kept_clear_of() -> None:
 
 def test_angles_at_which_an_axis_may_be_clamped() -> None:
     turning, tilting = MIKRON.rotary
-    whole = np.degrees(clamped_range(turning, np.radians(30.0)))
+    whole = np.degrees(clampable_angles(turning, np.radians(30.0)))
     assert np.allclose(whole, np.arange(-180, 180, 30))
-    ends = np.degrees(clamped_range(tilting, np.radians(30.0)))
+    ends = np.degrees(clampable_angles(tilting, np.radians(30.0)))
     assert np.allclose(ends, [-30, 0, 30, 60, 90, 120])
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from toolaxis.strategies.four_plus_one import free_angle
-from toolaxis.strategies.four_plus_one.free_angle import Gates, bands, narrowest, smoothest, widest
+from toolaxis.strategies.four_plus_one.free_angle import SingularSides, bands, narrowest, smoothest, widest
 
 ANGLES = np.radians(np.linspace(-10, 10, 5))
 
@@ -45,7 +45,7 @@ def test_one_pass_is_that_of_brute_force(seed: int) -> None:
 def test_one_pass_between_gates_is_that_of_brute_force(seed: int) -> None:
     rng = np.random.default_rng(seed)
     widths = rng.uniform(0.2, 1.0, (5, 4)) * (rng.random((5, 4)) > 0.1)
-    gates = Gates(rng.uniform(-0.15, 0.15, (4, 1)), rng.random((4, 1)) > 0.4)
+    gates = SingularSides(rng.uniform(-0.15, 0.15, (4, 1)), rng.random((4, 1)) > 0.4)
     least = min(_price(widths, chosen, gates) for chosen in product(range(5), repeat=4))
     found = widest(widths[:, :, None], ANGLES, gates)
     if not np.isfinite(least):
@@ -60,10 +60,10 @@ def test_a_gate_that_moves_is_passed_neither_along_a_pass_nor_from_one_to_the_ne
     at, shut = np.radians([-2.5, 2.5]).reshape(shape), np.ones(shape, dtype=bool)
     widths = np.full((5, *shape), 0.5)
     widths[2] = 1.0  # no lean is the widest: above the gate at one node, below it at the other
-    free, kept = (widest(widths, ANGLES, Gates(at, each)) for each in (~shut, shut))
+    free, kept = (widest(widths, ANGLES, SingularSides(at, each)) for each in (~shut, shut))
     assert free is not None and (free == 2).all()
     assert kept is not None and np.unique(ANGLES[kept] > at).size == 1 and np.ptp(kept) == 1
-    for gates, everywhere in ((Gates(at, ~shut), True), (Gates(at, shut), False)):
+    for gates, everywhere in ((SingularSides(at, ~shut), True), (SingularSides(at, shut), False)):
         low, high = bands(widths, ANGLES, kept, 0.5, gates)
         assert ((low == ANGLES[0]).all() and (high == ANGLES[-1]).all()) == everywhere
         assert everywhere or ((low > at) == (high > at)).all()

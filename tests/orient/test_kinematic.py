@@ -12,7 +12,7 @@ from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.search.kinematic_setup import (
     Domain,
-    Stretch,
+    PassSegment,
     common_feed,
     mean_feed,
     rotary_grid,
@@ -24,21 +24,21 @@ from toolaxis.search.kinematic_setup import (
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 
 
-def _rules(offsets: np.ndarray) -> tuple[Stretch, ...]:
+def _rules(offsets: np.ndarray) -> tuple[PassSegment, ...]:
     """Rules y = x + c of the paraboloid z = (y^2 - x^2)/500, there and back."""
     found = []
     for k, c in enumerate(offsets):
         x = np.array([max(-50, -50 - c), min(50, 50 - c)])[:: 1 if k % 2 == 0 else -1]
         y = x + c
         normals = np.stack([2 * x / 500, -2 * y / 500, np.ones(2)], axis=1)
-        found.append(Stretch(np.stack([x, y, (y * y - x * x) / 500], axis=1),
-                             normals / np.linalg.norm(normals, axis=1, keepdims=True)))
+        found.append(PassSegment(np.stack([x, y, (y * y - x * x) / 500], axis=1),
+                                 normals / np.linalg.norm(normals, axis=1, keepdims=True)))
     return tuple(found)
 
 
-def _straight(direction: tuple[float, float, float], normal: tuple[float, float, float]) -> tuple[Stretch, ...]:
+def _straight(direction: tuple[float, float, float], normal: tuple[float, float, float]) -> tuple[PassSegment, ...]:
     tips = np.linspace(0, 80, 5)[:, None] * np.array(direction) / np.linalg.norm(direction)
-    return (Stretch(tips, np.tile(np.array(normal) / np.linalg.norm(normal), (5, 1))),)
+    return (PassSegment(tips, np.tile(np.array(normal) / np.linalg.norm(normal), (5, 1))),)
 
 
 def test_the_papers_paraboloid() -> None:
@@ -112,7 +112,7 @@ def test_moving_the_part_with_its_table_changes_nothing() -> None:
     turn = np.eye(4)
     turn[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
     passes = _rules(np.linspace(-40, 40, 5))
-    moved = tuple(Stretch(one.tips @ turn[:3, :3], one.normals @ turn[:3, :3]) for one in passes)
+    moved = tuple(PassSegment(one.tips @ turn[:3, :3], one.normals @ turn[:3, :3]) for one in passes)
     here, there = setup(MIKRON, passes), setup(Mounting(MIKRON.machine, turn), moved)
     assert np.allclose(here.rotary, there.rotary, atol=1e-9) and here.reach == pytest.approx(there.reach)
 

@@ -8,8 +8,8 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task, best_axis, task
-from toolaxis.search.local_search import Candidate
+from toolaxis.search.fixed_axis import FaceProblem, best_axis, task
+from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.rank_by_passes import _left as least_made_left
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.shape.face import Face
@@ -28,11 +28,11 @@ def lens() -> Face:
     return Face.from_bspline(np.dstack([x, 2 * (1 - (z / 6) ** 2) + 0.02 * (x - 20) * z, z]))
 
 
-def candidates(job: Task) -> list[Candidate]:
+def candidates(job: FaceProblem) -> list[CountedAxis]:
     found = []
     for axis, feed in zip(AXES / np.linalg.norm(AXES, axis=1)[:, None], (0, 0, 1), strict=True):
         passes, length = job.worth.counted(axis, FEEDS[feed])
-        found.append(Candidate(axis, feed, job.worth.value(axis, feed, passes, length), passes, length, 0.0))
+        found.append(CountedAxis(axis, feed, job.worth.value(axis, feed, passes, length), passes, length, 0.0))
     return sorted(found, key=lambda one: one.value)
 
 

@@ -9,7 +9,7 @@ from toolaxis.feasibility import normal_cells
 from toolaxis.feasibility.normal_cells import NormalCells
 from toolaxis.feasibility.normal_cone import NormalField, smallest_cap
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 
 
@@ -95,7 +95,7 @@ def test_a_plane_has_one_normal():
 
 def test_a_pole_does_not_multiply_cells(monkeypatch):
     """Normals have no bound there: the middles of specks stand for them, and the range is soon told."""
-    face = Face(Sphere(7.0, v_range=(0.3, pi / 2)).nurbs())
+    face = Face(SphericalSurface(7.0, v_range=(0.3, pi / 2)).nurbs())
     field, counts = NormalField(face), []
     looked = NormalCells._looked
     monkeypatch.setattr(NormalCells, "_looked", lambda self, rect, *rest: counts.append(len(rect)) or

@@ -10,12 +10,12 @@ from toolaxis.feed.fixed_axis_time import Feeds, machining_time
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.search.cost import FEEDS, Worth
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import best_axis, task
-from toolaxis.search.local_search import Candidate
+from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.rank_by_passes import least_made
-from toolaxis.search.time_estimate import Pace
+from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -51,7 +51,7 @@ def test_the_estimate_orders_axes_as_the_planner_does(face: Face) -> None:
 
 
 def test_screening_and_counting_price_alike(face: Face) -> None:
-    worth = Worth(face, TOOL, H, objective="time", pace=Pace(face, TOOL, MIKRON, FAST))
+    worth = MachiningCost(face, TOOL, H, objective="time", pace=TimeEstimate(face, TOOL, MIKRON, FAST))
     found = worth.screen(LEANS[20:24])
     table = worth.values(LEANS[20:24], found)
     for row, axis in enumerate(LEANS[20:24]):
@@ -74,7 +74,7 @@ def test_within_a_percent_of_brute_force(face: Face) -> None:
     """Of the free axes of a grid over the half sphere, the dozen that count best, by the planner."""
     found = best_axis(face, TOOL, H, MIKRON, objective="time", feeds=FAST)
     job = task(face, TOOL, H, MIKRON, objective="time", feeds=FAST)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     rows = ledger.look(LEANS)
     free = [k for k in range(rows.start, rows.stop) if ledger.reason[k] == 0]
     priced = sorted((ledger.count(ledger.axes[k], feed, 0.0)[0], k, feed) for k in free for feed in range(2))
@@ -96,7 +96,7 @@ def test_the_planner_decides_between_lobes_of_nearly_the_same_time(face: Face) -
     some = []
     for axis in (LEANS[20], LEANS[29]):
         passes, length = job.worth.counted(axis, "u")
-        some.append(Candidate(axis, 0, job.worth.value(axis, 0, passes, length), passes, length, 0.0))
+        some.append(CountedAxis(axis, 0, job.worth.value(axis, 0, passes, length), passes, length, 0.0))
     some.sort(key=lambda one: -_planned(job, one.axis, "u"))  # the worse one first, as if the estimate liked it
     some[1] = replace(some[1], value=1.05 * some[0].value)
     ordered = least_made(job.worth, some, job.made)
@@ -116,7 +116,7 @@ def test_what_time_needs(face: Face) -> None:
         with pytest.raises(InvalidInput, match=said):
             best_axis(face, TOOL, H, given, objective="time", feeds=feeds)
     with pytest.raises(InvalidInput, match="needs a machine with known limits"):
-        Worth(face, TOOL, H, objective="time")
+        MachiningCost(face, TOOL, H, objective="time")
 
 
 def test_the_ends_of_a_pass(face: Face) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric.vectors import angle_between, rotation, unit
-from toolaxis.search.projection_planes import axis_at, initial_plane, projected_angles, sector, turned
+from toolaxis.search.projection_planes import axis_at, initial_plane, project_angles, sector, turn_plane
 from toolaxis.search.sectors import golden_section
 
 
@@ -51,8 +51,8 @@ def test_plane_turns_with_the_normals():
 def test_a_full_turn_comes_back_and_a_half_turn_reverses_x():
     plane = initial_plane(cap(10), np.tile([1.0, 0, 0], (144, 1)))
     for phi, sign in ((2 * pi, 1), (pi, -1)):
-        np.testing.assert_allclose(turned(plane, phi).x, sign * plane.x, atol=1e-12)
-    quarter = turned(plane, pi / 2)
+        np.testing.assert_allclose(turn_plane(plane, phi).x, sign * plane.x, atol=1e-12)
+    quarter = turn_plane(plane, pi / 2)
     np.testing.assert_allclose(quarter.x, -plane.z, atol=1e-12)
     np.testing.assert_allclose(np.cross(quarter.x, quarter.y), quarter.z, atol=1e-12)
 
@@ -61,13 +61,13 @@ def test_projected_angles_tell_both_sides_of_y_apart():
     plane = initial_plane(np.array([[0, 0, 1.0]]), np.array([[1.0, 0, 0]]))
     sign = float(np.sign(plane.x[0]))
     normals = np.array([[sin(0.3) * sign, 0, cos(0.3)], [-sin(0.3) * sign, 0, cos(0.3)], [0, 0.5, 1]])
-    np.testing.assert_allclose(projected_angles(plane, normals), [pi / 2 - 0.3, pi / 2 + 0.3, pi / 2], atol=1e-12)
+    np.testing.assert_allclose(project_angles(plane, normals), [pi / 2 - 0.3, pi / 2 + 0.3, pi / 2], atol=1e-12)
 
 
 def test_axis_and_angle_are_each_other_s_inverse():
     plane = initial_plane(cap(25), np.tile([0.3, 1.0, 0], (144, 1)))
     gamma = np.linspace(0.1, 2.9, 7)
-    np.testing.assert_allclose(projected_angles(plane, axis_at(plane, gamma)), gamma, atol=1e-12)
+    np.testing.assert_allclose(project_angles(plane, axis_at(plane, gamma)), gamma, atol=1e-12)
 
 
 def test_sector_of_a_plane_is_the_whole_quadrant():
@@ -79,7 +79,7 @@ def test_sector_of_a_sphere_cap_is_the_same_in_every_plane():
     normals = cap(20)
     first = initial_plane(normals, np.tile([1.0, 0, 0], (len(normals), 1)))
     for phi in np.radians([0, 15, 30, 180, 285]):
-        low, high = sector(turned(first, phi), normals)
+        low, high = sector(turn_plane(first, phi), normals)
         assert abs(low - radians(20)) < 1e-9 and abs(high - radians(70)) < 1e-9
 
 
@@ -87,12 +87,12 @@ def test_sector_of_a_cylinder_is_widest_along_its_rulings():
     normals = arch(25)
     first = initial_plane(normals, np.tile([1.0, 0, 0], (11, 1)))
     np.testing.assert_allclose(sector(first, normals), [0, pi / 2], atol=1e-9)
-    np.testing.assert_allclose(sector(turned(first, pi / 2), normals), np.radians([25, 65]), atol=1e-9)
+    np.testing.assert_allclose(sector(turn_plane(first, pi / 2), normals), np.radians([25, 65]), atol=1e-9)
 
 
 def test_axes_of_the_sector_stand_in_front_of_every_normal():
     normals = cap(22)
-    plane = turned(initial_plane(normals, np.tile([1.0, 0, 0], (len(normals), 1))), 0.7)
+    plane = turn_plane(initial_plane(normals, np.tile([1.0, 0, 0], (len(normals), 1))), 0.7)
     low, high = sector(plane, normals)
     for gamma in np.linspace(low + 1e-6, high - 1e-6, 9):
         axis = axis_at(plane, gamma)
@@ -102,7 +102,7 @@ def test_axes_of_the_sector_stand_in_front_of_every_normal():
 
 def test_normals_that_fill_a_half_turn_leave_no_sector():
     normals = arch(89.9)
-    plane = turned(initial_plane(normals, np.tile([1.0, 0, 0], (11, 1))), pi / 2)
+    plane = turn_plane(initial_plane(normals, np.tile([1.0, 0, 0], (11, 1))), pi / 2)
     low, high = sector(plane, normals)
     assert high - low < radians(0.3)
 

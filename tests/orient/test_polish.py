@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from toolaxis.feasibility.refined_check import closer
-from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, WANDERS, Witness
+from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, WANDERS, Violation
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
 from toolaxis.search.direction_grid import ring, spiral
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import task
 from toolaxis.search.hemisphere import search
-from toolaxis.search.local_search import _lowest, counted, polish, proven
+from toolaxis.search.local_search import _lowest, count_row, polish, proven
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -28,7 +28,7 @@ def bumpy(seed, height):
 
 def started(face, axis, **how):
     job = task(face, TOOL, H, **how)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     ledger.look(unit(np.asarray(axis, dtype=float))[None])
     return ledger
 
@@ -40,7 +40,7 @@ def face():
 
 def test_the_search_goes_on_past_the_second_order_limit_of_curvature(face):
     job = task(face, TOOL, H)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     beyond = unit(np.array([0.33867908, 0.01563005, 0.94077212]))
     assert np.isinf(ledger.worth.screen(beyond[None]).length[0, 0])
     found = search(ledger)[0]
@@ -50,7 +50,7 @@ def test_the_search_goes_on_past_the_second_order_limit_of_curvature(face):
 
 def test_the_walk_follows_a_kinked_valley_and_stays_proven():
     ledger = started(bumpy(93, 2.0), [-0.266, 0.032, 0.963])
-    start = counted(ledger, 0, 0)
+    start = count_row(ledger, 0, 0)
     found = polish(ledger, start, radians(1.25))
     assert found.value < start.value * 0.9985
     assert ledger.feasibility.witness(found.axis) is None
@@ -102,7 +102,7 @@ def test_what_is_excluded_beforehand_is_in_the_map_but_no_evaluation(face):
 def test_a_disc_that_was_closed_stays_closed(face):
     ledger = started(face, [0.3522, 0.0068, 0.9359])
     assert ledger.reason[0] == FREE
-    ledger.close(ledger.axes[0], radians(2), Witness(GOUGE, 0.01))
+    ledger.close(ledger.axes[0], radians(2), Violation(GOUGE, 0.01))
     ledger.look(np.concatenate([ring(ledger.axes[0], radians(1.9)), ring(ledger.axes[0], radians(2.1))]))
     assert (ledger.reason[:7] != FREE).all() and (ledger.reason[7:] == FREE).any()
     assert ledger.amount[0] == 0.01

@@ -11,13 +11,13 @@ from toolaxis.search import path_check as proof
 @pytest.fixture
 def loosely(monkeypatch):
     """Measuring that gives up early: true bounds, 1.5 mm below the distances."""
-    measured = proof.bounded
+    measured = proof.lower_bounds
 
     def loose(*asked):
         found = measured(*asked)
         return found._replace(lower=found.lower - 1.5)
 
-    monkeypatch.setattr(proof, "bounded", loose)
+    monkeypatch.setattr(proof, "lower_bounds", loose)
 
 
 def test_figures_are_never_worse_than_what_is_proven(loosely, make):

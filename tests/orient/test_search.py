@@ -12,9 +12,9 @@ from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.path.pass_count import count
 from toolaxis.search import hemisphere as sphere
 from toolaxis.search.branch_and_bound import hunt
-from toolaxis.search.cost import Worth
+from toolaxis.search.cost import MachiningCost
 from toolaxis.search.direction_grid import spiral
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import task
 from toolaxis.search.hemisphere import search
 from toolaxis.search.sectors import mean_normal, roman_axis, sectors
@@ -28,7 +28,7 @@ H = 0.05
 
 def searched(face, tool=TOOL, method=search, **how):
     job = task(face, tool, H, **how)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     return ledger, method(ledger)
 
 
@@ -94,7 +94,7 @@ def test_mirrored_scaled_and_swapped_faces_have_the_same_best_value(make):
     double = Face(NurbsSurface(face.surface.knots_u, face.surface.knots_v,
                                face.surface.control * [2, 2, 2, 1], face.surface.degree))
     job = task(double, Tool.torus(16, 2), 2 * H)
-    big = search(Ledger(job.feasibility, job.worth))
+    big = search(AxisTable(job.feasibility, job.worth))
     assert abs(big[0].passes / one[0].passes - 1) < 0.005
 
 
@@ -157,9 +157,9 @@ def test_a_narrow_cone_between_the_first_axes_is_found(make):
 
 def test_limits_that_exclude_the_face_are_proven_to(make):
     job = task(make.seeded(67), TOOL, H, parse_limits("cone:0,0,-1,40"))
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     assert search(ledger) == [] and ledger.proven
-    open_ = Ledger(job.feasibility, job.worth)
+    open_ = AxisTable(job.feasibility, job.worth)
     open_.feasibility = task(make.seeded(67), TOOL, H).feasibility
     open_.look(np.array([[0, 0, 1.0], [0, 0, 1.0], unit([0.3, 0.2, 1.0])]))
     assert not hunt(open_, 2, radians(10))
@@ -184,11 +184,11 @@ def test_objectives_choose_by_what_they_name(make):
     assert by_passes[0].passes <= by_length[0].passes * 1.001
     assert by_length[0].length <= by_passes[0].length * 1.001
     with pytest.raises(InvalidInput, match="objective"):
-        Worth(face, TOOL, H, objective="weight")
+        MachiningCost(face, TOOL, H, objective="weight")
 
 
 def test_what_stays_at_walls_is_charged(make):
-    worth = Worth(make.seeded(1), TOOL, H)
+    worth = MachiningCost(make.seeded(1), TOOL, H)
     assert worth.charge(500.0, 0.0) == 1.0
     assert worth.charge(500.0, 0.2) > 1.1
     assert worth.charge(500.0, 0.4) > worth.charge(500.0, 0.2)

@@ -13,12 +13,22 @@ import pytest
 import toolaxis as ta
 from toolaxis.contact.clearance.queries import segment_motions
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, Group
-from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, HOLDER, LIMITS, SHANK, WANDERS, Verdicts, Witness
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, CheckSurfaces
+from toolaxis.feasibility.violations import (
+    BACK,
+    CUTTER,
+    GOUGE,
+    HOLDER,
+    LIMITS,
+    SHANK,
+    WANDERS,
+    ScreeningResult,
+    Violation,
+)
 from toolaxis.numeric.vectors import unit
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import evaluate_axis, task
-from toolaxis.search.messages import Refusal, main_first, sentence, told_apart, why_none
+from toolaxis.search.messages import Refusal, format_apart, main_first, sentence, why_none
 from toolaxis.search.path_check import worst_motion
 from toolaxis.shape.face import Face
 
@@ -89,9 +99,10 @@ def test_of_searches_that_find_nothing(case: int) -> None:
 def feasibility(allowance: float = 0.0) -> Feasibility:
     face, beside = wavy(1, 0.3), plate((16, 0, -9), (0, 12, 0), (0, 0, 9)).trimmed((), "2")
     far = [0.5, 1.0]
-    groups = (Group(SKIN, (face,), np.array([allowance - 0.001, *far])),
-              Group(TOUCHING, (beside,), np.array([-0.001, *far])),
-              Group(OTHER, (plate((-1, -5, -5), (0, 30, 0), (0, 0, 20)).trimmed((), "7"),), np.array([0.1, *far])))
+    groups = (CheckSurfaces(SKIN, (face,), np.array([allowance - 0.001, *far])),
+              CheckSurfaces(TOUCHING, (beside,), np.array([-0.001, *far])),
+              CheckSurfaces(OTHER, (plate((-1, -5, -5), (0, 30, 0), (0, 0, 20)).trimmed((), "7"),),
+                            np.array([0.1, *far])))
     tool = ta.Tool.torus(diameter=8, corner_radius=1, **HELD)
     return Feasibility(face, tool, groups, ta.Tolerance(gouge=0.002), allowance=allowance)
 
@@ -104,7 +115,7 @@ def test_of_any_witness(allowance: float) -> None:
     for reason, label, point, distance, amount in product(
             (LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER), ("", "1", "2", "7"), (nowhere, here),
             (nan, -0.0, 0.0, -1e-9, -4e-3, -2.0, 4e-3, 0.0999999, 0.3, 1.00001, 25.0), (-1e-9, 0.0, 1e-6, 1.3)):
-        said = sentence(Witness(reason, amount, label, point, distance=distance), of)
+        said = sentence(Violation(reason, amount, label, point, distance=distance), of)
         clean(said)
         assert ("face" in said or "what stands around" in said or "limits" in said) and "(0, 0, 0)" not in said
 
@@ -113,9 +124,9 @@ def test_of_a_search_that_knows_no_place() -> None:
     """Found: "the shank meets face  by -0 mm at (0, 0, 0)", where screening alone had refused the closest axis."""
     job = task(wavy(1, 0.3), TOOLS[0], 0.2)
     for code in (GOUGE, CUTTER, SHANK, HOLDER, BACK, WANDERS, LIMITS):
-        ledger = Ledger(job.feasibility, job.worth)
+        ledger = AxisTable(job.feasibility, job.worth)
         axes = unit(np.array([[0.0, 0.05 * k, 1.0] for k in range(4)]))
-        ledger._enter(axes, Verdicts(np.full(4, code, dtype=np.int8), np.linspace(0.4, 0.1, 4), np.zeros(4)),
+        ledger._enter(axes, ScreeningResult(np.full(4, code, dtype=np.int8), np.linspace(0.4, 0.1, 4), np.zeros(4)),
                       (np.ones((4, 2)),) * 3)
         said = why_none(ledger)
         clean(said)
@@ -125,10 +136,10 @@ def test_of_a_search_that_knows_no_place() -> None:
 def test_what_stops_most_axes_comes_first() -> None:
     """Found: a holder was named where 1,063 of 1,404 axes gouge."""
     job = task(wavy(1, 0.3), TOOLS[0], 0.2)
-    ledger = Ledger(job.feasibility, job.worth)
+    ledger = AxisTable(job.feasibility, job.worth)
     reason = np.array([BACK] * 9 + [HOLDER] + [GOUGE] * 3, dtype=np.int8)
     axes = unit(np.array([[0.02 * k, 0.0, 1.0] for k in range(13)]))
-    ledger._enter(axes, Verdicts(reason, np.array([1e-6] * 9 + [0.001, 0.5, 0.2, 0.3]), np.zeros(13)),
+    ledger._enter(axes, ScreeningResult(reason, np.array([1e-6] * 9 + [0.001, 0.5, 0.2, 0.3]), np.zeros(13)),
                   (np.ones((13, 2)),) * 3)
     said = why_none(ledger)
     assert said.startswith("3 of the 4 axes that limits and normals allow are refused for a gouge; with the closest")
@@ -139,22 +150,22 @@ def test_what_stops_most_axes_comes_first() -> None:
 
 def test_motions_that_were_given_up_name_the_nearest_face_and_no_part_that_the_tool_lacks() -> None:
     bare, wall = ta.Tool.ball(6), plate((10, -9, -9), (0, 18, 0), (0, 0, 18))
-    group = Group(OTHER, (wall,), np.array([0.1, 0.5, 1.0]))
+    group = CheckSurfaces(OTHER, (wall,), np.array([0.1, 0.5, 1.0]))
     moves = segment_motions(np.array([[0, 0, 0], [1.0, 0, 0]]), [0, 0, 1.0])
     found = worst_motion(bare, group, moves, group.required, group.required)
     assert found.reason == CUTTER and found.label == "1" and found.distance == pytest.approx(6.0, abs=0.01)
     clean(sentence(found, feasibility()))
-    far = worst_motion(bare, Group(OTHER, (wall.transformed(np.diag([1.0, 1, 1, 1]) + np.eye(4, k=3) * 900),),
-                                   group.required), moves, group.required, group.required)
+    far = worst_motion(bare, CheckSurfaces(OTHER, (wall.transformed(np.diag([1.0, 1, 1, 1]) + np.eye(4, k=3) * 900),),
+                                           group.required), moves, group.required, group.required)
     assert not far.label and not np.isfinite(far.point).any()
     clean(sentence(far, feasibility()))
 
 
 def test_a_value_and_the_limit_that_it_misses_differ_in_what_is_read() -> None:
-    assert told_apart(0.0123, 0.01, 3) == ("0.012", "0.010")
-    assert told_apart(0.01001, 0.01, 3) == ("0.01001", "0.01000")
-    assert told_apart(-0.0, 0.5, 2) == ("0.00", "0.50")
-    assert told_apart(90.0, 90.0, 1)[0].startswith("90.0")
+    assert format_apart(0.0123, 0.01, 3) == ("0.012", "0.010")
+    assert format_apart(0.01001, 0.01, 3) == ("0.01001", "0.01000")
+    assert format_apart(-0.0, 0.5, 2) == ("0.00", "0.50")
+    assert format_apart(90.0, 90.0, 1)[0].startswith("90.0")
 
 
 def test_a_face_of_all_directions_is_told_to_be_divided() -> None:

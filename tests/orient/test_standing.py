@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.contact.clearance.queries import judged, motions
-from toolaxis.feasibility.interference import Scene, stands_free
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
+from toolaxis.contact.clearance.queries import keeps_limits, motions
+from toolaxis.feasibility.interference import InterferenceScene, stands_free
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 
 REQUIRED = np.array([0.1, 0.5, 1.0])
 TOOL = ta.Tool.torus(10, 1, stickout=40, holder=[(10, 0), (10, 30)])
@@ -20,8 +20,8 @@ def sheet(number, height, slope=0.0):
 @pytest.fixture
 def scene():
     wall = sheet(2, 0.0, 0.9)
-    skin = Group(SKIN, (sheet(1, -0.5),), np.array([-0.002, 0.5, 1.0]))
-    return Scene(1, TOOL, (skin, Group(OTHER, (wall,), REQUIRED)), ())
+    skin = CheckSurfaces(SKIN, (sheet(1, -0.5),), np.array([-0.002, 0.5, 1.0]))
+    return InterferenceScene(1, TOOL, (skin, CheckSurfaces(OTHER, (wall,), REQUIRED)), ())
 
 
 def one_by_one(scene, places, axis):
@@ -29,7 +29,7 @@ def one_by_one(scene, places, axis):
     for group in scene.groups:
         for k, place in enumerate(places):
             limits = np.tile(group.required, (len(group.faces), 1))
-            free[k] &= judged(group.cells, scene.tool, motions(place[None], axis), limits).blocked[0] < 0
+            free[k] &= keeps_limits(group.cells, scene.tool, motions(place[None], axis), limits).blocked[0] < 0
     return free
 
 
@@ -47,9 +47,9 @@ def test_close_positions_take_few_questions(scene, monkeypatch):
 
     def counting(cells, tool, moves, required):
         asked.append(len(moves))
-        return judged(cells, tool, moves, required)
+        return keeps_limits(cells, tool, moves, required)
 
-    monkeypatch.setattr("toolaxis.feasibility.interference.judged", counting)
+    monkeypatch.setattr("toolaxis.feasibility.interference.keeps_limits", counting)
     x, y = np.meshgrid(np.linspace(-25, -20, 60), np.linspace(-3, 3, 60), indexing="ij")
     places = np.stack([x, y, np.full_like(x, 30.0)], axis=-1).reshape(-1, 3)
     assert stands_free(scene, places, np.array([0.0, 0.0, 1.0]), (True, (SKIN, OTHER))).all()
@@ -59,7 +59,7 @@ def test_close_positions_take_few_questions(scene, monkeypatch):
 def test_the_face_itself_can_be_left_out(scene):
     place, axis = np.array([[-20.0, 0.0, -1.0]]), np.array([0.0, 0.0, 1.0])
     assert not stands_free(scene, place, axis, (True, (SKIN,)))[0]
-    itself = scene._replace(groups=(Group(SKIN, scene.groups[0].faces, scene.groups[0].required),))
+    itself = scene._replace(groups=(CheckSurfaces(SKIN, scene.groups[0].faces, scene.groups[0].required),))
     itself = itself._replace(number=itself.groups[0].faces[0].number)
     assert stands_free(itself, place, axis, (False, (SKIN,)))[0]
 

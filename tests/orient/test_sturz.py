@@ -5,13 +5,20 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
-from toolaxis.feasibility.surroundings import SKIN, Group
+from toolaxis.feasibility.surroundings import SKIN, CheckSurfaces
 from toolaxis.path.constant_lead import LeadChart
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.nearest import nearest
-from toolaxis.strategies.common.passes import made
-from toolaxis.strategies.common.path_check import MovingCrossing, Spans, kept, prove_moving, spans_of, standing
-from toolaxis.strategies.constant_lead.search import Sturz, sturz
+from toolaxis.strategies.common.passes import make_passes
+from toolaxis.strategies.common.path_check import (
+    MovingLinkClearance,
+    PathMotions,
+    keeps_distance,
+    prove_moving,
+    spans_of,
+    standing,
+)
+from toolaxis.strategies.constant_lead.search import ConstantLeadSearch, sturz
 from toolaxis.tools.tool import Tool
 
 from .conftest import bowl, flat, floor_and_wall, seeded  # type: ignore[import-not-found]
@@ -21,11 +28,11 @@ H = 0.05
 WALL = flat([30, -50, -50], [0, 0, 200], [0, 100, 0])
 
 
-def _swing(far_deg: float) -> Spans:
+def _swing(far_deg: float) -> PathMotions:
     """The tip stands at the origin while the axis turns from upright towards the wall at x = 30."""
     far = np.radians(far_deg)
     zero, up = np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]])
-    return Spans(zero, zero, up, np.array([[np.sin(far), 0.0, np.cos(far)]]))
+    return PathMotions(zero, zero, up, np.array([[np.sin(far), 0.0, np.cos(far)]]))
 
 
 def _corner(far_deg: float) -> float:
@@ -36,11 +43,11 @@ def _corner(far_deg: float) -> float:
 
 @pytest.mark.parametrize("far_deg", [8.0, 12.5])
 def test_what_turns_is_kept_from_a_wall_to_a_hair(far_deg: float) -> None:
-    group = Group("other", (WALL,), np.array([-np.inf, -np.inf, 0.0]))
+    group = CheckSurfaces("other", (WALL,), np.array([-np.inf, -np.inf, 0.0]))
     room = 30 - _corner(far_deg)
     for margin, free in ((-0.06, True), (0.002, False)):
         required = np.array([-np.inf, -np.inf, room + margin])
-        assert kept(TOOL, group, _swing(far_deg), required).tolist() == [free]
+        assert keeps_distance(TOOL, group, _swing(far_deg), required).tolist() == [free]
 
 
 def test_a_swing_through_a_wall_is_not_free_though_both_ends_are() -> None:
@@ -49,7 +56,7 @@ def test_a_swing_through_a_wall_is_not_free_though_both_ends_are() -> None:
     ends = [np.array([[np.cos(side), s * np.sin(side), 0.9]]) for s in (-1, 1)]
     before, after = (one / np.linalg.norm(one) for one in ends)
     tip = np.zeros((1, 3))
-    crossing = MovingCrossing(TOOL, (Group("other", (post,), np.array([0.1, 0.5, 1.0])),))
+    crossing = MovingLinkClearance(TOOL, (CheckSurfaces("other", (post,), np.array([0.1, 0.5, 1.0])),))
     assert crossing.clear(tip, tip, before, before, True).all() and crossing.clear(tip, tip, after, after, True).all()
     assert not crossing.clear(tip, tip, before, after, True).any()
 
@@ -76,7 +83,7 @@ def test_the_lead_is_free_and_constant(found) -> None:
 
 def test_no_smaller_lead_is_free(found) -> None:
     job, orientation, _ = found
-    search = Sturz(job)
+    search = ConstantLeadSearch(job)
     assert orientation.lead is not None and search.free(orientation.lead, orientation.feed)
     candidates = search.candidates()
     best = min(one.length for one in candidates)
@@ -86,15 +93,15 @@ def test_no_smaller_lead_is_free(found) -> None:
 
 def test_a_bowl_asks_for_the_lead_at_which_the_heel_clears_it() -> None:
     """A flat end in a bowl: its heel clears the far side from sin(lead) = radius / curvature on, to first order."""
-    search = Sturz(task(bowl(60.0, 10.0), Tool.flat(10), H))
+    search = ConstantLeadSearch(task(bowl(60.0, 10.0), Tool.flat(10), H))
     free = min(abs(one.lead) for one in search.candidates())
     assert 0.9 < free / np.arcsin(5.0 / 60.0) < 1.25
 
 
 def test_a_lead_that_gouges_is_found_out_at_points() -> None:
     job = task(bowl(60.0, 10.0), Tool.flat(10), H)
-    search = Sturz(job)
-    _, path = made(job, LeadChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
+    search = ConstantLeadSearch(job)
+    _, path = make_passes(job, LeadChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
     witness = prove_moving(path, job.worth.tool, job.groups).witness
     assert witness is not None and witness.distance < -0.01
 
@@ -109,14 +116,14 @@ def test_what_is_proven_alone_is_proven_beside_wider_turns() -> None:
     groups = task(floor, tool, H, tolerance=0.002).groups
     skin = next(group for group in groups if group.role == SKIN)
     spans = spans_of(path)
-    assert not kept(tool, skin, spans, skin.required).all()
-    assert all(kept(tool, skin, spans.rows(np.array([k])), skin.required)[0] for k in range(3))
+    assert not keeps_distance(tool, skin, spans, skin.required).all()
+    assert all(keeps_distance(tool, skin, spans.rows(np.array([k])), skin.required)[0] for k in range(3))
     assert prove_moving(path, tool, groups).witness is None
 
 
 def test_positions_looked_at_lie_close() -> None:
     job = task(seeded(5, 0.5), TOOL, H)
-    _, path = made(job, LeadChart(job.worth.face, "v"), Sturz(job).cut(np.radians(20.0), "v"))
+    _, path = make_passes(job, LeadChart(job.worth.face, "v"), ConstantLeadSearch(job).cut(np.radians(20.0), "v"))
     spans = spans_of(path).rows(np.flatnonzero(path.kind[1:] == Motion.CUT))
     tips = standing(spans)[:, 0]
     for share in (0.0, 0.3, 0.77, 1.0):

@@ -3,9 +3,9 @@
 import numpy as np
 
 import toolaxis as ta
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.fixed_axis import Task, best_axis, task
-from toolaxis.search.shared_axis import Pool, together
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.fixed_axis import FaceProblem, best_axis, task
+from toolaxis.search.shared_axis import SharedAxisSearch, together
 
 TOOL, H = ta.Tool.torus(12, 1), 0.1
 
@@ -18,13 +18,13 @@ def sheet(lean: float, shift: float = 0.0) -> ta.Face:
     return ta.Face.from_bspline(points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]) + [shift, 0, 0])
 
 
-def worth_of(jobs: list[Task], axis: np.ndarray) -> float:
+def worth_of(jobs: list[FaceProblem], axis: np.ndarray) -> float:
     """Sum of exact values, each sub-surface by itself."""
     total = 0.0
     for job in jobs:
         if job.feasibility.witness(axis) is not None:
             return np.inf
-        ledger = Ledger(job.feasibility, job.worth)
+        ledger = AxisTable(job.feasibility, job.worth)
         total += min(ledger.count(axis, feed, 0.0)[0] for feed in (0, 1))
     return total
 
@@ -37,7 +37,7 @@ def test_no_axis_of_a_grid_serves_both_much_better() -> None:
     angle = np.radians(np.arange(2, 50, 4))
     turn = np.radians(np.arange(0, 360, 20))
     grid = np.array([[np.sin(a) * np.cos(t), np.sin(a) * np.sin(t), np.cos(a)] for a in angle for t in turn])
-    pool = Pool(jobs)
+    pool = SharedAxisSearch(jobs)
     pool.look(grid)
     assert np.isfinite(pool.price).sum() > 20
     promising = grid[np.argsort(pool.price)[:5]]

@@ -9,9 +9,9 @@ import toolaxis as ta
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.face_division import Divider
 from toolaxis.partition.partition import regions
-from toolaxis.partition.ring_division import Around, candidates, parted
+from toolaxis.partition.ring_division import RingDivision, candidates, divide_in_rings
 from toolaxis.search.cost import CLEAN_UP
-from toolaxis.search.fixed_axis import Task, task
+from toolaxis.search.fixed_axis import FaceProblem, task
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40)
 
@@ -31,12 +31,12 @@ POSTS = (post(15, 20, 3.0), post(36, 27, 4.0))
 
 
 @pytest.fixture(scope="module")
-def job() -> Task:
+def job() -> FaceProblem:
     return task(waved(), TOOL, 0.08, obstacles=POSTS)
 
 
 @pytest.fixture(scope="module")
-def divider(job: Task) -> Divider:
+def divider(job: FaceProblem) -> Divider:
     return Divider(job, cells=(8, 8), most=6)
 
 
@@ -58,7 +58,7 @@ def test_distances_are_those_to_the_nearest_point() -> None:
 @pytest.mark.parametrize("radius", [4.0, 9.0, np.inf])
 def test_parts_are_the_face_cut_at_the_distance(radius: float) -> None:
     face, bosses = waved(), distances(waved(), TOOL, obstacles=POSTS)
-    parts = parted(face, bosses, radius)
+    parts = divide_in_rings(face, bosses, radius)
     assert len(parts) == (2 if np.isinf(radius) else 3)
     assert sum(part.area for part in parts) == pytest.approx(face.area, rel=1e-6)
     uv = np.random.default_rng(1).random((4000, 2))
@@ -79,7 +79,7 @@ def test_parts_divided_further_are_the_face(divider: Divider) -> None:
                 _is_the_face(one, count)
 
 
-def _is_the_face(one: Around, count: int) -> None:
+def _is_the_face(one: RingDivision, count: int) -> None:
     pieces = one.regions(count)
     assert len(pieces) >= count and pieces.radius == one.radius
     assert sum(piece.area for piece in pieces) == pytest.approx(waved().area, rel=1e-6)
@@ -89,7 +89,7 @@ def _is_the_face(one: Around, count: int) -> None:
         assert sum(pieces.lengths) == pytest.approx(one.curve[count], rel=1e-9)
 
 
-def test_the_cheaper_division_is_taken(job: Task, divider: Divider, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cheaper_division_is_taken(job: FaceProblem, divider: Divider, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Divider.__init__, "__defaults__", ((8, 8), *Divider.__init__.__defaults__[1:]))
     bosses = distances(waved(), TOOL, obstacles=POSTS)
     both = regions(job, 4, bosses=bosses)

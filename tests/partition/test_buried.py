@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from toolaxis.bladed.trim_buried import Solid, exposed, solids_of, uncovered
-from toolaxis.shape.analytic import Sphere
+from toolaxis.bladed.trim_buried import Solid, cut_back_covered, cut_exposed, solids_of
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Body, Part
 
@@ -33,7 +33,7 @@ def box(low, high, kind="bspline"):
 def ball(radius, centre=(0, 0, 0)):
     move = np.eye(4)
     move[:3, 3] = centre
-    return Face(Sphere(radius).nurbs(), kind="sphere").transformed(move)
+    return Face(SphericalSurface(radius).nurbs(), kind="sphere").transformed(move)
 
 
 def part_of(*bodies):
@@ -71,35 +71,35 @@ def test_a_ball_takes_a_circle_out_of_a_face(angle):
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, 0, s, 5], [0, 1, 0, -3], [-s, 0, c, 8], [0, 0, 0, 1.0]])
     part = part_of(box((0, 0, 0), (30, 20, 10)), [ball(5.0, (15, 10, 13))]).transformed(turn)
-    left = exposed(part.face(2), solids_of(part))
+    left = cut_exposed(part.face(2), solids_of(part))
     assert len(left) == 1 and len(left[0].trims) == 2
     assert left[0].area == pytest.approx(600 - 16 * np.pi, abs=0.6)
     hole = left[0].evaluate(left[0].trims[1]).point
     centre = (turn @ [15, 10, 13, 1])[:3]
     assert np.linalg.norm(hole - centre, axis=1) == pytest.approx(5.0, abs=0.02)
-    assert exposed(part.face(1), solids_of(part)) == (part.face(1),)
+    assert cut_exposed(part.face(1), solids_of(part)) == (part.face(1),)
 
 
 def test_a_wall_parts_a_floor_and_is_cut_off_at_it_without_slivers_where_they_are_flush():
     part = part_of(box((0, 0, 0), (30, 20, 10)), box((14, 0, 0), (15, 20, 25)))
-    floor = exposed(part.face(2), solids_of(part))
+    floor = cut_exposed(part.face(2), solids_of(part))
     assert [piece.area for piece in floor] == pytest.approx([300, 280], abs=0.5)
-    side = exposed(part.face(11), solids_of(part))  # x = 14, from the bottom to the top
+    side = cut_exposed(part.face(11), solids_of(part))  # x = 14, from the bottom to the top
     assert len(side) == 1 and side[0].area == pytest.approx(300, abs=0.5)
     assert side[0].box[0, 2] > 9.7  # corners are cut across one cell of the grid
-    assert exposed(part.face(7), solids_of(part)) == (part.face(7),)  # its foot, flush with the bottom: free
+    assert cut_exposed(part.face(7), solids_of(part)) == (part.face(7),)  # its foot, flush with the bottom: free
 
 
 def test_a_foot_that_stands_on_another_body_is_covered():
     part = part_of(box((0, 0, 0), (30, 20, 10)), box((9, 0, 10), (15, 15, 25)))
-    assert exposed(part.face(7), solids_of(part)) == ()
-    left = exposed(part.face(2), solids_of(part))
+    assert cut_exposed(part.face(7), solids_of(part)) == ()
+    left = cut_exposed(part.face(2), solids_of(part))
     assert sum(piece.area for piece in left) == pytest.approx(600 - 90, abs=42 * 0.25)  # to within a cell
 
 
 def test_the_whole_part_tells_what_is_covered():
     part = part_of(box((0, 0, 0), (30, 20, 10)), box((14, 0, 0), (15, 20, 25)))
-    made, pieces = uncovered(part, range(1, 13))
+    made, pieces = cut_back_covered(part, range(1, 13))
     assert set(pieces) >= {2, 11, 12} and len(pieces[2]) == 2
     assert made.face(11).area == pytest.approx(300, abs=0.5) and part.face(11).area == pytest.approx(500)
     assert "bodies overlap" in made.warnings[-1] and "not machined" in made.warnings[-1]
@@ -108,7 +108,7 @@ def test_the_whole_part_tells_what_is_covered():
 @pytest.mark.parametrize("part", [part_of(box((0, 0, 0), (30, 20, 10))),
                                   part_of(box((0, 0, 0), (3, 2, 1)), box((9, 0, 0), (12, 2, 1)))])
 def test_bodies_apart_stay_as_they_are(part):
-    made, pieces = uncovered(part, [1, 2])
+    made, pieces = cut_back_covered(part, [1, 2])
     assert made is part and pieces == {}
 
 
@@ -126,7 +126,7 @@ def test_blades_of_an_impeller_by_others_end_at_their_disc():
     radius, height = np.hypot(low[:, 0], low[:, 2]), low[:, 1]
     order = np.argsort(radius)
     for number in (1, 3, 24):
-        left = exposed(part.face(number), solids)
+        left = cut_exposed(part.face(number), solids)
         assert len(left) == 1 and 0.6 < left[0].area / part.face(number).area < 0.7
         at = left[0].evaluate(left[0].grid(50, 50)).point
         assert (at[:, 1] > np.interp(np.hypot(at[:, 0], at[:, 2]), radius[order], height[order]) - 0.02).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.partition.manual_edit import cut_along, cut_out, halves, merged
+from toolaxis.partition.manual_edit import cut_along, cut_out, halves, merge_sub_surfaces
 from toolaxis.shape.face import Face
 
 QUARTER = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
@@ -29,15 +29,15 @@ def test_halves_are_cut_across_the_longer_side_and_can_be_put_together_again() -
     assert len(parts) == 2 and sum(one.area for one in parts) == pytest.approx(whole.area, rel=1e-9)
     assert [one.bounds[:2] for one in parts] == [(0.0, 0.5), (0.5, 1.0)], "the sheet is longer along u"
     assert [one[0][:, 1].max() for one in halves(whole, "v", 0.25)] == [0.25, 1.0]
-    assert sheet().trimmed(merged(parts)).area == pytest.approx(whole.area, rel=1e-9)
+    assert sheet().trimmed(merge_sub_surfaces(parts)).area == pytest.approx(whole.area, rel=1e-9)
 
 
 def test_three_of_four_quarters_make_an_angle() -> None:
     four = quarters()
-    loops = merged([four[0], four[3], four[1]])
+    loops = merge_sub_surfaces([four[0], four[3], four[1]])
     assert len(loops) == 1 and sheet().trimmed(loops).area == pytest.approx(sum(four[k].area for k in (0, 1, 3)))
     with pytest.raises(ta.InvalidInput, match="1a does not touch 1d along a line"):
-        merged([four[0], four[3]])
+        merge_sub_surfaces([four[0], four[3]])
 
 
 def test_a_line_cuts_and_goes_on_beyond_its_ends() -> None:
@@ -47,7 +47,7 @@ def test_a_line_cuts_and_goes_on_beyond_its_ends() -> None:
     assert all(one.area > 0.4 * whole.area for one in found)
     bent = pieces(list(cut_along(whole, [[0.3, 0.1], [0.5, 0.5], [0.3, 0.9]])))
     assert sum(one.area for one in bent) == pytest.approx(whole.area, rel=1e-6)
-    assert sheet().trimmed(merged(bent)).area == pytest.approx(whole.area, rel=1e-9)
+    assert sheet().trimmed(merge_sub_surfaces(bent)).area == pytest.approx(whole.area, rel=1e-9)
 
 
 def test_a_closed_line_cuts_out_of_all_that_it_meets() -> None:
@@ -80,4 +80,4 @@ def test_a_closed_line_beside_the_face_is_refused() -> None:
     with pytest.raises(ta.InvalidInput, match="does not cross sub-surface 1"):
         halves(sheet(), "u", 1.5)
     with pytest.raises(ta.InvalidInput, match="two or more of one face"):
-        merged([sheet()])
+        merge_sub_surfaces([sheet()])

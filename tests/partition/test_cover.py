@@ -8,7 +8,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.partition.face_division import Divider
-from toolaxis.partition.shared_axes import cover, knee, shared, trade
+from toolaxis.partition.shared_axes import cover, divide_with_shared_axes, knee, trade
 from toolaxis.search.fixed_axis import task
 
 
@@ -71,7 +71,7 @@ def test_two_faces_share_axes(dividers: list[Divider]) -> None:
     faces = [divider.job.worth.face for divider in dividers]
     lengths = []
     for most in (1, 4):
-        found = shared(dividers, most)
+        found = divide_with_shared_axes(dividers, most)
         assert found.orientations <= most
         axes = np.unique(np.concatenate([one.axes for one in found.regions]), axis=0)
         assert len(axes) == found.orientations
@@ -86,7 +86,7 @@ def test_more_axes_cut_less_and_the_knee_is_where_little_is_gained_beyond(divide
     counts, lengths = [one.orientations for one in options], [one.length for one in options]
     assert len(options) >= 3 and counts[0] == 1 and counts == sorted(set(counts)) and counts[-1] <= 4
     assert all(after < before for before, after in pairwise(lengths))
-    assert lengths[0] == pytest.approx(shared(dividers, 1, 0.0).length, rel=0.02)
+    assert lengths[0] == pytest.approx(divide_with_shared_axes(dividers, 1, 0.0).length, rel=0.02)
     assert chosen == knee(counts, lengths)
     for one in options:
         assert one.pieces == sum(len(regions) for regions in one.regions)

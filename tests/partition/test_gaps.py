@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.bladed.blade_gap import ahead, nearness, reach_along_normal, widest
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -18,7 +18,7 @@ def sheet(z, size=20.0, flip=False, at=0.0):
 def ball(radius, centre):
     move = np.eye(4)
     move[:3, 3] = centre
-    return Face(Sphere(radius).nurbs()).transformed(move)
+    return Face(SphericalSurface(radius).nurbs()).transformed(move)
 
 
 def test_two_spheres_are_as_near_as_their_centres_say():

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from toolaxis.partition.guillotine import Corners, Division, each_axis, offers, proper
+from toolaxis.partition.guillotine import CheapestDivisions, Corners, each_axis, offers, proper
 from toolaxis.partition.guillotine_kernel import least_costs, least_costs_numpy
 
 
@@ -41,7 +41,7 @@ def test_division_is_the_cheapest(seed: int) -> None:
     for box in np.argwhere(proper(nu, nv)):
         u0, u1, v0, v1 = box
         empty[u0, u1, v0, v1] = cells[u0:u1, v0:v1].all()
-    found = Division(cost, empty, most)
+    found = CheapestDivisions(cost, empty, most)
     wanted = enumerated((0, nu, 0, nv), cost, empty, {})
     for count in range(most + 1):
         assert found.curve[count] == pytest.approx(wanted.get(count, np.inf), rel=1e-12)

@@ -6,13 +6,13 @@ import pytest
 from toolaxis.bladed.strips import strips
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.normal_cone import smallest_cap
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 
 
 def nose():
     """Half a cylinder of radius 1, 30 long."""
-    return Face(Cylinder(1.0, (0.0, np.pi), (0.0, 30.0)).nurbs())
+    return Face(CylindricalSurface(1.0, (0.0, np.pi), (0.0, 30.0)).nurbs())
 
 
 def spread(face):

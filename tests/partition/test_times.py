@@ -12,10 +12,10 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.partition.face_division import Divider
 from toolaxis.partition.partition import regions
-from toolaxis.partition.shared_axes import shared, trade
+from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import Task, task
-from toolaxis.search.time_estimate import Pace
+from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -31,12 +31,12 @@ def _face(wave: float, long: float = 60.0) -> Face:
 
 
 @pytest.fixture(scope="module")
-def job() -> Task:
+def job() -> FaceProblem:
     return task(_face(7.0), TOOL, H, MIKRON, objective="time", feeds=FAST)
 
 
 @pytest.fixture(scope="module")
-def divider(job: Task) -> Divider:
+def divider(job: FaceProblem) -> Divider:
     return Divider(job, cells=(10, 10), most=4)
 
 
@@ -47,18 +47,18 @@ def _line(face: Face, count: int = 129) -> np.ndarray:
 
 def test_a_straight_line_takes_its_length_at_the_feed() -> None:
     face = _face(0.0)
-    found = Pace(face, TOOL, MIKRON, FAST).line_seconds(_line(face), LEAN)
+    found = TimeEstimate(face, TOOL, MIKRON, FAST).line_seconds(_line(face), LEAN)
     assert found.shape == (2, 128)
     assert found.sum(axis=1) == pytest.approx([60 / 100] * 2, rel=1e-9)
 
 
 def test_a_bent_line_takes_longer_at_a_high_feed() -> None:
     face, feeds = _face(7.0), replace(FAST, cut=300.0)
-    pace = Pace(face, TOOL, MIKRON, feeds)
+    pace = TimeEstimate(face, TOOL, MIKRON, feeds)
     tips = [ta.place(face, TOOL, _line(face), axis) for axis in LEAN]
     length = np.array([np.linalg.norm(np.diff(one, axis=0), axis=1).sum() for one in tips])
     found = pace.line_seconds(_line(face), LEAN).sum(axis=1)
-    slow = Pace(face, TOOL, MIKRON, replace(FAST, cut=5.0)).line_seconds(_line(face), LEAN).sum(axis=1)
+    slow = TimeEstimate(face, TOOL, MIKRON, replace(FAST, cut=5.0)).line_seconds(_line(face), LEAN).sum(axis=1)
     assert (found > 1.2 * length / 300).all(), "bends slow the machine down at this feed"
     assert slow == pytest.approx(length / 5, rel=0.01), "at a walk they do not"
 
@@ -68,12 +68,12 @@ def test_a_line_that_shrinks_to_a_pole_takes_no_time() -> None:
     fan = Face.from_bspline(np.stack([30 * theta * np.cos(phi), 30 * theta * np.sin(phi), 0 * theta], axis=-1))
     u0, _, v0, v1 = fan.bounds
     uv = np.stack([np.full(129, u0), np.linspace(v0, v1, 129)], axis=1)
-    found = Pace(fan, TOOL, MIKRON, FAST).line_seconds(uv, LEAN)
+    found = TimeEstimate(fan, TOOL, MIKRON, FAST).line_seconds(uv, LEAN)
     assert found.shape == (2, 128) and np.abs(found).max() < 1e-9
 
 
 def test_starting_and_stopping_is_what_the_law_of_motion_says() -> None:
-    pace = Pace(_face(0.0), TOOL, MIKRON, FAST)
+    pace = TimeEstimate(_face(0.0), TOOL, MIKRON, FAST)
     bounds = [axis.drive.levels(axis.name) for axis in MIKRON.machine.linear]
     a, j = min(one[1] for one in bounds), min(one[2] for one in bounds)
     ramp = 2 * np.sqrt(100 / j) if np.sqrt(100 * j) <= a else 100 / a + a / j
@@ -92,7 +92,7 @@ def test_a_whole_face_costs_what_the_search_reckons() -> None:
             assert row[k] == pytest.approx(job.worth.value(axis, k, passes, length), rel=0.15)
 
 
-def test_no_division_by_length_takes_less_time(job: Task, divider: Divider) -> None:
+def test_no_division_by_length_takes_less_time(job: FaceProblem, divider: Divider) -> None:
     by_length = Divider(replace(job, worth=replace(job.worth, objective="length")), cells=(10, 10), most=4)
     timed = divider.best.prices.joined(divider.priced(by_length.best.prices.axes))
     best = divider.solved(timed)
@@ -103,7 +103,7 @@ def test_no_division_by_length_takes_less_time(job: Task, divider: Divider) -> N
     assert (divider.best.division.curve[1:] >= best.division.curve[1:] - 1e-9).all()
 
 
-def test_sub_surfaces_tell_length_and_time(job: Task) -> None:
+def test_sub_surfaces_tell_length_and_time(job: FaceProblem) -> None:
     found = regions(job, 3)
     assert len(found) == 3 and len(found.seconds) == 3 and found.costs == found.seconds
     for length, seconds in zip(found.lengths, found.seconds, strict=True):
@@ -115,7 +115,7 @@ def test_axes_are_shared_by_time(divider: Divider) -> None:
     found = trade([divider], 3)
     costs = [one.cost for one in found.options]
     assert all(one.seconds == one.cost for one in found.options) and costs == sorted(costs, reverse=True)
-    dear = shared([divider], 4, index_cost=1e4)
+    dear = divide_with_shared_axes([divider], 4, index_cost=1e4)
     assert dear.orientations == min(one.orientations for one in found.options), "hours for an axis are not worth it"
 
 

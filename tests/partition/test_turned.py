@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.bladed.counterparts import best_motion, counterpart, turn_about, turned_piece
+from toolaxis.bladed.counterparts import best_motion, counterpart, turn_about, turn_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 
@@ -59,7 +59,7 @@ def test_pieces_of_the_counterpart_add_up_and_lie_where_the_turn_puts_them(how):
     other = counterpart(face, matrix, [elsewhere(rewritten(how))])
     pieces = [face.trimmed((np.array([[a, c], [b, c], [b, d], [a, d]]),), f"1{k}")
               for k, (a, b, c, d) in enumerate([(0, 0.3, 0, 1), (0.3, 1, 0, 0.55), (0.3, 1, 0.55, 1)])]
-    made = [turned_piece(piece, face, other, matrix, "x") for piece in pieces]
+    made = [turn_piece(piece, face, other, matrix, "x") for piece in pieces]
     assert all(away < 1e-9 for _, away in made)
     assert sum(piece.area for piece, _ in made) == pytest.approx(face.area, rel=1e-6)
     for (found, _), piece in zip(made, pieces, strict=True):
@@ -80,7 +80,7 @@ def test_other_parameters_without_a_straight_rule_carry_loops_over():
     other = counterpart(flat, matrix, [elsewhere(bent)])
     assert other is not None and other.chart is None
     piece = flat.trimmed((np.array([[0.25, 0.0], [1.0, 0.0], [1.0, 1.0], [0.25, 1.0]]),), "1b")
-    found, away = turned_piece(piece, flat, other, matrix, "2b")
+    found, away = turn_piece(piece, flat, other, matrix, "2b")
     assert away < 1e-6
     assert found.area == pytest.approx(45.0, rel=1e-4)
     assert found.bounds[0] == pytest.approx(0.5, abs=1e-4)

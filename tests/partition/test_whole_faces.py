@@ -10,9 +10,9 @@ from shapely.ops import unary_union
 
 import toolaxis as ta
 from toolaxis.partition.bosses import bosses_of, distances
-from toolaxis.partition.ring_division import parted
+from toolaxis.partition.ring_division import divide_in_rings
 from toolaxis.partition.uv_grid import Lattice
-from toolaxis.path.rest_material import left_over, machined
+from toolaxis.path.rest_material import left_over, machined_regions
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 
@@ -66,8 +66,8 @@ def test_sub_surfaces_of_every_example_are_the_face(name: str) -> None:
     part, face = read(name)
     bosses = distances(face, TOOL, part)
     assert len(bosses) == len(bosses_of(part, face.number)) == {"boss": 1, "bosses": 3}.get(name, 0)
-    divisions = [parted(face, bosses, radius) for radius in (10.0, 17.5, np.inf)] if len(bosses) > 1 else (
-        [parted(face, bosses, 10.0)] if bosses else [(face,)])
+    divisions = [divide_in_rings(face, bosses, radius) for radius in (10.0, 17.5, np.inf)] if len(bosses) > 1 else (
+        [divide_in_rings(face, bosses, 10.0)] if bosses else [(face,)])
     for seed, parts in enumerate(divisions):
         assert len(parts) > 1 or not bosses
         lattice = Lattice(face)
@@ -91,7 +91,7 @@ def test_zones_and_machined_area_are_the_sub_surface(name: str) -> None:
     path = job.made(axis / np.linalg.norm(axis), "u")
     zones = left_over(piece, TOOL, path, 0.2)
     assert zones or name not in ("boss", "bosses")
-    rest = machined(piece, zones)
+    rest = machined_regions(piece, zones)
     is_made_of(piece, [*rest, *(piece.trimmed(zone.loops) for zone in zones)])
     assert sum(zone.area for zone in zones) + sum(one.area for one in rest) == pytest.approx(piece.area, rel=1e-6)
 
@@ -102,7 +102,7 @@ def is_whole(part: ta.Part, plan: Plan, numbers: set[int]) -> None:
     for number in numbers:
         is_made_of(part.faces[number - 1], [op.face for op in plan.operations if op.face.number == number])
     for op in plan.operations:
-        is_made_of(op.face, [*machined(op.face, op.zones), *(op.face.trimmed(zone.loops) for zone in op.zones)])
+        is_made_of(op.face, [*machined_regions(op.face, op.zones), *(op.face.trimmed(zone.loops) for zone in op.zones)])
 
 
 @pytest.mark.long
@@ -135,6 +135,6 @@ def test_a_plan_leaves_nothing_out(name: str, regions: int) -> None:
     assert plan.outcome == "complete"
     is_made_of(face, [op.face for op in plan.operations])
     for op in plan.operations:
-        is_made_of(op.face, [*machined(op.face, op.zones), *(op.face.trimmed(zone.loops) for zone in op.zones)])
+        is_made_of(op.face, [*machined_regions(op.face, op.zones), *(op.face.trimmed(zone.loops) for zone in op.zones)])
         left = sum(zone.area for zone in op.zones if zone.at_wall)
         assert op.orientation.unreached == pytest.approx(left / op.face.area, abs=1e-9)

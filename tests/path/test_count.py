@@ -10,7 +10,7 @@ from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_count import count, measure, panels
 from toolaxis.path.sampling import sample_points
 from toolaxis.path.width_correction import lean_ratio, lean_ratios, lean_table
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -32,7 +32,7 @@ def test_count_and_estimate_on_a_plane_are_range_over_width(make, tool, lead, sc
 
 @pytest.mark.parametrize(("radius", "flip", "width"), [(40.0, False, 0.912679), (60.0, True, 1.032110)])
 def test_a_ball_on_a_cylinder_takes_arc_over_width(radius, flip, width):
-    shape = Cylinder(radius, (0.4, 1.3), (0.0, 30.0))
+    shape = CylindricalSurface(radius, (0.4, 1.3), (0.0, 30.0))
     face = Face(shape.nurbs(), flip=flip)
     inward = -1 if flip else 1
     axis = inward * np.array([np.cos(0.85), np.sin(0.85), 0.3])

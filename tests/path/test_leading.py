@@ -13,7 +13,7 @@ from toolaxis.path.chord_tolerance import follow
 from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.links import Linking
 from toolaxis.path.parametrization import Cut, IsoChart
-from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
+from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.tools.tool import Tool
 
 from .conftest import flat, wavy  # type: ignore[import-not-found]
@@ -90,20 +90,20 @@ def test_the_lead_is_constant_and_chords_keep_the_tolerance_up_the_axis_too() ->
     assert np.linalg.norm(true - chord[:-1] - t[:, None] * line, axis=1).max() < 1.1e-3
 
 
-def _strokes() -> list[list[MovingStroke]]:
+def _strokes() -> list[list[MovingCuttingMove]]:
     x = np.linspace(0, 20, 9)
     tips = np.column_stack([x, np.zeros(9), np.zeros(9)])
     lean = np.radians(np.linspace(-40, 40, 9))
     axes = np.column_stack([np.sin(lean), np.zeros(9), np.cos(lean)])
     normals = np.tile(UP, (9, 1))
-    return [[MovingStroke(tips + y, tips + y, normals, axes)] for y in np.array([[0.0, 0, 0], [0, 3, 0]])]
+    return [[MovingCuttingMove(tips + y, tips + y, normals, axes)] for y in np.array([[0.0, 0, 0], [0, 3, 0]])]
 
 
 def test_links_turn_only_across_and_above_everything() -> None:
     tool = Tool.torus(12, 1, stickout=30, holder=[(20, 0), (20, 40)])
     strokes = _strokes()
-    how = Swivelling(Linking(25.0), UP, tool)
-    path = joined(strokes, how)
+    how = MovingLinks(Linking(25.0), UP, tool)
+    path = join_moves(strokes, how)
     assert np.array_equal(path.cl[path.kind == Motion.CUT], np.concatenate([s[0].tip[1:] for s in strokes]))
     turned = np.linalg.norm(np.diff(path.axis, axis=0), axis=1) > 0
     across = turned & (path.kind[1:] == Motion.LINK)
@@ -121,10 +121,10 @@ def test_links_turn_only_across_and_above_everything() -> None:
 
 def test_a_stroke_beside_is_reached_straight_over_with_an_axis_between() -> None:
     strokes = _strokes()
-    strokes[1] = [MovingStroke(one.contact[::-1], one.tip[::-1], one.normal[::-1],
-                               np.array([[0.6, 0.0, 0.8]] * 9)) for one in strokes[1]]
-    free = Swivelling(Linking(200.0), UP, TORUS, lambda start, end, before, after, over: np.full(len(start), not over))
-    path = joined(strokes, free)
+    strokes[1] = [MovingCuttingMove(one.contact[::-1], one.tip[::-1], one.normal[::-1],
+                                    np.array([[0.6, 0.0, 0.8]] * 9)) for one in strokes[1]]
+    free = MovingLinks(Linking(200.0), UP, TORUS, lambda start, end, before, after, over: np.full(len(start), not over))
+    path = join_moves(strokes, free)
     assert (path.kind[3:-2] != Motion.LINK).all() and path.breaks.tolist() == [0, 14, len(path.kind)]
     over = np.flatnonzero(path.kind == Motion.EXIT)[1]
     assert path.kind[over:over + 3].tolist() == [Motion.EXIT, Motion.ENTRY, Motion.ENTRY]
@@ -141,6 +141,6 @@ def test_links_are_as_low_as_they_may() -> None:
         asked.append((float(start[0, 2]) if len(start) else 0.0, over))
         return np.array([z > 6.0 if over else z > 2.0 for z in end[:, 2]], dtype=bool)
 
-    path = joined(_strokes(), Swivelling(Linking(200.0), UP, TORUS, clear))
+    path = join_moves(_strokes(), MovingLinks(Linking(200.0), UP, TORUS, clear))
     link = np.flatnonzero((path.kind == Motion.LINK) & (np.arange(len(path.kind)) > 3))
     assert path.cl[link[0], 2] < 15.0 < 200.0 <= path.cl[0, 2] and len(asked) > 3

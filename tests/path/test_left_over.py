@@ -7,11 +7,11 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed, distance_to_removed_numpy
 from toolaxis.numeric.polygons import inside, slabs
-from toolaxis.path.rest_grid import sampled
-from toolaxis.path.rest_material import FACTOR, Excess, left_over, machined, may_stay, undercut
-from toolaxis.search.fixed_axis import Task, task
+from toolaxis.path.rest_grid import sample_grid
+from toolaxis.path.rest_material import FACTOR, Excess, left_over, machined_regions, may_stay, undercut
+from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.tolerances import Tolerance
-from toolaxis.verify.task import Task as Judged
+from toolaxis.verify.task import VerificationTask as Judged
 from toolaxis.verify.verdict import SHARE, judge
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30)
@@ -31,7 +31,7 @@ def post(x: float, y: float, radius: float, height: float = 9.0) -> ta.Face:
 
 
 @pytest.fixture(scope="module")
-def made() -> tuple[Task, ToolPath]:
+def made() -> tuple[FaceProblem, ToolPath]:
     job = task(waved(), TOOL, SCALLOP, surroundings=(post(16, 11, 3.0),))
     return job, job.made(np.array([0.0, np.sin(0.12), np.cos(0.12)]), "v")
 
@@ -53,7 +53,7 @@ def dense_distance(path: ToolPath, points: np.ndarray) -> np.ndarray:
     return best
 
 
-def test_zones_hold_what_dense_points_find(made: tuple[Task, ToolPath]) -> None:
+def test_zones_hold_what_dense_points_find(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     face = job.worth.face
     zones = left_over(face, TOOL, path, SCALLOP)
@@ -67,12 +67,12 @@ def test_zones_hold_what_dense_points_find(made: tuple[Task, ToolPath]) -> None:
     assert within.sum() > 50 and clear.sum() > 350
 
 
-def test_zones_and_machined_area_are_the_face(made: tuple[Task, ToolPath]) -> None:
+def test_zones_and_machined_area_are_the_face(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     half = np.array([[0.0, 0.0], [0.55, 0.0], [0.5, 1.0], [0.0, 1.0]])
     for face in (job.worth.face, job.worth.face.trimmed((half,))):
         zones = left_over(face, TOOL, path, SCALLOP)
-        rest = machined(face, zones)
+        rest = machined_regions(face, zones)
         areas = sum(zone.area for zone in zones), sum(piece.area for piece in rest)
         assert sum(areas) == pytest.approx(face.area, rel=1e-9) and min(areas) > 0
         uv = np.random.default_rng(3).random((3000, 2))
@@ -81,7 +81,7 @@ def test_zones_and_machined_area_are_the_face(made: tuple[Task, ToolPath]) -> No
         assert (hits == face.contains(uv)).all()
 
 
-def test_the_judge_finds_the_same_area_left(made: tuple[Task, ToolPath]) -> None:
+def test_the_judge_finds_the_same_area_left(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     face = job.worth.face
     given = Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (face,), SCALLOP)
@@ -152,10 +152,10 @@ def test_what_may_stay_is_little_enough_for_the_judge(starts: tuple[float, ...],
     assert seen.share_within >= SHARE or not good, seen.zones
 
 
-def test_what_is_known_of_whole_cells_is_what_their_nodes_say(made: tuple[Task, ToolPath]) -> None:
+def test_what_is_known_of_whole_cells_is_what_their_nodes_say(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     high = Excess(job.worth.face, TOOL, path, FACTOR * SCALLOP)
-    _, values = sampled(job.worth.face, high, 0.06, high.whole)
-    _, plain = sampled(job.worth.face, high, 0.06, lambda middle, around: np.zeros(len(middle), dtype=bool))
+    _, values = sample_grid(job.worth.face, high, 0.06, high.whole)
+    _, plain = sample_grid(job.worth.face, high, 0.06, lambda middle, around: np.zeros(len(middle), dtype=bool))
     assert ((values > 0) == (plain > 0)).all()
     assert (values == 1).sum() > 0.5 * (plain > 0).sum() > 5000

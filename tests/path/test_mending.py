@@ -8,7 +8,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.path.cl_points import trace
 from toolaxis.path.iso_parametric import layout
-from toolaxis.path.mending import Made, completed, mended
+from toolaxis.path.mending import FurtherPasses, add_passes_over_zones, complete_passes
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, left_over
 
 SCALLOP, CHORD = 0.02, 0.002
@@ -30,15 +30,15 @@ def sheet(outline: str) -> ta.Face:
     return ta.Face.from_bspline(np.stack([x, y, height], axis=-1), trims=(OUTLINES[outline],))
 
 
-def laid(face: ta.Face, number: int, feed: str) -> Made:
+def laid(face: ta.Face, number: int, feed: str) -> FurtherPasses:
     """Passes that stay on the face, and what they leave."""
     tool, axis = CUTTERS[number], AXES[number]
     placed = layout(face, tool, axis, SCALLOP, feed, reach=face.contains)
     path = trace(placed, CHORD)
-    return Made(placed, path, left_over(face, tool, path, SCALLOP, walls=lambda uv: ~face.contains(uv)))
+    return FurtherPasses(placed, path, left_over(face, tool, path, SCALLOP, walls=lambda uv: ~face.contains(uv)))
 
 
-def share_above(face: ta.Face, tool: ta.Tool, made: Made, factor: float) -> float:
+def share_above(face: ta.Face, tool: ta.Tool, made: FurtherPasses, factor: float) -> float:
     """Share of the area above a multiple of the limit, from about 300,000 points on the face."""
     count = int(np.ceil(np.sqrt(300_000 / (len(face.grid(100, 100)) / 100**2))))
     uv = face.grid(count, count)
@@ -57,7 +57,7 @@ def test_nothing_is_left_on_which_the_cutter_may_stand(outline: str, number: int
     before = share_above(face, tool, made, FACTOR)
     assert made.left / face.area == pytest.approx(before, abs=OVERLOOKED + 2e-4)
     left = partial(left_over, face, tool, scallop=SCALLOP, walls=lambda uv: ~face.contains(uv))
-    done = completed(made.placed, partial(trace, chord=CHORD), left, face.contains)
+    done = complete_passes(made.placed, partial(trace, chord=CHORD), left, face.contains)
     assert share_above(face, tool, done, FACTOR) <= min(before, OVERLOOKED + 3e-4)
     assert face.contains(np.column_stack([done.placed.pieces[:, k] for k in ((0, 2) if feed == "u" else (2, 0))])).all()
     assert (before <= OVERLOOKED) == (done.placed is made.placed)
@@ -74,9 +74,9 @@ def test_no_more_passes_than_it_takes() -> None:
     """The largest zones come first; the others stay where they are less than may be overlooked."""
     made = laid(sheet("round"), 0, "u")
     assert len(made.zones) > 2
-    few = mended(made.placed, made.zones, None)
+    few = add_passes_over_zones(made.placed, made.zones, None)
     assert 0 < len(few.steps) - len(made.placed.steps) < 2 * len(made.zones)
-    assert mended(made.placed, ()) is made.placed
+    assert add_passes_over_zones(made.placed, ()) is made.placed
     assert np.all(np.diff(few.steps) >= 0)
     assert set(made.placed.steps) <= set(few.steps)
     for step in made.placed.steps:  # the passes that were there are the same
@@ -86,4 +86,4 @@ def test_no_more_passes_than_it_takes() -> None:
 
 def test_a_zone_on_which_the_cutter_may_not_stand_is_left_alone() -> None:
     made = laid(sheet("acute"), 0, "u")
-    assert mended(made.placed, made.zones, lambda uv: np.zeros(len(uv), dtype=bool)) is made.placed
+    assert add_passes_over_zones(made.placed, made.zones, lambda uv: np.zeros(len(uv), dtype=bool)) is made.placed

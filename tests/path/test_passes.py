@@ -10,7 +10,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path import planes
 from toolaxis.path.iso_parametric import layout, passes
 from toolaxis.path.links import Linking
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -128,7 +128,7 @@ def test_what_may_not_be_visited_is_cut_out(make):
 
 
 def test_a_closed_face_has_nowhere_to_run_out_to():
-    dome = Face(Sphere(30.0, (0.0, 2 * np.pi), (0.9, 1.2)).nurbs())
+    dome = Face(SphericalSurface(30.0, (0.0, 2 * np.pi), (0.9, 1.2)).nurbs())
     path = layout(dome, Tool.ball(6), [0, 0, 1.0], H)
     assert np.allclose(path.pieces[:, 0], dome.bounds[0]) and np.allclose(path.pieces[:, 1], dome.bounds[1])
 

@@ -13,7 +13,7 @@ from toolaxis.path.cl_points import trace
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.path.rest_material import OVERLOOKED, Excess
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -25,7 +25,7 @@ AXES = unit(np.array([[0.9, 0.1, 0.6], [0.7, 0.4, 0.55], [-0.2, 0.8, 0.5]]))
 @pytest.fixture(scope="module", params=[False, True], ids=["north", "south"])
 def cap(request) -> Face:
     """Seen from above its normals point outwards; the other one is the same with its pole at the lower end of v."""
-    face = Face(Sphere(BALL, (0.0, 2 * np.pi), (1.12, np.pi / 2)).nurbs())
+    face = Face(SphericalSurface(BALL, (0.0, 2 * np.pi), (1.12, np.pi / 2)).nurbs())
     if not request.param:
         return face
     s = face.surface
@@ -132,7 +132,7 @@ def test_passes_that_meet_in_a_pole_are_refused(cap: Face) -> None:
 
 
 def test_elsewhere_nothing_changes(monkeypatch: pytest.MonkeyPatch) -> None:
-    face = Face(Sphere(BALL, (0.0, 2.0), (0.9, 1.4)).nurbs())
+    face = Face(SphericalSurface(BALL, (0.0, 2.0), (0.9, 1.4)).nurbs())
     axis = unit(np.array([0.9, 0.1, 0.9]))
     found = [counting.measure(IsoChart(face, feed), Cut(TOOL, axis, H)) for feed in "uv"]
     monkeypatch.setattr(counting, "_off_poles", lambda chart, cut, place, step: step)

@@ -18,7 +18,7 @@ from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.part_document import part_document, part_from
-from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Plan, PlanInputs
 from toolaxis.plan.schema import check
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
@@ -49,7 +49,7 @@ def example() -> Plan:
     piece = part.faces[0].trimmed((loop,), "1a")
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), np.ones(3))
     return Plan(part, Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)]),
-                Inputs(0.02, tolerance=Tolerance(chord=0.001)),
+                PlanInputs(0.02, tolerance=Tolerance(chord=0.001)),
                 (Operation(1, piece, best, path, frame, (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
                  Operation(2, part.faces[1], Orientation(None, outcome="infeasible", reasons=("no axis",)))),
                 (), np.zeros(3), "incomplete")
@@ -95,7 +95,7 @@ def test_times_are_lengths_over_their_rates_and_survive() -> None:
     slow = 2 * 2**0.5 + 3
     assert one.travel == pytest.approx(103) and one.seconds(600, 6000) == pytest.approx(slow / 10 + 1)
     other = replace(one, orientation=replace(one.orientation, axis=-axis))
-    several = replace(plan, operations=(one, other, other, one), inputs=Inputs(0.02, feedrate=600, rapid=6000))
+    several = replace(plan, operations=(one, other, other, one), inputs=PlanInputs(0.02, feedrate=600, rapid=6000))
     assert several.orientations == 2 and several.travel == pytest.approx(412)
     assert several.seconds == pytest.approx(4 * (slow / 10 + 1) + 2 * INDEX_SECONDS)
     row = Baseline("ball", "ball:12", 4, 3, 1, 31, 100.5, 20.25, 33.0, "no axis found")
@@ -106,7 +106,7 @@ def test_times_are_lengths_over_their_rates_and_survive() -> None:
 
 def test_what_was_not_given_is_named() -> None:
     assert example().not_checked == ("obstacles other than the part", "machine")
-    bare = Plan(example().part, Tool.ball(8), Inputs(0.02), (), (), np.zeros(3), "complete")
+    bare = Plan(example().part, Tool.ball(8), PlanInputs(0.02), (), (), np.zeros(3), "complete")
     assert bare.not_checked == ("shank", "holder", "obstacles other than the part", "machine")
 
 
@@ -166,13 +166,13 @@ def test_a_broken_document_is_refused(change: Callable[[dict[str, Any]], None], 
 ])
 def test_wrong_inputs(values: dict[str, Any], said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
-        Inputs(**values)
+        PlanInputs(**values)
 
 
 def test_a_scallop_not_below_the_radius_is_refused() -> None:
-    Inputs(5.999).check_tool(Tool.torus(12, 1))
+    PlanInputs(5.999).check_tool(Tool.torus(12, 1))
     with pytest.raises(InvalidInput, match="not below the cutter radius 6"):
-        Inputs(6.0).check_tool(Tool.torus(12, 1))
+        PlanInputs(6.0).check_tool(Tool.torus(12, 1))
 
 
 @pytest.mark.parametrize("change, said", [(_set("schema", value="x"), "'toolaxis.part' version 1 is needed"),

@@ -9,7 +9,7 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
@@ -80,7 +80,7 @@ def a_plan(axes: np.ndarray, rng: np.random.Generator, **inputs: float) -> Plan:
         path = a_path(axis, rng)
         frame = work_coordinates(axis, rng.normal(size=(5, 3)), DATUM, DATUM)
         operations.append(Operation(number, face, Orientation(axis, outcome="optimal"), path, frame))
-    asked = Inputs(0.02, **{"feedrate": 1234.5, "rapid": 8000.0, **inputs})
+    asked = PlanInputs(0.02, **{"feedrate": 1234.5, "rapid": 8000.0, **inputs})
     return Plan(Part((face,)), TOOL, asked, tuple(operations), (), DATUM, "complete")
 
 

@@ -7,7 +7,7 @@ from benchmarks._blades import loft
 import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.read_cl import read_cl
-from toolaxis.job.output.post import posted
+from toolaxis.job.output.post import post_plan
 from toolaxis.machine.setup import Mounting
 from toolaxis.post.context import Options
 
@@ -27,7 +27,7 @@ def mounting():
 
 @pytest.mark.parametrize("dialect", ["heidenhain", "siemens"])
 def test_a_program_with_one_rotary_axis_says_the_path(plan, dialect, tmp_path):
-    files = posted(plan, dialect, mounting(), Options())
+    files = post_plan(plan, dialect, mounting(), Options())
     name = next(name for name in files if name.startswith("program"))
     (tmp_path / name).write_text(files[name])
     found = read_cl(tmp_path / name, "four-axis-a", offset=PLACE)
@@ -40,4 +40,4 @@ def test_a_program_with_one_rotary_axis_says_the_path(plan, dialect, tmp_path):
 
 def test_fanuc_needs_two(plan):
     with pytest.raises(InvalidInput, match=r"drives 1 rotary axes: Fanuc G43\.4 needs two"):
-        posted(plan, "fanuc", mounting(), Options())
+        post_plan(plan, "fanuc", mounting(), Options())

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.job.output.post import posted
+from toolaxis.job.output.post import post_plan
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -156,7 +156,7 @@ def test_the_program_is_the_plan(name: str, dialect: str) -> None:
     where[:3, :3] = Rotation.from_euler("z", 37, degrees=True).as_matrix()
     for beside_deg in (9.0, 0.4):
         plan = _plan(where[:3, :3], beside_deg)
-        files = posted(plan, dialect, Mounting(machine, where))
+        files = post_plan(plan, dialect, Mounting(machine, where))
         text = next(text for file, text in files.items() if file.startswith("program"))
         found = read(text, dialect, machine)
         _judge(plan, found, where[:3, :3], dialect)
@@ -168,7 +168,7 @@ def test_the_program_is_the_plan(name: str, dialect: str) -> None:
 
 def test_singular_directions_get_points_between_only_where_rotary_axes_are_written() -> None:
     plan, mounting = _plan(np.eye(3), 0.4), Mounting(load_machine("mikron-ucp-710"))
-    fanuc = posted(plan, "fanuc", mounting)["program-fanuc.nc"].count("G1 ")
+    fanuc = post_plan(plan, "fanuc", mounting)["program-fanuc.nc"].count("G1 ")
     assert fanuc > 2 * len(plan.operations[0].path.cl) + 20
 
 
@@ -179,11 +179,11 @@ def test_singular_directions_get_points_between_only_where_rotary_axes_are_writt
     ("fanuc", "three-axes-fixture", "drives 0 rotary axes: Fanuc G43.4 needs two")])
 def test_what_a_dialect_cannot_move_is_refused(dialect: str, machine: str, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
-        posted(_plan(np.eye(3), 9.0), dialect, Mounting(load_machine(machine)))
+        post_plan(_plan(np.eye(3), 9.0), dialect, Mounting(load_machine(machine)))
 
 
 def test_the_sheet_tells_ranges_and_what_to_mind() -> None:
-    files = posted(_plan(np.eye(3), 9.0), "heidenhain", Mounting(load_machine("mikron-ucp-710")))
+    files = post_plan(_plan(np.eye(3), 9.0), "heidenhain", Mounting(load_machine("mikron-ucp-710")))
     sheet = files["setup-heidenhain.md"]
     assert "Heidenhain M128" in sheet and re.search(r"C -?[\d.]+ to -?[\d.]+; A -?[\d.]+ to", sheet)
     assert "Whether that is free of fixtures is not checked" in sheet

@@ -8,7 +8,7 @@ from test_moving import _plan
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.job.output.post import posted
+from toolaxis.job.output.post import post_plan
 from toolaxis.machine.kinematics import inverse
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
@@ -25,7 +25,7 @@ def test_programs_with_control_of_the_tip_are_the_plan(name: str, dialect: str) 
     machine, where = load_machine(name), np.eye(4)
     where[:3, :3] = Rotation.from_euler("z", 37, degrees=True).as_matrix()
     plan = _plan(where[:3, :3], 9.0)
-    files = posted(plan, dialect, Mounting(machine, where))
+    files = post_plan(plan, dialect, Mounting(machine, where))
     found = read_nc(next(text for file, text in files.items() if file.startswith("program")), machine, where)
     wanted = np.concatenate([op.path.cl - DATUM for op in plan.operations])
     axes = np.concatenate([op.path.axis for op in plan.operations])

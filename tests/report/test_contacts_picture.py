@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, settle, two_point_lead
 from toolaxis.strategies.two_point.pictures import contacts_picture
-from toolaxis.strategies.two_point.rings import Setting
+from toolaxis.strategies.two_point.rings import ContactSet
 from toolaxis.tools.tool import Tool
 
 
 def _drawn(lift):
-    face = Face(Cylinder(100.0, (-0.5, 0.5), (0.0, 80.0)).nurbs(), flip=True)
+    face = Face(CylindricalSurface(100.0, (-0.5, 0.5), (0.0, 80.0)).nurbs(), flip=True)
     uv = np.array([[0.0, 40.0]])
-    setting = Setting(face, Tool.flat(60), uv, face.evaluate(uv).sv, 0.03, 0.2)
+    setting = ContactSet(face, Tool.flat(60), uv, face.evaluate(uv).sv, 0.03, 0.2)
     _, ring = settle(setting, lift)
     made = contacts_picture(setting, ring, "op01")
     return made, made.axes[1]

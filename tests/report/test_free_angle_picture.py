@@ -10,7 +10,7 @@ from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.strategies.four_plus_one.passes import Clamp
@@ -32,7 +32,7 @@ def _plan(clamp: Clamp) -> Plan:
     kind[[0, 41]] = Motion.LINK
     path = ToolPath(tips, tips, axes, axes, kind, np.array([0, 41, 82]))
     op = Operation(1, face, Orientation(np.array([0.0, 0.0, 1.0]), outcome="feasible", lead=0.3), path, None)
-    inputs = Inputs(0.02, method="four-plus-one")
+    inputs = PlanInputs(0.02, method="four-plus-one")
     return Plan(Part((face,)), Tool.torus(12, 1), inputs, (op,), (), np.zeros(3), "complete", machine=Mounting(MIKRON))
 
 

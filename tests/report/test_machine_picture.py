@@ -7,12 +7,12 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.setup import Mounting
 from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.report.figures import machine
 from toolaxis.report.figures.machine import body_splats, has_machine_picture, machine_picture, orientations_of
 from toolaxis.shape.part import Part
@@ -33,14 +33,14 @@ def plan(*tilts: float) -> Plan:
         operations.append(Operation(number, FACE, Orientation(axis, "u", 1, outcome="feasible"), path,
                                     work_coordinates(axis, np.array([1.0, 0, 0]), np.zeros(3), np.zeros(3)),
                                     rotary=(0.0, tilt)))
-    return Plan(Part((FACE,)), TOOL, Inputs(0.1), tuple(operations), (), np.zeros(3), "complete", machine=mounting)
+    return Plan(Part((FACE,)), TOOL, PlanInputs(0.1), tuple(operations), (), np.zeros(3), "complete", machine=mounting)
 
 
 @pytest.mark.parametrize("body", [
-    Body("a", "bed", "box", np.array([[-3.0, -2, -1], [4, 5, 6]])),
-    Body("b", "bed", "cylinder", np.array([[1.0, 2, 3], [4, -2, 9]]), 2.5),
-    Body("c", "bed", "points", np.random.default_rng(3).normal(size=(12, 3)) * 4)])
-def test_splats_lie_on_the_surface_and_leave_no_gap(body: Body) -> None:
+    MachineBody("a", "bed", "box", np.array([[-3.0, -2, -1], [4, 5, 6]])),
+    MachineBody("b", "bed", "cylinder", np.array([[1.0, 2, 3], [4, -2, 9]]), 2.5),
+    MachineBody("c", "bed", "points", np.random.default_rng(3).normal(size=(12, 3)) * 4)])
+def test_splats_lie_on_the_surface_and_leave_no_gap(body: MachineBody) -> None:
     pieces = list(body_splats(body, 0.2))
     points, normals = (np.concatenate(some) for some in zip(*pieces, strict=True))
     assert np.allclose(np.linalg.norm(normals, axis=1), 1)

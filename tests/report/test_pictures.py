@@ -13,12 +13,12 @@ from toolaxis.machine.work_coordinates import work_coordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
-from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.zone import Zone
 from toolaxis.report.figures.comparison_chart import baselines_picture, options_picture
 from toolaxis.report.figures.hatch_fill import COLOUR
 from toolaxis.report.figures.hemisphere import equal_area, hemisphere_picture
-from toolaxis.report.figures.map_colouring import coloured
+from toolaxis.report.figures.map_colouring import colour_map
 from toolaxis.report.figures.plan_overview import overview_picture
 from toolaxis.report.figures.plots import (
     WidthStudy,
@@ -53,7 +53,7 @@ def planned() -> tuple[Plan, Operation]:
     found = Orientation(AXIS, "u", 12, 11.5, 480.0, 2.5, outcome="feasible")
     frame = work_coordinates(AXIS, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
     op = Operation(1, face, found, path, frame)
-    return Plan(Part.from_faces([face]), TOOL, Inputs(0.02), (op,), (), np.zeros(3), "complete"), op
+    return Plan(Part.from_faces([face]), TOOL, PlanInputs(0.02), (op,), (), np.zeros(3), "complete"), op
 
 
 def colours_of(made: Figure, path: Path) -> np.ndarray:
@@ -92,7 +92,7 @@ def test_sub_surfaces_that_touch_have_different_colours() -> None:
     cells = [(i, j) for i in range(3) for j in range(7)]
     pieces = [Operation(k, op.face.trimmed((np.array([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]) / [3, 7],)),
                         Orientation(None)) for k, (i, j) in enumerate(cells, 1)]
-    colours = coloured(pieces)
+    colours = colour_map(pieces)
     for k, (i, j) in enumerate(cells):
         for m, other in enumerate(cells[:k]):
             assert max(abs(i - other[0]), abs(j - other[1])) > 1 or colours[k] != colours[m]

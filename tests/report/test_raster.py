@@ -8,7 +8,7 @@ from toolaxis.report.figures.splat_renderer import (
     camera,
     face_splats,
     mean_direction,
-    revolved_splats,
+    splats_of_revolution,
     tool_outlines,
     visible_runs,
 )
@@ -82,7 +82,7 @@ def test_a_camera_along_its_up_direction_still_sees() -> None:
 def test_a_solid_of_revolution_lies_on_its_outline() -> None:
     axis = np.array([0.0, 0.6, 0.8])
     outline = np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 20.0], [8.0, 20.0]])
-    points, directions = revolved_splats(outline, np.array([1.0, 2, 3]), axis, 0.5)
+    points, directions = splats_of_revolution(outline, np.array([1.0, 2, 3]), axis, 0.5)
     rows = points - [1, 2, 3]
     z = rows @ axis
     radius = np.linalg.norm(rows - z[:, None] * axis, axis=1)

@@ -6,13 +6,23 @@ import numpy as np
 import pytest
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.analytic import Cone, Cylinder, HyperbolicParaboloid, Plane, Sphere, Torus, arc_parameter
+from toolaxis.shape.analytic import (
+    ConicalSurface,
+    CylindricalSurface,
+    HyperbolicParaboloid,
+    PlanarSurface,
+    SphericalSurface,
+    ToroidalSurface,
+    arc_parameter,
+)
 from toolaxis.shape.differential import curvatures, normals
 from toolaxis.shape.face import Face
 
-SURFACES = [Plane(), Plane((-3.0, 7.0), (2.0, 4.0)), Cylinder(12.0), Cylinder(12.0, (0.3, 1.1), (-4.0, 9.0)),
-            Sphere(80.0), Sphere(80.0, (1.0, 5.5), (-0.4, 1.2)), Cone(3.0, 0.3), Cone(3.0, -0.3, v_range=(0.0, 5.0)),
-            Torus(20.0, 6.0), Torus(20.0, 6.0, (0.0, 1.0), (2.0, 6.0)), HyperbolicParaboloid(),
+SURFACES = [PlanarSurface(), PlanarSurface((-3.0, 7.0), (2.0, 4.0)), CylindricalSurface(12.0),
+            CylindricalSurface(12.0, (0.3, 1.1), (-4.0, 9.0)),
+            SphericalSurface(80.0), SphericalSurface(80.0, (1.0, 5.5), (-0.4, 1.2)), ConicalSurface(3.0, 0.3),
+            ConicalSurface(3.0, -0.3, v_range=(0.0, 5.0)),
+            ToroidalSurface(20.0, 6.0), ToroidalSurface(20.0, 6.0, (0.0, 1.0), (2.0, 6.0)), HyperbolicParaboloid(),
             HyperbolicParaboloid(300.0, (-10.0, 40.0), (5.0, 30.0))]
 
 
@@ -66,15 +76,16 @@ def test_the_map_keeps_knots(surface: Any) -> None:
 
 
 def test_arcs_stay_within_a_right_angle() -> None:
-    assert len(Cylinder(1.0).nurbs().knots_u) == 9 + 3
-    assert len(Cylinder(1.0, (0.0, np.pi / 2)).nurbs().knots_u) == 3 + 3
-    assert len(Cylinder(1.0, (0.0, np.pi / 2 + 0.01)).nurbs().knots_u) == 5 + 3
+    assert len(CylindricalSurface(1.0).nurbs().knots_u) == 9 + 3
+    assert len(CylindricalSurface(1.0, (0.0, np.pi / 2)).nurbs().knots_u) == 3 + 3
+    assert len(CylindricalSurface(1.0, (0.0, np.pi / 2 + 0.01)).nurbs().knots_u) == 5 + 3
     angle = np.linspace(0.2, 1.3, 50)
     assert (np.diff(arc_parameter(angle, (0.2, 1.3))) > 0).all()
 
 
-@pytest.mark.parametrize("surface", [Sphere(10.0), Sphere(10.0, (0.4, 1.3))], ids=["whole", "wedge"])
-def test_poles_of_a_sphere(surface: Sphere) -> None:
+@pytest.mark.parametrize("surface", [SphericalSurface(10.0), SphericalSurface(10.0, (0.4, 1.3))],
+                         ids=["whole", "wedge"])
+def test_poles_of_a_sphere(surface: SphericalSurface) -> None:
     middle = np.mean(surface.u_range)
     for v, up in ((np.pi / 2, 1.0), (-np.pi / 2, -1.0)):
         for mirror, swap in ((False, False), (True, False), (False, True), (True, True)):
@@ -90,7 +101,7 @@ def test_poles_of_a_sphere(surface: Sphere) -> None:
 
 @pytest.mark.parametrize("distance", [1e-14, 1e-12, 1e-10, 3e-9, 1e-8, 3e-8, 1e-6, 1e-3])
 def test_normals_run_smoothly_into_the_pole(distance: float) -> None:
-    sphere = Sphere(10.0)
+    sphere = SphericalSurface(10.0)
     face = Face(sphere.nurbs())
     uv = np.array([[0.7, np.pi / 2 - distance], [0.7, -np.pi / 2 + distance]])
     mapped = sphere.parameters(uv)
@@ -99,7 +110,7 @@ def test_normals_run_smoothly_into_the_pole(distance: float) -> None:
 
 
 def test_the_apex_of_a_cone_has_the_normal_of_its_generator() -> None:
-    cone = Cone(3.0, 0.3, v_range=(-3.0 / np.sin(0.3), 5.0))
+    cone = ConicalSurface(3.0, 0.3, v_range=(-3.0 / np.sin(0.3), 5.0))
     u = np.linspace(0.1, 6.0, 7)
     apex = np.column_stack([u, np.full(7, cone.v_range[0])])
     beside = np.column_stack([u, np.full(7, 0.0)])
@@ -128,14 +139,14 @@ def test_a_surface_without_any_direction_answers_zeros() -> None:
 
 
 @pytest.mark.parametrize("make, said", [
-    (lambda: Cylinder(-1.0), "radius is -1.0"),
-    (lambda: Sphere(float("nan")), "radius is nan"),
-    (lambda: Sphere(1.0, v_range=(0.0, 2.0)), "latitudes lie between"),
-    (lambda: Cylinder(1.0, (0.0, 7.0)), "range of u is .* by no more than 6.28"),
-    (lambda: Plane((1.0, 1.0)), "range of u"),
-    (lambda: Cone(3.0, 0.0), "half angle is 0.0"),
-    (lambda: Cone(3.0, 0.3, v_range=(-20.0, 0.0)), "must end at the apex"),
-    (lambda: Torus(3.0, 3.0), "the tube would meet itself"),
+    (lambda: CylindricalSurface(-1.0), "radius is -1.0"),
+    (lambda: SphericalSurface(float("nan")), "radius is nan"),
+    (lambda: SphericalSurface(1.0, v_range=(0.0, 2.0)), "latitudes lie between"),
+    (lambda: CylindricalSurface(1.0, (0.0, 7.0)), "range of u is .* by no more than 6.28"),
+    (lambda: PlanarSurface((1.0, 1.0)), "range of u"),
+    (lambda: ConicalSurface(3.0, 0.0), "half angle is 0.0"),
+    (lambda: ConicalSurface(3.0, 0.3, v_range=(-20.0, 0.0)), "must end at the apex"),
+    (lambda: ToroidalSurface(3.0, 3.0), "the tube would meet itself"),
     (lambda: HyperbolicParaboloid(0.0), "divisor is 0.0"),
 ])
 def test_sizes_that_make_no_surface(make: Any, said: str) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.numeric.vectors import dot, rotation
-from toolaxis.shape.analytic import Sphere, Torus
+from toolaxis.shape.analytic import SphericalSurface, ToroidalSurface
 from toolaxis.shape.differential import (
     curvature_form,
     curvatures,
@@ -78,14 +78,14 @@ def test_follows_motion_mirror_scale_swap_and_flip() -> None:
 
 def test_concave_is_positive() -> None:
     uv = np.array([[0.4, 0.3]])
-    outside, inside = Face(Sphere(5.0).nurbs()), Face(Sphere(5.0).nurbs(), flip=True)
+    outside, inside = Face(SphericalSurface(5.0).nurbs()), Face(SphericalSurface(5.0).nurbs(), flip=True)
     assert outside.curvature(uv).k1[0] == pytest.approx(-0.2) and inside.curvature(uv).k1[0] == pytest.approx(0.2)
-    inner = Face(Torus(20.0, 6.0).nurbs()).curvature([[0.0, np.pi]])
+    inner = Face(ToroidalSurface(20.0, 6.0).nurbs()).curvature([[0.0, np.pi]])
     assert (inner.k1[0], inner.k2[0]) == pytest.approx((1 / 14, -1 / 6))
 
 
 def test_derivatives_alone_at_a_pole_leave_the_crossing_curvature_out() -> None:
-    d = Sphere(10.0).nurbs().evaluate(np.array([[0.3, np.pi / 2], [0.3, 0.2]]))
+    d = SphericalSurface(10.0).nurbs().evaluate(np.array([[0.3, np.pi / 2], [0.3, 0.2]]))
     assert degenerate(d).tolist() == [True, False]
     n = normals(d, inward=(0.0, -1.0))
     assert n[0] == pytest.approx([0, 0, 1], abs=1e-12)

@@ -8,7 +8,13 @@ from scipy.integrate import dblquad
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation
-from toolaxis.shape.analytic import Cylinder, HyperbolicParaboloid, Plane, Sphere, Torus
+from toolaxis.shape.analytic import (
+    CylindricalSurface,
+    HyperbolicParaboloid,
+    PlanarSurface,
+    SphericalSurface,
+    ToroidalSurface,
+)
 from toolaxis.shape.face import Face
 
 RING = np.linspace(0, 2 * np.pi, 400, endpoint=False)
@@ -23,7 +29,7 @@ def polygon_area(loop: np.ndarray) -> float:
 
 
 def disc() -> Face:
-    return Face(Plane().nurbs(), (circle(50, 50, 30, 20), circle(45, 50, 10, 8)))
+    return Face(PlanarSurface().nurbs(), (circle(50, 50, 30, 20), circle(45, 50, 10, 8)))
 
 
 def freeform(trims: tuple[np.ndarray, ...] = ()) -> Face:
@@ -34,8 +40,10 @@ def freeform(trims: tuple[np.ndarray, ...] = ()) -> Face:
 
 
 @pytest.mark.parametrize("surface, area", [
-    (Plane((0.0, 30.0), (0.0, 20.0)), 600.0), (Cylinder(12.0), 2400 * np.pi), (Sphere(80.0), 25600 * np.pi),
-    (Sphere(10.0, (0.0, 1.0), (-0.5, 0.7)), 100 * (np.sin(0.7) + np.sin(0.5))), (Torus(20.0, 6.0), 480 * np.pi**2)])
+    (PlanarSurface((0.0, 30.0), (0.0, 20.0)), 600.0), (CylindricalSurface(12.0), 2400 * np.pi),
+                                           (SphericalSurface(80.0), 25600 * np.pi),
+    (SphericalSurface(10.0, (0.0, 1.0), (-0.5, 0.7)), 100 * (np.sin(0.7) + np.sin(0.5))),
+                                           (ToroidalSurface(20.0, 6.0), 480 * np.pi**2)])
 def test_areas_of_whole_surfaces(surface: Any, area: float) -> None:
     assert Face(surface.nurbs()).area == pytest.approx(area, rel=1e-6)
 
@@ -49,9 +57,9 @@ def test_areas_of_trimmed_planes() -> None:
     loops = disc().trims
     assert disc().area == pytest.approx(polygon_area(loops[0]) - polygon_area(loops[1]), rel=1e-5)
     triangle = np.array([[10.0, 10], [90, 20], [30, 80]])
-    assert Face(Plane().nurbs(), (triangle,)).area == pytest.approx(polygon_area(triangle), rel=1e-12)
+    assert Face(PlanarSurface().nurbs(), (triangle,)).area == pytest.approx(polygon_area(triangle), rel=1e-12)
     thin = np.array([[0.0, 0.0], [100, 99.9], [100, 100]])
-    assert Face(Plane().nurbs(), (thin,)).area == pytest.approx(polygon_area(thin), rel=1e-9)
+    assert Face(PlanarSurface().nurbs(), (thin,)).area == pytest.approx(polygon_area(thin), rel=1e-9)
 
 
 def test_pieces_of_a_face_add_up() -> None:
@@ -62,9 +70,10 @@ def test_pieces_of_a_face_add_up() -> None:
 
 
 def test_box_of_a_sphere_a_torus_and_a_ring() -> None:
-    assert Face(Sphere(80.0).nurbs()).box == pytest.approx(np.array([[-80.0] * 3, [80.0] * 3]), abs=1e-9)
-    assert Face(Torus(20.0, 6.0).nurbs()).box == pytest.approx(np.array([[-26, -26, -6], [26, 26, 6.0]]), abs=1e-9)
-    half = Face(Cylinder(7.0, (0.3, 2.9), (0.0, 9.0)).nurbs())
+    assert Face(SphericalSurface(80.0).nurbs()).box == pytest.approx(np.array([[-80.0] * 3, [80.0] * 3]), abs=1e-9)
+    assert Face(ToroidalSurface(20.0, 6.0).nurbs()).box == pytest.approx(np.array([[-26, -26, -6], [26, 26, 6.0]]),
+                                                                         abs=1e-9)
+    half = Face(CylindricalSurface(7.0, (0.3, 2.9), (0.0, 9.0)).nurbs())
     wanted = np.array([[7 * np.cos(2.9), 7 * np.sin(2.9), 0], [7 * np.cos(0.3), 7, 9]])
     assert half.box == pytest.approx(wanted, abs=1e-9)
     assert disc().box == pytest.approx(np.array([[20, 30, 0], [80, 70, 0]]), abs=1e-9)
@@ -94,7 +103,7 @@ def test_what_is_on_a_face() -> None:
     assert face.contains(points).tolist() == [True, False, False, True, True]
     assert face.contains([50.0, 35.0]).shape == (1,)
     assert face.contains(face.trims[0]).all() and face.contains(face.trims[1]).all()
-    whole = Face(Plane().nurbs())
+    whole = Face(PlanarSurface().nurbs())
     assert whole.contains([[0, 0], [100, 100], [100.1, 50], [np.nan, 5]]).tolist() == [True, True, False, False]
     corners = np.array([[0.0, 0], [100, 0], [100, 100], [0, 100]])
     assert np.array_equal(whole.trimmed((corners,)).contains(corners), whole.contains(corners))
@@ -104,12 +113,12 @@ def test_grid_bounds_and_outline() -> None:
     face = disc()
     assert face.bounds == pytest.approx((20, 80, 30, 70)) and face.contains(face.grid(31, 17)).all()
     assert 31 * 17 * 0.5 < len(face.grid(31, 17)) < 31 * 17
-    assert Face(Plane().nurbs()).grid(2, 1).tolist() == [[25, 50], [75, 50]]
-    assert Face(Plane().nurbs()).outline[0].tolist() == [[0, 0], [100, 0], [100, 100], [0, 100]]
+    assert Face(PlanarSurface().nurbs()).grid(2, 1).tolist() == [[25, 50], [75, 50]]
+    assert Face(PlanarSurface().nurbs()).outline[0].tolist() == [[0, 0], [100, 0], [100, 100], [0, 100]]
 
 
 def test_labels_and_pieces() -> None:
-    face = Face(Plane().nurbs(), number=7)
+    face = Face(PlanarSurface().nurbs(), number=7)
     piece = face.trimmed(([[0, 0], [1, 0], [0, 1]],), "7a")
     assert (face.label, piece.label, piece.number, face.trimmed(()).label) == ("7", "7a", 7, "7")
 
@@ -122,4 +131,4 @@ def test_labels_and_pieces() -> None:
 ])
 def test_loops_that_enclose_nothing(loop: Any, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
-        Face(Plane().nurbs(), (np.array(loop, dtype=float),))
+        Face(PlanarSurface().nurbs(), (np.array(loop, dtype=float),))

@@ -9,11 +9,11 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.numeric.knots import elevated, insert_knot, restricted
+from toolaxis.numeric.knots import elevate_degree, insert_knot, restrict_spline
 from toolaxis.shape.adjacency import Edge
-from toolaxis.shape.analytic import Cylinder, Sphere
+from toolaxis.shape.analytic import CylindricalSurface, SphericalSurface
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.joined_surface import joined, joins
+from toolaxis.shape.joining.joined_surface import join_patches, joins
 from toolaxis.shape.joining.shared_boundary import meetings
 from toolaxis.shape.joining.smooth_skins import join, own_pieces, skins
 from toolaxis.shape.kinks import kinks_of, split_at_kinks, with_kinks
@@ -34,9 +34,9 @@ def cut(face: Face, us: list[float], vs: list[float]) -> list[Face]:
     """Patches of a face between lines, along v first."""
     surface, patches = face.surface, []
     for u in pairwise(us):
-        ku, net = restricted(surface.knots_u, surface.control, surface.degree[0], *u)
+        ku, net = restrict_spline(surface.knots_u, surface.control, surface.degree[0], *u)
         for v in pairwise(vs):
-            kv, own = restricted(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *v)
+            kv, own = restrict_spline(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *v)
             patches.append(replace(face, surface=NurbsSurface(ku, kv, own.swapaxes(0, 1), surface.degree)))
     return patches
 
@@ -90,7 +90,7 @@ def test_a_surface_cut_and_joined_again_is_that_surface(k: int) -> None:
 def test_other_degrees_and_knots_are_brought_together() -> None:
     face = wave()
     a, b = cut(face, [0.0, 0.5, 1.0], [0.0, 1.0])
-    knots, net = elevated(b.surface.knots_v, b.surface.control.swapaxes(0, 1), 3, 5)
+    knots, net = elevate_degree(b.surface.knots_v, b.surface.control.swapaxes(0, 1), 3, 5)
     raised = NurbsSurface(b.surface.knots_u, knots, net.swapaxes(0, 1), (3, 5))
     knots, net = insert_knot(a.surface.knots_v, a.surface.control.swapaxes(0, 1), 3, 0.123)
     a = replace(a, surface=NurbsSurface(a.surface.knots_u, knots, net.swapaxes(0, 1), (3, 3)))
@@ -100,7 +100,7 @@ def test_other_degrees_and_knots_are_brought_together() -> None:
 
 
 def test_rational_patches_join_whatever_the_factor_of_their_weights() -> None:
-    ball = Face(Sphere(20.0).nurbs())
+    ball = Face(SphericalSurface(20.0).nurbs())
     (u0, u1), (v0, v1) = ball.surface.domain
     us, vs = [u0, 0.5 * (u0 + u1), u1], [v0 + 0.2, 0.1, v1 - 0.3]
     patches = [replace(p, surface=replace(p.surface, control=p.surface.control * (k + 1)))
@@ -112,7 +112,7 @@ def test_rational_patches_join_whatever_the_factor_of_their_weights() -> None:
 
 
 def test_a_ring_stays_open_at_its_seam() -> None:
-    tube = Face(Cylinder(10.0, v_range=(0.0, 30.0)).nurbs())
+    tube = Face(CylindricalSurface(10.0, v_range=(0.0, 30.0)).nurbs())
     u0, u1 = tube.surface.domain[0]
     patches = cut(tube, list(np.linspace(u0, u1, 4)), list(tube.surface.domain[1]))
     part = together(*(written(p, TURNS[2 * k]) for k, p in enumerate(patches)))
@@ -136,7 +136,7 @@ def test_joined_borders_that_differ_move_by_no_more_than_is_told() -> None:
 def test_the_bound_is_that_of_the_surface_not_of_its_control_points() -> None:
     """At degree 9 control points lie far apart where curves hardly do."""
     a, b = cut(wave(), [0.0, 0.5, 1.0], [0.0, 1.0])
-    knots, net = elevated(b.surface.knots_v, b.surface.control.swapaxes(0, 1), 3, 9)
+    knots, net = elevate_degree(b.surface.knots_v, b.surface.control.swapaxes(0, 1), 3, 9)
     net[2:-2, :, 2] += 2e-4 * (-1.0) ** np.arange(len(net) - 4)[:, None]
     b = replace(b, surface=NurbsSurface(b.surface.knots_u, knots, net.swapaxes(0, 1), (3, 9)))
     whole = join(together(a, b), (1, 2), tolerance=1.2e-4).faces[0]
@@ -355,6 +355,6 @@ def test_patches_of_a_real_nacelle_join_to_a_ring() -> None:
         pytest.skip("the parts by others are not here")
     part = ta.load(PARTS / "nacelle.stp")
     assert skins(part).joined == ((1, 2), (3, 4, 5, 6))
-    whole = joined([part.face(n) for n in (3, 4, 5, 6)], meetings(part, (3, 4, 5, 6)))
+    whole = join_patches([part.face(n) for n in (3, 4, 5, 6)], meetings(part, (3, 4, 5, 6)))
     assert on_members(whole) <= max(whole.tolerance, 1e-9) and whole.tolerance < 1e-8
     assert whole.area == pytest.approx(sum(part.face(n).area for n in (3, 4, 5, 6)), rel=1e-6)

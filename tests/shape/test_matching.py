@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.shape.adjacency import consistent, edges_from_borders
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.edge_matching import matched, sides_of
+from toolaxis.shape.joining.edge_matching import match_edges, sides_of
 from toolaxis.shape.part import Part
 
 
@@ -60,7 +60,7 @@ def test_a_surface_cut_in_two_goes_on_smoothly_however_the_pieces_run(turn, flip
 def test_one_piece_turned_over_is_still_smooth_but_not_consistent():
     left, right = quad((0, 0, 0), (5, 0, 0), (5, 8, 0), (0, 8, 0)), quad((5, 0, 0), (9, 0, 0), (9, 8, 0), (5, 8, 0))
     one, other = Face(left.surface, number=1), Face(right.surface, number=2, flip=True)
-    borders = matched([*sides_of(one), *sides_of(other)], 12.0)
+    borders = match_edges([*sides_of(one), *sides_of(other)], 12.0)
     assert len(borders) == 1
     assert not consistent(borders[0], one, other)
     assert edges_from_borders([one, other], borders)[0].kind == "tangent"

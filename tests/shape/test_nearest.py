@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation
-from toolaxis.shape.analytic import Plane, Sphere, Torus
+from toolaxis.shape.analytic import PlanarSurface, SphericalSurface, ToroidalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 
@@ -27,7 +27,7 @@ def around(face: Face, count: int, seed: int = 0) -> np.ndarray:
 
 
 def test_sphere_and_torus() -> None:
-    sphere, torus = Face(Sphere(20.0).nurbs()), Face(Torus(20.0, 6.0).nurbs())
+    sphere, torus = Face(SphericalSurface(20.0).nurbs()), Face(ToroidalSurface(20.0, 6.0).nurbs())
     points = around(torus, 300)
     assert nearest(sphere, points).distance == pytest.approx(np.abs(np.linalg.norm(points, axis=1) - 20), abs=1e-9)
     tube = np.hypot(np.hypot(*points[:, :2].T) - 20, points[:, 2])
@@ -35,7 +35,7 @@ def test_sphere_and_torus() -> None:
 
 
 def test_plane_with_a_border() -> None:
-    face = Face(Plane((0.0, 10.0), (0.0, 6.0)).nurbs())
+    face = Face(PlanarSurface((0.0, 10.0), (0.0, 6.0)).nurbs())
     found = nearest(face, [[5, 3, 2], [13, 10, 0], [-3, 2, 4], [5, 3, 0]])
     assert found.point == pytest.approx(np.array([[5, 3, 0], [10, 6, 0], [0, 2, 0], [5, 3, 0.0]]), abs=1e-6)
     assert found.distance == pytest.approx([2, 5, 5, 0], abs=1e-9)

@@ -8,35 +8,36 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.collision.machine_collision import Surroundings, nearest_meeting
+from toolaxis.collision.machine_collision import MachineSurroundings, nearest_meeting
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.kinematics import forward
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.verify.machine_motion import Rig, least_room
-from toolaxis.verify.rigid_bodies import body_thing, cutter_line, turned_thing
+from toolaxis.verify.machine_motion import MachineModel, least_room
+from toolaxis.verify.rigid_bodies import body_thing, cutter_line, revolve_rigid_body
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 TOOL = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=[(10.0, 0.0), (10.0, 40.0)])
-TABLE = Body("table", "C", "cylinder", np.array([[0.0, 0, -60], [0, 0, 0]]), 300.0)
-BLOCK = Body("vice", "C", "box", np.array([[60.0, -40, 0], [120, 40, 80]]))
-HEAD = Body("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 70.0)
-ROUND = Body("nose", "B", "points", np.array([[0.0, 0, 0], [40, 0, 60], [-40, 0, 60], [0, 40, 60], [0, -40, 60]]), 5.0)
+TABLE = MachineBody("table", "C", "cylinder", np.array([[0.0, 0, -60], [0, 0, 0]]), 300.0)
+BLOCK = MachineBody("vice", "C", "box", np.array([[60.0, -40, 0], [120, 40, 80]]))
+HEAD = MachineBody("head", "B", "cylinder", np.array([[0.0, 0, 0], [0, 0, 150]]), 70.0)
+ROUND = MachineBody("nose", "B", "points", np.array([[0.0, 0, 0], [40, 0, 60], [-40, 0, 60], [0, 40, 60],
+                                                     [0, -40, 60]]), 5.0)
 
 
-def machine(*bodies: Body) -> Machine:
+def machine(*bodies: MachineBody) -> Machine:
     linear = tuple(LinearAxis(name, way, DRIVE, -900, 900) for name, way in zip("XYZ", np.eye(3), strict=True))
     return Machine("small", linear, (RotaryAxis("C", np.array([0, 0, 1.0]), np.zeros(3), DRIVE),),
                    (RotaryAxis("B", np.array([0, 1.0, 0]), np.array([0.0, 0, 90]), DRIVE, -2.2, 2.2),), bodies=bodies)
 
 
-def rig(*bodies: Body, faces: tuple[ta.Face, ...] = ()) -> Rig:
+def rig(*bodies: MachineBody, faces: tuple[ta.Face, ...] = ()) -> MachineModel:
     place = np.eye(4)
     place[:3, 3] = (-20.0, -15.0, 25.0)
-    return Rig(machine(*bodies), place, TOOL.gauge_length, TOOL.profile, TOOL.outlines, faces)
+    return MachineModel(machine(*bodies), place, TOOL.gauge_length, TOOL.profile, TOOL.outlines, faces)
 
 
 def test_distances_from_a_box_are_exact() -> None:
@@ -63,7 +64,7 @@ def test_distances_from_turned_bodies_are_exact() -> None:
     assert table.inside is not None
     assert table.inside(places) == pytest.approx(exact, abs=1e-9)
     tip, axis = np.array([1.0, 2, 3]), np.array([0.0, 0.6, 0.8])
-    ball = turned_thing("cutter", "B", cutter_line(ta.Tool.ball(diameter=8).profile), tip, axis)
+    ball = revolve_rigid_body("cutter", "B", cutter_line(ta.Tool.ball(diameter=8).profile), tip, axis)
     assert ball.inside is not None
     near = tip + 4 * axis + 6 * np.array([[1.0, 0, 0], [0, -0.8, 0.6], [0, -0.6, -0.8]])
     assert ball.inside(near) == pytest.approx([2.0] * 3, abs=0.01)
@@ -93,7 +94,7 @@ def test_things_move_as_the_tool_does() -> None:
 
 
 @pytest.mark.parametrize("head", [HEAD, ROUND], ids=["cylinder", "hull"])
-def test_the_judge_measures_what_planning_bounds(head: Body) -> None:
+def test_the_judge_measures_what_planning_bounds(head: MachineBody) -> None:
     """Planning never promises more than the judge finds, and little less."""
     rng = np.random.default_rng(7)
     one, mounting = rig(TABLE, BLOCK, head), Mounting(machine(TABLE, BLOCK, head), (-20.0, -15, 25), TOOL.gauge_length)
@@ -105,7 +106,7 @@ def test_the_judge_measures_what_planning_bounds(head: Body) -> None:
                       for _ in range(2))
         joints = np.stack([start, end])
         tips, _ = forward(one.machine, joints, one.tool_length, one.place)
-        planned = nearest_meeting(mounting, rotary, tips, Surroundings(TOOL, (forest((away,)),), 30.0))
+        planned = nearest_meeting(mounting, rotary, tips, MachineSurroundings(TOOL, (forest((away,)),), 30.0))
         judged = least_room(one, joints, 30.0, one.pairs)
         if planned is None or planned.distance < 0:
             assert (planned is None) == (judged.distance >= 30.0 - 1e-6) or planned is None
@@ -134,7 +135,7 @@ def test_a_plan_on_a_machine_with_bodies_is_judged_with_them() -> None:
     verdict = ta.verify(made)
     room = verdict.operations[0].clearance["machine"]
     assert verdict.passed and room.distance >= 1.0
-    tall = Body("clamp", "C", "box", np.array([[-20.0, 45, 25], [20, 75, 175]]))
+    tall = MachineBody("clamp", "C", "box", np.array([[-20.0, 45, 25], [20, 75, 175]]))
     in_the_way = machine(TABLE, HEAD, tall)
     moved = ta.verify(_on(made, in_the_way))
     assert not moved.passed

@@ -19,11 +19,11 @@ from toolaxis.verify import material_removal as removal
 from toolaxis.verify import rays, verdict
 from toolaxis.verify import thin_walls as walls
 from toolaxis.verify.component_clearance import clearance
-from toolaxis.verify.kept import Kept
+from toolaxis.verify.kept import SizedCache
 from toolaxis.verify.material_removal import Removal
 from toolaxis.verify.rays import face_rays
 from toolaxis.verify.revolved_solids import frustum_solids
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 
 UP = np.array([0.0, 0.0, 1.0])
 HOLDER = np.array([[10.0, 40.0], [10.0, 60.0], [25.0, 60.0], [25.0, 90.0]])
@@ -63,8 +63,9 @@ def crowded(passes, points, faces, size=20.0):
     skin = small_faces(faces, size / 2, 0, 2)
     around = small_faces(faces, size / 2 + 8, 3.0, 2 + faces)
     target = rectangle([-size / 2, -size / 2, 0], [size, 0, 0], [0, size, 0], 1)
-    return Task("crowded", tips, np.tile(UP, (len(tips), 1)), kind, Profile(0, 3, 0, 20), (target,), 0.001, skin=skin,
-                surroundings=around, outlines={"holder": HOLDER - np.array([0.0, 15.0])})
+    return VerificationTask("crowded", tips, np.tile(UP, (len(tips), 1)), kind, Profile(0, 3, 0, 20), (target,), 0.001,
+                            skin=skin,
+                            surroundings=around, outlines={"holder": HOLDER - np.array([0.0, 15.0])})
 
 
 def turning(count):
@@ -152,7 +153,7 @@ def test_rays_looked_at_together_change_no_verdict(monkeypatch):
 
 def test_no_more_is_kept_than_was_said_and_the_last_used_stays():
     made = []
-    kept = Kept(100, len)
+    kept = SizedCache(100, len)
     for key in (1, 2, 1, 3, 1, 2):
         kept.get(key, lambda key=key: made.append(key) or 40 * "x")
     assert made == [1, 2, 3, 2]

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
 FLAT = Profile(1.5, 0.0, 0.0, 20.0)
@@ -31,7 +31,8 @@ def cut_along_the_edge(tips, axis, target=TOP, **change):
     tips, axis = np.atleast_2d(tips), np.asarray(axis) / np.linalg.norm(axis)
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     given = {"touching": (SIDE,), "tolerance": Tolerance(gouge=0.002), **change}
-    return judge(Task("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02, left=(target,), **given),
+    return judge(VerificationTask("top", tips, np.tile(axis, (len(tips), 1)), kind, FLAT, (target,), 0.02,
+                                  left=(target,), **given),
                  spacing=0.2)
 
 
@@ -83,7 +84,7 @@ def test_where_the_part_goes_on_nothing_is_forgiven(change):
 
 def test_a_seam_is_no_border():
     """A groove of a sharp corner along the seam of a cylinder, 0.004 mm deep."""
-    surface = Cylinder(5.0, v_range=(0.0, 8.0)).nurbs()
+    surface = CylindricalSurface(5.0, v_range=(0.0, 8.0)).nurbs()
     tube = Face(surface, label="tube")
     assert tube.normal(np.array([[0.3, 4.0]]))[0] @ tube.evaluate(np.array([[0.3, 4.0]])).point[0] > 0
     seam = tube.evaluate(np.array([[tube.bounds[0], 4.0]])).point[0]

@@ -6,12 +6,12 @@ from third import depth_of_cut, stair, strip
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.clearance.gouge import segment_penetration
-from toolaxis.feasibility.surroundings import SKIN, TOUCHING, grouped
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, group_surroundings
 from toolaxis.shape.adjacency import Border, edges_from_borders
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
 BALL = Tool.ball(8)
@@ -21,8 +21,9 @@ UP = np.array([0.0, 0.0, 1.0])
 def judged(faces, tips, tolerance, role="skin", tool=BALL, axis=UP):
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     given = {role: faces[1:]}
-    return judge(Task("op", np.asarray(tips), np.tile(axis, (len(tips), 1)), kind, tool.profile, faces[:1], 0.02,
-                      left=faces[:1], tolerance=Tolerance(gouge=tolerance), **given), spacing=0.25)
+    return judge(VerificationTask("op", np.asarray(tips), np.tile(axis, (len(tips), 1)), kind, tool.profile, faces[:1],
+                                  0.02,
+                                  left=faces[:1], tolerance=Tolerance(gouge=tolerance), **given), spacing=0.25)
 
 
 def along(x, z):
@@ -122,7 +123,7 @@ def test_planner_and_judge_take_off_the_same(kind, seed):
     height, tolerance = 10.0 ** rng.uniform(-3.2, -1.75), (0.002, 0.01)[seed % 2]
     faces = missing_riser(height) if kind == "seam" else proud_side(height)
     part = part_of(faces)
-    groups = {group.role: group for group in grouped(part.faces[0], Tolerance(gouge=tolerance), part=part)}
+    groups = {group.role: group for group in group_surroundings(part.faces[0], Tolerance(gouge=tolerance), part=part)}
     role = SKIN if kind == "seam" else TOUCHING
     x = rng.uniform(-0.4, 0.4)
     tips = along(x, -rng.uniform(0, tolerance))

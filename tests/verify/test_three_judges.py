@@ -10,7 +10,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.clearance.gouge import RESOLUTION, segment_penetration
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
 TOOLS = (Tool.ball(8), Tool.torus(10, 2), Tool.torus(8, 0.5), Tool.ball(3))
@@ -66,8 +66,9 @@ def judged(solid, tool, tips, axis, tolerance, role="skin"):
     given = {role: solid.faces[1:]} if role != "alone" else {}
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     axes = np.tile(axis, (len(tips), 1))
-    return judge(Task("op", tips, axes, kind, tool.profile, solid.faces[:1], 0.02, left=solid.faces[:1],
-                      tolerance=Tolerance(gouge=tolerance), **given), spacing=min(0.25, 0.2 * tool.corner_radius))
+    return judge(VerificationTask("op", tips, axes, kind, tool.profile, solid.faces[:1], 0.02, left=solid.faces[:1],
+                                  tolerance=Tolerance(gouge=tolerance), **given),
+                 spacing=min(0.25, 0.2 * tool.corner_radius))
 
 
 def compared(solid, seed, tolerance, bend, role="skin", lean=LEAN):

@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import RESOLUTION
-from toolaxis.feasibility.surroundings import SKIN, TOUCHING, Group
+from toolaxis.feasibility.surroundings import SKIN, TOUCHING, CheckSurfaces
 from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import OperationVerdict, verify
 
 BALL = Profile(0.0, 5.0, 0.0, 20.0)
@@ -38,8 +38,8 @@ def locations(extra: list[list[float]]) -> NDArray[np.float64]:
 def judged(extra: list[list[float]], touching: tuple[Face, ...] = (SIDE,), allowed: float = 0.002) -> OperationVerdict:
     tips = locations(extra)
     axes, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.full(len(tips), Motion.CUT)
-    return verify([Task("top", tips, axes, kind, BALL, (TOP,), 0.02, touching=touching,
-                        tolerance=Tolerance(gouge=allowed))], spacing=0.5).operations[0]
+    return verify([VerificationTask("top", tips, axes, kind, BALL, (TOP,), 0.02, touching=touching,
+                                    tolerance=Tolerance(gouge=allowed))], spacing=0.5).operations[0]
 
 
 def test_running_out_over_the_edge_is_no_gouge() -> None:
@@ -72,7 +72,7 @@ def test_planner_and_judge_tell_the_same_depth_behind_an_edge(depth: float) -> N
     tips, tolerance = locations(extra), Tolerance(gouge=0.01)
     axis, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.full(len(tips), Motion.CUT)
     path = ToolPath(tips, tips, axis, axis, kind, np.array([0, len(tips)]))
-    groups = [Group(role, (face,), np.array([-tolerance.gouge, -np.inf, -np.inf]), None)
+    groups = [CheckSurfaces(role, (face,), np.array([-tolerance.gouge, -np.inf, -np.inf]), None)
               for role, face in ((SKIN, TOP), (TOUCHING, SIDE))]
     proof = prove(path, Tool.ball(10), tuple(groups))
     assert proof.witness is None

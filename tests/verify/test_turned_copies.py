@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toolaxis.shape.analytic import Cylinder
+from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.task import Task
-from toolaxis.verify.turned_copies import TurnedCopies, measured_on_copy
+from toolaxis.verify.task import VerificationTask
+from toolaxis.verify.turned_copies import TurnedCopies, transfer_measurement
 from toolaxis.verify.verdict import judge, measure, verdict_on
 
 WIDTH = 2.171571  # R6 r1, lead 10 deg, h = 0.02
@@ -44,7 +44,7 @@ def find_copy(source, task):
 FLOOR = rectangle([-8, -8, 0], [16, 0, 0], [0, 16, 0], 7)
 BESIDE = rectangle([-8, 30, 0], [16, 0, 0], [0, 0, 4], 9)
 SIDE = rectangle([8, -8, -9], [0, 16, 0], [0, 0, 9], 8)
-HUB = named(Face(Cylinder(20.0, (0.0, 2 * np.pi), (-9.0, 9.0)).nurbs(), kind="cylinder").transformed(
+HUB = named(Face(CylindricalSurface(20.0, (0.0, 2 * np.pi), (-9.0, 9.0)).nurbs(), kind="cylinder").transformed(
     np.array([[1, 0, 0, 60.0], [0, 1, 0, 5.0], [0, 0, 1, 0], [0, 0, 0, 1]])), 1)
 
 
@@ -52,8 +52,9 @@ HUB = named(Face(Cylinder(20.0, (0.0, 2 * np.pi), (-9.0, 9.0)).nurbs(), kind="cy
 def source(plane_passes):
     offsets = -8 + 0.999 * WIDTH * (np.arange(int(np.ceil(16 / WIDTH)) + 1) - 0.25)
     tips, axes, kind = plane_passes((6, 1), np.radians(10), offsets, span=(-10.0, 10.0))
-    return Task("source", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER, touching=(SIDE,),
-                surroundings=(BESIDE, HUB), tolerance=Tolerance(gouge=0.01))
+    return VerificationTask("source", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER,
+                            touching=(SIDE,),
+                            surroundings=(BESIDE, HUB), tolerance=Tolerance(gouge=0.01))
 
 
 def copied(task, degrees=72.0, **change):
@@ -74,7 +75,7 @@ def test_a_copy_has_the_verdict_of_its_own_measuring(source, degrees):
     task = copied(source, degrees)
     copy = find_copy(source, task)
     assert copy is not None and copy.error < 3e-5
-    found, own = verdict_on(task, measured_on_copy(task, measure(source, 0.4), copy)), judge(task, 0.4)
+    found, own = verdict_on(task, transfer_measurement(task, measure(source, 0.4), copy)), judge(task, 0.4)
     assert found.passed and own.passed, (found.reasons, own.reasons)
     assert found.faces == own.faces == ("107",)
     assert found.share_within == own.share_within == 1.0
@@ -151,4 +152,4 @@ def test_zones_that_are_declared_elsewhere_are_not_taken_over(source):
         here = replace(good, left=zones)
         copy = find_copy(task, here)
         assert copy is not None
-        assert (measured_on_copy(here, measured, copy) is not None) == known
+        assert (transfer_measurement(here, measured, copy) is not None) == known

@@ -11,7 +11,7 @@ from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.component_clearance import Clearance
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import NOT_CHECKED, judge, verify
 
 WIDTH = 2.171571  # R6 r1, lead 10 deg, h = 0.02
@@ -30,7 +30,8 @@ FLOOR = rectangle([-8, -8, 0], [16, 0, 0], [0, 16, 0], 7)
 def task(plane_passes, width=0.999 * WIDTH, **change):
     offsets = -8 + width * (np.arange(int(np.ceil(16 / width)) + 1) - 0.25)
     tips, axes, kind = plane_passes((6, 1), np.radians(10), offsets, span=(-10.0, 10.0))
-    return replace(Task("floor", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER), **change)
+    return replace(VerificationTask("floor", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER),
+                   **change)
 
 
 def test_good_passes_pass_and_every_figure_stands(plane_passes):

@@ -5,8 +5,8 @@ from math import cos, sin
 import FreeCAD
 import Part as FreecadPart
 from FreeCAD import Vector
-from freecad.toolaxis.document.inputs import Inputs
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.inputs import JobInputs
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.services.write_results import apply
 
 from toolaxis.job.planning.edit_axis import try_axis
@@ -46,12 +46,12 @@ def sculptured_name(thing):
 
 def inputs_for(*faces, **given):
     """Inputs for faces, quickly computed."""
-    return Inputs(tuple(faces), TOOL, holder=HOLDER, stickout=25.0, **{"scallop": SCALLOP, **given})
+    return JobInputs(tuple(faces), TOOL, holder=HOLDER, stickout=25.0, **{"scallop": SCALLOP, **given})
 
 
 def quick_plan(inputs, axis=LEANING):
     """A plan with one axis for every face; axis in the document's space."""
-    source = Source.of(inputs)
+    source = ShapesRead.of(inputs)
     part, bodies = source.read(NO_PROGRESS)
     bare = Plan(part, inputs.assembled(), inputs.job(), (), bodies, FreeCAD.Vector(*source.datum), "complete")
     made = [try_axis(bare, Operation(k, part.face(number), Orientation(None)), tuple(axis))

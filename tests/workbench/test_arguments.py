@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import FreeCAD
 import pytest
 from freecad import toolaxis
-from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.inputs import JobInputs
 from freecad.toolaxis.document.read_shapes import sculptured
 from freecad.toolaxis.services import api, arguments
 from freecad.toolaxis.services.tools import tool_fields
@@ -200,14 +200,14 @@ def test_a_tool_that_is_none(document, part, face):
 def test_a_tool_is_taken_whole(tool):
     """Cutting edge and shank are those of the tool that is given, not of another one."""
     given = load_tool(tool) if isinstance(tool, str) else tool
-    taken = replace(Inputs(shank=((9, 0), (9, 50)), flute_length=3.0, stickout=50.0),
+    taken = replace(JobInputs(shank=((9, 0), (9, 50)), flute_length=3.0, stickout=50.0),
                     **tool_fields(tool)).assembled()
     assert (taken.name, taken.flute_length) == (given.name, given.flute_length)
     for member in ("shank", "holder"):
         theirs = getattr(given, member)
         assert theirs is None or (getattr(taken, member) == theirs).all()
     assert given.shank is not None or taken.shank is None
-    again = replace(Inputs(), **tool_fields(taken)).assembled()
+    again = replace(JobInputs(), **tool_fields(taken)).assembled()
     assert again.flute_length == given.flute_length
 
 

@@ -11,7 +11,7 @@ import toolaxis as ta
 from toolaxis.cad.machines import load_machine
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.output.post import posted
+from toolaxis.job.output.post import post_plan
 from toolaxis.machine.setup import Mounting
 
 OFFSET = (0.0, 0.0, 60.0)
@@ -63,7 +63,7 @@ def test_a_program_has_the_commands_bytes(made, tmp_path, dialect):
     operations, plan = made
     export(operations, tmp_path / "plan", Wish(dialect, MACHINE, OFFSET))
     mounting = Mounting(load_machine(MACHINE), OFFSET, plan.tool.gauge_length)
-    theirs = posted(plan, dialect, mounting, name="plan", verdict="not judged yet: run toolaxis verify")
+    theirs = post_plan(plan, dialect, mounting, name="plan", verdict="not judged yet: run toolaxis verify")
     ours = files(tmp_path / "plan")
     for name, text in theirs.items():
         assert ours[name].decode() == text, name

@@ -10,7 +10,7 @@ from FreeCAD import Vector
 from freecad.toolaxis.document import machine_angles, machine_limits
 from freecad.toolaxis.document.machine import machine_of, place_machine
 from freecad.toolaxis.document.preferences import PLACE
-from freecad.toolaxis.gui.machine.motion import Journey, corners, meeting, places
+from freecad.toolaxis.gui.machine.motion import MachineTour, corners, meeting, places
 from freecad.toolaxis.services import collisions
 
 import toolaxis as ta
@@ -95,7 +95,7 @@ def test_what_speaks_against_a_solution_is_said(mounted):
 @pytest.fixture(scope="module")
 def journey(mounted):
     rotary = [machine_angles.ways_to_hold(mounted, axis, TIPS)[0].rotary for axis in AXES]
-    return Journey.through(mounted, list(zip(TIPS[:2], rotary, strict=True)))
+    return MachineTour.through(mounted, list(zip(TIPS[:2], rotary, strict=True)))
 
 
 def test_the_stations_are_the_tips_with_their_axes(mounted, journey):
@@ -204,7 +204,7 @@ def clamped(document):
 
     for name, size, corner in (("Block", (40, 40, 10), (-20, -20, 0)), ("Post", (10, 10, 60), (12, -5, 0))):
         document.addObject("Part::Feature", name).Shape = Part.makeBox(*size, Vector(*corner))
-    return [collisions.Copy(thing.Name, f"the {thing.Name}", thing.Shape) for thing in document.Objects]
+    return [collisions.ShapeCopy(thing.Name, f"the {thing.Name}", thing.Shape) for thing in document.Objects]
 
 
 @pytest.mark.parametrize(("tip", "member", "thing"), [
@@ -213,7 +213,7 @@ def clamped(document):
 def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member, thing):
     """The holder of 20 mm begins 30 mm above the tip; the top of the block and the post are where they are."""
     known = collisions.around(mounted, [TOOL], clamped, NO_PROGRESS)
-    journey = Journey.through(mounted, [(np.array(tip, dtype=float), np.zeros(2))])
+    journey = MachineTour.through(mounted, [(np.array(tip, dtype=float), np.zeros(2))])
     found, = collisions.along(known, journey, [0], NO_PROGRESS)
     passes = known.on_passes(0, np.zeros(2), np.array([[-5.0, 0.0, 20.0], tip]))
     if member is None:
@@ -230,7 +230,7 @@ def test_the_tool_may_go_along_the_border_of_a_side(document, mounted):
 
     corners = [Vector(x, -20, z) for x, z in ((-20, 0), (20, 0), (20, 24), (-20, 4), (-20, 0))]
     wedge = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 40, 0))
-    known = collisions.around(mounted, [TOOL], [collisions.Copy("Wedge", "Wedge", wedge)], NO_PROGRESS)
+    known = collisions.around(mounted, [TOOL], [collisions.ShapeCopy("Wedge", "Wedge", wedge)], NO_PROGRESS)
     tips = np.array([[-18.0, -19.0, 9.0], [-15.0, -19.0, 10.5]])
     assert known.on_passes(0, np.zeros(2), tips) is None
     low = known.on_passes(0, np.zeros(2), tips - [0, 0, 3.6])
@@ -241,7 +241,7 @@ def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
     """A tool 20 mm longer lifts the spindle by that, and its holder clears the post that the short one's meets."""
     long = ta.Tool.ball(diameter=8, stickout=55, holder=[(10, 0), (10, 30), (20, 30), (20, 50)])
     tools, tip = [TOOL, long], np.array([3.0, 0.0, 12.0])
-    journey = Journey.through(mounted, [(tip, np.zeros(2))] * 2, [tool.gauge_length for tool in tools])
+    journey = MachineTour.through(mounted, [(tip, np.zeros(2))] * 2, [tool.gauge_length for tool in tools])
     rise = journey.joints[1, 2] - journey.joints[0, 2]
     assert rise == pytest.approx(long.gauge_length - TOOL.gauge_length) and rise > 0
     assert [journey.station(way) for way in (0.0, 0.2, 0.21, 0.5, 1.0)] == [0, 0, 1, 1, 1]
@@ -259,7 +259,7 @@ def test_what_meets_on_the_way_is_found_between_stations(mounted, clamped):
     """With little room above it the tool goes from one side of the post to the other through it."""
     axes = tuple(replace(axis, high=130.0) if axis.name == "Z" else axis for axis in mounted.machine.linear)
     low = replace(mounted, machine=replace(mounted.machine, linear=axes))
-    journey = Journey.through(low, [(np.array([x, 0.0, 12.0]), np.zeros(2)) for x in (-5.0, 40.0)])
+    journey = MachineTour.through(low, [(np.array([x, 0.0, 12.0]), np.zeros(2)) for x in (-5.0, 40.0)])
     known = collisions.around(low, [TOOL], clamped, NO_PROGRESS)
     found = collisions.along(known, journey, [0, 0], NO_PROGRESS)
     assert len(found) == collisions.STEPS + 1 and found[0] is None and found[-1] is None

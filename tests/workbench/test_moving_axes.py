@@ -12,7 +12,7 @@ from FreeCAD import Placement, Rotation, Vector
 from freecad.toolaxis.cam.jobs import make_jobs
 from freecad.toolaxis.document.axis_lines import MOST, is_lines
 from freecad.toolaxis.document.children import child
-from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.gui.plan.outcome import touched_once
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.export import plan_task
@@ -69,7 +69,7 @@ def test_the_command_comes_to_the_same(theirs, planned):
 
 
 def test_lines_and_tool_stand_along_the_axis_of_each_point(planned):
-    path, lines = Standing.of(planned).path, lines_of(planned)
+    path, lines = OperationRecord.of(planned).path, lines_of(planned)
     cut, edges = path.kind == 0, lines.Shape.Edges
     assert 0 < len(edges) <= MOST and len(edges) == len(path.cl[cut][::lines.Every])
     ends = np.array([[vertex.Point for vertex in edge.Vertexes] for edge in edges])
@@ -83,24 +83,24 @@ def test_lines_and_tool_stand_along_the_axis_of_each_point(planned):
 
 
 def test_the_axes_are_saved_and_turn_with_the_part(planned, tmp_path):
-    before = Standing.of(planned).path
+    before = OperationRecord.of(planned).path
     planned.Document.saveCopy(str(tmp_path / "Moving.FCStd"))
     document = FreeCAD.openDocument(str(tmp_path / "Moving.FCStd"))
     again = document.getObject(planned.Name)
     document.recompute()
-    path = Standing.of(again).path
+    path = OperationRecord.of(again).path
     assert not again.Stale and again.Strategy == "sturz"
     assert np.abs(path.axis - before.axis).max() < 1e-12 and np.abs(path.cc - before.cc).max() < 1e-12
     first = Vector(*lines_of(again).Shape.Edges[0].Vertexes[0].Point)
     again.Faces[0][0].Placement = TURNED
     document.recompute()
     turned = np.array([TURNED.Rotation.multVec(Vector(*axis)) for axis in path.axis.tolist()])
-    assert np.abs(Standing.of(again).path.axis - turned).max() < 1e-9
+    assert np.abs(OperationRecord.of(again).path.axis - turned).max() < 1e-9
     assert lines_of(again).Shape.Edges[0].Vertexes[0].Point.distanceToPoint(TURNED.multVec(first)) < 1e-6
     passes = child(again, "Path::Feature")
     passes.Path = type(passes.Path)(passes.Path.Commands[:-1])
     with pytest.raises(InvalidInput, match="its commands were changed since"):
-        Standing.of(again)
+        OperationRecord.of(again)
     names = {one.Name for one in again.Group}
     document.removeObject(again.Name)
     assert not any(document.getObject(name) for name in names), "the lines go with their operation"

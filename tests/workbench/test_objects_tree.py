@@ -6,7 +6,7 @@ import FreeCAD
 import numpy as np
 import pytest
 from FreeCAD import Placement, Rotation, Vector
-from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.passes import moves, read_back
 from freecad.toolaxis.document.placement import matrix_of
@@ -108,17 +108,17 @@ def stand(request, document, parts):
 
 
 def bridge_source(inputs):
-    from freecad.toolaxis.document.read_shapes import Source
+    from freecad.toolaxis.document.read_shapes import ShapesRead
 
     from toolaxis.progress import NO_PROGRESS
 
-    return Source.of(inputs).read(NO_PROGRESS)
+    return ShapesRead.of(inputs).read(NO_PROGRESS)
 
 
 def selected(inputs):
-    from freecad.toolaxis.document.read_shapes import Source
+    from freecad.toolaxis.document.read_shapes import ShapesRead
 
-    return Source.of(inputs).numbers[0]
+    return ShapesRead.of(inputs).numbers[0]
 
 
 def check_on_cl(operation, tips, axis):
@@ -179,7 +179,7 @@ def test_an_operation_tells_what_was_found(operation):
 
 def test_what_is_not_checked_has_no_clearance(document, parts):
     thing = parts.block(document)
-    inputs = Inputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
+    inputs = JobInputs(((thing, parts.sculptured_name(thing)),), parts.TOOL, scallop=parts.SCALLOP, stickout=25)
     made = apply(document, inputs, parts.quick_plan(inputs))[0]
     assert "holder" in made.NotChecked and not hasattr(made, "HolderClearance")
 

@@ -4,8 +4,8 @@ import numpy as np
 import Part
 import pytest
 from FreeCAD import Vector
-from freecad.toolaxis.document.passes import Stations
-from freecad.toolaxis.services.collisions import DEPTH, Copy
+from freecad.toolaxis.document.passes import PassStations
+from freecad.toolaxis.services.collisions import DEPTH, ShapeCopy
 from freecad.toolaxis.services.path_collisions import bumps
 
 import toolaxis as ta
@@ -20,7 +20,7 @@ UP = np.array([0.0, 0.0, 1.0])
 @pytest.fixture(scope="module")
 def copies():
     """A block with its top at z = 10, and a post beside it whose near side is at x = 12."""
-    return [Copy(name, f"the {name}", Part.makeBox(*size, Vector(*corner)))
+    return [ShapeCopy(name, f"the {name}", Part.makeBox(*size, Vector(*corner)))
             for name, size, corner in (("Block", (40, 40, 10), (-20, -20, 0)), ("Post", (10, 10, 60), (12, -5, 0)))]
 
 
@@ -67,7 +67,7 @@ def test_looking_can_be_stopped(copies):
 def test_stations_know_their_motion(document, parts):
     thing = parts.block(document)
     operation, = parts.planned(document, (thing, parts.sculptured_name(thing)))
-    stations = Stations(next(one for one in operation.Group if one.TypeId == "Path::Feature"))
+    stations = PassStations(next(one for one in operation.Group if one.TypeId == "Path::Feature"))
     for share in (0.0, 0.2, 0.5, 0.999, 1.0):
         k = stations.motion(share)
         assert stations.share(k - 1) <= share + 1e-9 and share <= stations.share(k) + 1e-9

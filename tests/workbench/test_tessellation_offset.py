@@ -4,9 +4,9 @@ import FreeCAD
 import numpy as np
 import Part
 import pytest
-from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.inputs import JobInputs
 from freecad.toolaxis.document.placement import chain_of
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.sub_surface_shape import SURFACE, show_surface
 from freecad.toolaxis.document.tessellation_offset import bulge
 
@@ -27,7 +27,7 @@ def shown(document, request):
     thing.Shape = block.cut(ball) if request.param == "hollow" else block.common(ball)
     kinds = [type(face.Surface).__name__ for face in thing.Shape.Faces]
     number = kinds.index("Sphere") + 1
-    part, _ = Source.of(Inputs(((thing, f"Face{number}"),))).read(NO_PROGRESS)
+    part, _ = ShapesRead.of(JobInputs(((thing, f"Face{number}"),))).read(NO_PROGRESS)
     return thing, number, part.face(number), request.param
 
 

@@ -1,17 +1,17 @@
 """How long a computation may still take, from reports with times that are made up."""
 
 import pytest
-from freecad.toolaxis.services.time_left import Remaining, clock
+from freecad.toolaxis.services.time_left import TimeLeft, clock
 
 
 def test_nothing_is_said_of_what_is_soon_done():
-    left = Remaining(100.0)
+    left = TimeLeft(100.0)
     assert left.words("looking for blades", 0.5, 104.0) == ""
     assert left.words("looking for blades", -1.0, 107.0) == "7 s so far"
 
 
 def test_a_step_tells_what_is_left_of_it():
-    left = Remaining(0.0)
+    left = TimeLeft(0.0)
     left.words("axes at the lattice", 0.0, 10.0)
     assert left.words("axes at the lattice", 0.05, 12.0) == "12 s so far"
     assert left.words("axes at the lattice", 0.25, 20.0) == "20 s so far, about 30 s left of this step"
@@ -20,7 +20,7 @@ def test_a_step_tells_what_is_left_of_it():
 @pytest.mark.parametrize("count", [2, 9])
 def test_pieces_that_take_the_same_are_told_rightly(count):
     """Each takes 20 s; nothing is told as long as none is done."""
-    left = Remaining(-30.0)
+    left = TimeLeft(-30.0)
     for second in range(20 * count):
         words = left.words(f"face 4a ({second // 20 + 1} of {count}): axes", -1.0, float(second))
         if second < 20:
@@ -33,7 +33,7 @@ def test_pieces_that_take_the_same_are_told_rightly(count):
 
 
 def test_another_number_of_pieces_begins_anew():
-    left = Remaining(0.0)
+    left = TimeLeft(0.0)
     for second in range(20):
         left.words(f"face 4a ({1 + second // 10} of 2): axes", -1.0, float(second))
     assert left.words("proof (1 of 16)", -1.0, 20.0) == "20 s so far"

@@ -7,9 +7,9 @@ from pathlib import Path
 import FreeCAD
 import pytest
 from freecad.toolaxis.document.children import frame_of
-from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation, operations_in, plan_of
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, SURFACE, is_shown
 from freecad.toolaxis.services import api
 
@@ -262,8 +262,8 @@ def test_clean_up_zones_are_hatched(document, whole_parts):
     from toolaxis.plan.zone import Zone
 
     thing, name = whole_parts.roof(document)
-    inputs = Inputs(((thing, name),))
-    part, _ = Source.of(inputs).read(NO_PROGRESS)
+    inputs = JobInputs(((thing, name),))
+    part, _ = ShapesRead.of(inputs).read(NO_PROGRESS)
     face = part.face(int(name[4:]))
     group = document.addObject("App::DocumentObjectGroupPython", "Group")
     op = Operation(1, face, Orientation(None), zones=(Zone(face.outline, face.area),))

@@ -8,8 +8,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-from toolaxis.batch.hand import TICK, Hand
-from toolaxis.batch.task import Answer, Task
+from toolaxis.batch.hand import TICK, WorkerProcess
+from toolaxis.batch.task import BatchAnswer, BatchTask
 from toolaxis.errors import Cancelled, InvalidInput, JobError, MissingBackend
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _OWN = threading.local()
 
 
 @contextmanager
-def connected(address: str) -> "Iterator[Client]":
+def connect_to_scheduler(address: str) -> "Iterator[Client]":
     """A connection to a scheduler.
 
     Parameters
@@ -96,14 +96,14 @@ def _silent() -> Iterator[None]:
             one.setLevel(level)
 
 
-def by_cluster(client: "Client", tasks: Iterator[Task],
-               told: Callable[[str], None]) -> Iterator[tuple[Task, Answer] | None]:
+def by_cluster(client: "Client", tasks: Iterator[BatchTask],
+               told: Callable[[str], None]) -> Iterator[tuple[BatchTask, BatchAnswer] | None]:
     """Answers to tasks from a cluster, as they come.
 
     Parameters
     ----------
     client : distributed.Client
-    tasks : iterator of Task
+    tasks : iterator of BatchTask
         Asked for the next one when the cluster can take it.
     told : callable
         Takes a sentence where the cluster has no workers.
@@ -118,7 +118,7 @@ def by_cluster(client: "Client", tasks: Iterator[Task],
     JobError
         When the scheduler is gone.
     """
-    sent: dict[Any, Task] = {}
+    sent: dict[Any, BatchTask] = {}
     run, warned, threads, asked = uuid4().hex[:8], False, 0, -_EVERY
     address = str(client.scheduler.address) if client.scheduler else ""
     try:
@@ -129,7 +129,7 @@ def by_cluster(client: "Client", tasks: Iterator[Task],
                 told(f"the cluster at {address} has no workers: the jobs wait for one")
                 warned = True
             while len(sent) < max(1, _AHEAD * threads) and (task := next(tasks, None)) is not None:
-                sent[client.submit(carried, task, key=f"toolaxis-{run}-{task.name}", pure=False)] = task
+                sent[client.submit(carry_out_on_worker, task, key=f"toolaxis-{run}-{task.name}", pure=False)] = task
             if not sent:
                 return
             yield None
@@ -160,10 +160,10 @@ def _gone(address: str) -> JobError:
                     "on where it stopped")
 
 
-def _answer(future: Any, client: "Client", address: str) -> Answer | None:
+def _answer(future: Any, client: "Client", address: str) -> BatchAnswer | None:
     """The answer that a future holds; failed where the cluster gave the task up, None where it has to be waited for."""
     try:
-        found: Answer = future.result(timeout=_PATIENCE)
+        found: BatchAnswer = future.result(timeout=_PATIENCE)
         return found
     except TimeoutError:  # the worker that had it is gone: another one does the task again
         return None
@@ -174,25 +174,25 @@ def _answer(future: Any, client: "Client", address: str) -> Answer | None:
             raise JobError("jobs", "cluster", f"the cluster at {address} lost its jobs: run the batch again, it goes "
                            "on where it stopped") from reason
         said = " ".join(str(reason).split())
-        return Answer("failed", "crash", f"the cluster gave it up ({type(reason).__name__}: {said})")
+        return BatchAnswer("failed", "crash", f"the cluster gave it up ({type(reason).__name__}: {said})")
 
 
-def carried(task: Task) -> Answer:
+def carry_out_on_worker(task: BatchTask) -> BatchAnswer:
     """The answer to a task, on a worker of the cluster: from a process beside it, so that the worker outlives the job.
 
     Parameters
     ----------
-    task : Task
+    task : BatchTask
 
     Raises
     ------
     Cancelled
         When nobody wants the answer any more.
     """
-    hand: Hand | None = getattr(_OWN, "hand", None)
+    hand: WorkerProcess | None = getattr(_OWN, "hand", None)
     if hand is None:
-        hand = _OWN.hand = Hand()
-    wanted = _wanted()
+        hand = _OWN.hand = WorkerProcess()
+    wanted = _is_task_wanted()
     hand.give(task)
     while True:
         answer = hand.answer(TICK)
@@ -203,7 +203,7 @@ def carried(task: Task) -> Answer:
             raise Cancelled("the batch was stopped")
 
 
-def _wanted() -> Callable[[], bool]:
+def _is_task_wanted() -> Callable[[], bool]:
     """Whether the task of this thread is still one that its worker is to do."""
     from distributed import get_worker
 

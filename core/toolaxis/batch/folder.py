@@ -12,12 +12,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from toolaxis.batch.jobfile import Wanted
+from toolaxis.batch.jobfile import CheckedJob
 from toolaxis.batch.journal import Journal
-from toolaxis.batch.summary import Row, summary_csv, summary_document
-from toolaxis.batch.task import Answer
+from toolaxis.batch.summary import JobRow, summary_csv, summary_document
+from toolaxis.batch.task import BatchAnswer
 from toolaxis.errors import InvalidInput, JobError, MissingBackend
-from toolaxis.job.files.plan_folder import made_folders, remove_empty
+from toolaxis.job.files.plan_folder import make_folders, remove_empty
 
 JOB, JOURNAL, LOCK, WORK = "job.json", "journal.jsonl", ".lock", ".work"
 _SUMMARIES = ("summary.csv", "summary.json")
@@ -56,8 +56,8 @@ class BatchFolder:
         if self.path.exists() and not self.path.is_dir():
             raise InvalidInput(f"output folder {self.path} is a file: give another name with --out")
         try:
-            self._made = made_folders(self.path)
-            self._lock = _locked(self.path)
+            self._made = make_folders(self.path)
+            self._lock = _lock_folder(self.path)
             self._place = os.stat(self.path).st_ino
         except OSError as reason:
             remove_empty(self._made)
@@ -117,12 +117,12 @@ class BatchFolder:
             raise JobError("jobs", str(self.path), "the folder of the batch was moved away: put it back and run the "
                            "batch again, it goes on where it stopped")
 
-    def finished(self, job: Wanted) -> dict[str, Any] | None:
+    def finished(self, job: CheckedJob) -> dict[str, Any] | None:
         """What a folder tells of a job that is finished; None where the job is still to be done.
 
         Parameters
         ----------
-        job : Wanted
+        job : CheckedJob
 
         Raises
         ------
@@ -151,22 +151,22 @@ class BatchFolder:
             return None
         return found
 
-    def started(self, job: Wanted) -> None:
+    def started(self, job: CheckedJob) -> None:
         """Write down that a job begins.
 
         Parameters
         ----------
-        job : Wanted
+        job : CheckedJob
         """
         self.journal.append({"job": job.name, "key": job.key, "started": True})
 
-    def keep(self, job: Wanted, answer: Answer) -> None:
+    def keep(self, job: CheckedJob, answer: BatchAnswer) -> None:
         """Put the folder of a job in its place, if it has one, and write down what came of it.
 
         Parameters
         ----------
-        job : Wanted
-        answer : Answer
+        job : CheckedJob
+        answer : BatchAnswer
 
         Raises
         ------
@@ -184,7 +184,7 @@ class BatchFolder:
                              "reason": answer.reason, "spent": answer.spent})
         self._answered = True
 
-    def _publish(self, job: Wanted, answer: Answer) -> None:
+    def _publish(self, job: CheckedJob, answer: BatchAnswer) -> None:
         stage = Path(tempfile.mkdtemp(prefix="stage-", dir=self.work))
         try:
             stage.chmod(0o755)
@@ -194,7 +194,7 @@ class BatchFolder:
             text = json.dumps(document, indent=1, allow_nan=False) + "\n"
             for name, content in {**answer.files, JOB: text.encode()}.items():
                 _written(stage / name, content)
-            _synced(stage)
+            _sync_names(stage)
             self._swap(stage, self.path / job.name)
         finally:
             shutil.rmtree(stage, ignore_errors=True)
@@ -211,14 +211,14 @@ class BatchFolder:
             if own:
                 self.notes.append(f"{kept} keeps what was in the folder of job {target.name}, for its further files")
         os.replace(stage, target)
-        _synced(self.path)
+        _sync_names(self.path)
 
-    def summarise(self, rows: Sequence[Row]) -> None:
+    def summarise(self, rows: Sequence[JobRow]) -> None:
         """Write the summary as CSV and JSON.
 
         Parameters
         ----------
-        rows : sequence of Row
+        rows : sequence of JobRow
 
         Raises
         ------
@@ -252,7 +252,7 @@ def _written(path: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def _synced(folder: Path) -> None:
+def _sync_names(folder: Path) -> None:
     """Bring the names in a folder to the disk."""
     number = os.open(folder, os.O_RDONLY)
     try:
@@ -261,7 +261,7 @@ def _synced(folder: Path) -> None:
         os.close(number)
 
 
-def _locked(folder: Path) -> int:
+def _lock_folder(folder: Path) -> int:
     """A lock on a folder, which goes with the process that holds it."""
     try:
         import fcntl

@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 import toolaxis
-from toolaxis.batch.task import Answer, Task
+from toolaxis.batch.task import BatchAnswer, BatchTask
 from toolaxis.job.planning.parallel import how_it_ended
 
 #: Seconds between two looks at the user and the clock.
@@ -23,7 +23,7 @@ MEGABYTE = 1_000_000
 _QUIET = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-class Hand:
+class WorkerProcess:
     """A process that carries out one task at a time; another one takes its place when it is lost.
 
     Parameters
@@ -37,7 +37,7 @@ class Hand:
         self._process: subprocess.Popen[bytes] | None = None
         self._pipe: Connection | None = None
         self._scratch = Path()
-        self._task: Task | None = None
+        self._task: BatchTask | None = None
         self._began = 0.0
         self._repeated = False
 
@@ -51,12 +51,12 @@ class Hand:
         """Where the answer comes from; None without a process."""
         return self._pipe
 
-    def give(self, task: Task) -> None:
+    def give(self, task: BatchTask) -> None:
         """Begin a task.
 
         Parameters
         ----------
-        task : Task
+        task : BatchTask
             With a limit of memory it gets a fresh process, which took none for others yet.
         """
         if task.memory is not None:
@@ -66,7 +66,7 @@ class Hand:
         self._task, self._began, self._repeated = task, time.monotonic(), False
         self._send(task)
 
-    def _send(self, task: Task) -> None:
+    def _send(self, task: BatchTask) -> None:
         assert self._pipe is not None
         with suppress(BrokenPipeError, ConnectionResetError):  # the answer tells that the process has ended
             self._pipe.send(task)
@@ -87,7 +87,7 @@ class Hand:
         theirs.close()
         self._pipe = ours
 
-    def answer(self, patience: float = 0.0) -> Answer | None:
+    def answer(self, patience: float = 0.0) -> BatchAnswer | None:
         """What came of the task; None while it is at work.
 
         Parameters
@@ -99,7 +99,7 @@ class Hand:
         assert task is not None and self._pipe is not None
         if self._pipe.poll(patience):
             try:
-                found: Answer = self._pipe.recv()
+                found: BatchAnswer = self._pipe.recv()
             except (EOFError, OSError):
                 found = self._lost(task)
             if found.compiled and not self._repeated:  # now the kernels are on disk, and every process gets the same
@@ -117,18 +117,19 @@ class Hand:
         self._task = None
         return found
 
-    def _beyond(self, task: Task) -> Answer | None:
+    def _beyond(self, task: BatchTask) -> BatchAnswer | None:
         """What is said of a process that is beyond its limits; None where it is within them."""
         spent = time.monotonic() - self._began
         if task.timeout is not None and spent > task.timeout:
-            return Answer("failed", "timeout", f"it took longer than its limit of {task.timeout:g} s", spent=spent)
+            return BatchAnswer("failed", "timeout", f"it took longer than its limit of {task.timeout:g} s", spent=spent)
         if task.memory is not None and self._process is not None:
             taken = sum(map(_resident, (self._process.pid, *descendants(self._process.pid)))) / MEGABYTE
             if taken > task.memory:
-                return Answer("failed", "memory", f"it ran out of memory: its limit is {task.memory:g} MB", spent=spent)
+                return BatchAnswer("failed", "memory", f"it ran out of memory: its limit is {task.memory:g} MB",
+                                   spent=spent)
         return None
 
-    def _lost(self, task: Task) -> Answer:
+    def _lost(self, task: BatchTask) -> BatchAnswer:
         """What is said of a process that ended without an answer."""
         assert self._process is not None
         code = self._process.wait()
@@ -136,8 +137,8 @@ class Hand:
             if (self._scratch / "errors").exists() else []
         limit = f"; its limit of memory is {task.memory:g} MB" if task.memory is not None else ""
         last = f": {said[-1]}" if said else ""
-        return Answer("failed", "crash", f"its process ended by {how_it_ended(code)}{limit}{last}",
-                      spent=time.monotonic() - self._began)
+        return BatchAnswer("failed", "crash", f"its process ended by {how_it_ended(code)}{limit}{last}",
+                           spent=time.monotonic() - self._began)
 
     def dismiss(self) -> None:
         """End the process at once, with all that it has started, and remove what it left."""
@@ -184,12 +185,12 @@ def _resident(number: int) -> int:
         return 0
 
 
-def by_hand(tasks: Iterator[Task], workers: int, above: Path) -> Iterator[tuple[Task, Answer] | None]:
+def by_hand(tasks: Iterator[BatchTask], workers: int, above: Path) -> Iterator[tuple[BatchTask, BatchAnswer] | None]:
     """Answers to tasks from processes of this machine, as they come.
 
     Parameters
     ----------
-    tasks : iterator of Task
+    tasks : iterator of BatchTask
         Asked for the next one when a process is free.
     workers : int
         Number of processes.
@@ -201,8 +202,8 @@ def by_hand(tasks: Iterator[Task], workers: int, above: Path) -> Iterator[tuple[
     tuple of Task and Answer, or None
         None every `TICK` seconds, so that the caller can look after other things.
     """
-    at_work: dict[Hand, Task] = {}
-    hands = [Hand(above) for _ in range(workers)]
+    at_work: dict[WorkerProcess, BatchTask] = {}
+    hands = [WorkerProcess(above) for _ in range(workers)]
     try:
         while True:
             for hand in hands:

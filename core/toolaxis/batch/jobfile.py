@@ -12,17 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from toolaxis import __version__
-from toolaxis.batch.task import Source, Task
+from toolaxis.batch.task import BatchTask, PartBytes
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.inputs.spec import Spec
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
-from toolaxis.partition.partition import checked_count
+from toolaxis.partition.partition import check_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
-from toolaxis.plan.plan import Inputs
+from toolaxis.plan.plan import PlanInputs
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
@@ -39,7 +39,7 @@ _NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
+class CheckedJob:
     """A job that was checked.
 
     Attributes
@@ -66,7 +66,7 @@ class Wanted:
     own: dict[str, Any]
     key: str
 
-    def task(self) -> Task:
+    def task(self) -> BatchTask:
         """What a process needs to carry it out.
 
         Raises
@@ -82,11 +82,12 @@ class Wanted:
                    "scallop": inputs.scallop, "faces": self.spec.numbers, "regions": self.spec.regions,
                    "orientations": self.spec.orientations, "offset": self.spec.place, "compare": self.own["compare"],
                    "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"])}
-        return Task(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options, self.own["verify"],
-                    self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
+        return BatchTask(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options,
+                         self.own["verify"],
+                         self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
 
 
-def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[Wanted, ...]:
+def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[CheckedJob, ...]:
     """The jobs of a batch, all checked.
 
     Parameters
@@ -97,7 +98,7 @@ def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[
 
     Returns
     -------
-    tuple of Wanted
+    tuple of CheckedJob
 
     Raises
     ------
@@ -110,7 +111,7 @@ def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[
         rows, folder = [dict(row) for row in jobs], Path()
     if not rows:
         raise InvalidInput("the batch has no jobs: give at least one, under [[jobs]]")
-    made = [_wanted(row, number, folder) for number, row in enumerate(rows, 1)]
+    made = [_check_job(row, number, folder) for number, row in enumerate(rows, 1)]
     first: dict[str, int] = {}
     for number, one in enumerate(made, 1):
         other = first.setdefault(one.name.casefold(), number)
@@ -142,7 +143,7 @@ def _table(path: Path) -> list[dict[str, Any]]:
     return [{**defaults, **row} for row in rows]
 
 
-def _wanted(row: dict[str, Any], number: int, folder: Path) -> Wanted:
+def _check_job(row: dict[str, Any], number: int, folder: Path) -> CheckedJob:
     said = row.get("name")
     try:
         return _checked(row, folder)
@@ -150,7 +151,7 @@ def _wanted(row: dict[str, Any], number: int, folder: Path) -> Wanted:
         raise InvalidInput(f"job {number}{f' ({said})' if isinstance(said, str) else ''}: {reason}") from reason
 
 
-def _checked(row: dict[str, Any], folder: Path) -> Wanted:
+def _checked(row: dict[str, Any], folder: Path) -> CheckedJob:
     unknown = sorted(set(row) - set(KEYS))
     if unknown:
         raise InvalidInput(f"unknown {unknown[0]!r}: use {', '.join(KEYS)}")
@@ -165,12 +166,13 @@ def _checked(row: dict[str, Any], folder: Path) -> Wanted:
     if values.get("limits"):
         parse_limits(values["limits"])
     if "holder" in values:
-        values["holder"] = _named(values["holder"], folder)
+        values["holder"] = _file_beside(values["holder"], folder)
     machine = row.get("machine") or None
-    machine = load_machine(_named(machine, folder)) if isinstance(machine, str) else machine
+    machine = load_machine(_file_beside(machine, folder)) if isinstance(machine, str) else machine
     tool = row["tool"]
-    spec = Spec(_title(bodies[0]), tool.name if isinstance(tool, Tool) else _named(_value("tool", tool, str), folder),
-                Inputs(**{name: values[name] for name in _INPUTS if name in values}),
+    spec = Spec(_title(bodies[0]), tool.name if isinstance(tool, Tool)
+                else _file_beside(_value("tool", tool, str), folder),
+                PlanInputs(**{name: values[name] for name in _INPUTS if name in values}),
                 obstacles=tuple(map(_title, bodies[1:])), machine="" if machine is None else machine.name,
                 **{name: values[name] for name in _ASKED if name in values})
     tool = _tool(tool, spec)
@@ -181,7 +183,7 @@ def _checked(row: dict[str, Any], folder: Path) -> Wanted:
     check_strategy(own["strategy"], Asked(tool, machine, spec.inputs.method, spec.inputs.objective,
                                           _in_mm(own["roughness"]), spec.orientations))
     key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
-    return Wanted(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
+    return CheckedJob(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
 
 
 def _in_mm(roughness: float | None) -> float | None:
@@ -191,8 +193,8 @@ def _in_mm(roughness: float | None) -> float | None:
 
 def _check_rest(spec: Spec, machine: Machine | None) -> None:
     _ = spec.numbers, spec.place
-    checked_count(spec.regions)
-    checked_count(spec.orientations, "orientations")
+    check_count(spec.regions)
+    check_count(spec.orientations, "orientations")
     if machine is not None and not isinstance(machine, Machine):
         raise InvalidInput(f"machine is a {type(machine).__name__}: give a Machine, its name or its file")
     if machine is None and spec.place is not None:
@@ -222,7 +224,7 @@ def _title(body: Any) -> str:
     return str(body) if isinstance(body, Path) else str(body.source)
 
 
-def _named(text: str, folder: Path) -> str:
+def _file_beside(text: str, folder: Path) -> str:
     """A file beside the job file where there is one of that name, else the text as it is."""
     path = folder / text
     return str(path) if path.is_file() else text
@@ -264,19 +266,20 @@ def _short(name: str, value: Any) -> str:
     return outer.join(inner.join(map(str, row)) if isinstance(row, list | tuple) else str(row) for row in rows)
 
 
-def _source(body: Any) -> Source:
+def _source(body: Any) -> PartBytes:
     """A body as bytes."""
     if isinstance(body, Path):
         try:
             content = body.read_bytes()
         except OSError as reason:
             raise InvalidInput(f"part {str(body)!r} cannot be read ({reason.strerror})") from reason
-        return Source(str(body), content, hashlib.sha256(content).hexdigest())
+        return PartBytes(str(body), content, hashlib.sha256(content).hexdigest())
     content = json.dumps(part_document(body), allow_nan=False).encode()
-    return Source(body.source, content, hashlib.sha256(content).hexdigest(), document=True)
+    return PartBytes(body.source, content, hashlib.sha256(content).hexdigest(), document=True)
 
 
-def _key(spec: Spec, tool: Tool, machine: Machine | None, own: Mapping[str, Any], sources: tuple[Source, ...]) -> str:
+def _key(spec: Spec, tool: Tool, machine: Machine | None, own: Mapping[str, Any],
+         sources: tuple[PartBytes, ...]) -> str:
     asked = {**{name: getattr(spec, name) for name in ("faces", "regions", "orientations", "offset")},
              "inputs": asdict(spec.inputs), "tool": tool_document(tool),
              "machine": "" if machine is None else machine_to_toml(machine),

@@ -20,7 +20,7 @@ from typing import Any
 
 from toolaxis import __version__
 from toolaxis.batch.hand import MEGABYTE, descendants
-from toolaxis.batch.task import Answer, Source, Task
+from toolaxis.batch.task import BatchAnswer, BatchTask, PartBytes
 from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 from toolaxis.numeric.jit import compilations
 from toolaxis.plan.plan import Plan
@@ -31,12 +31,12 @@ FULL = (ENOSPC, EDQUOT)
 _KEPT = 4
 
 
-def carried_out(task: Task, scratch: Path, known: dict[str, Part]) -> Answer:
+def answer_task(task: BatchTask, scratch: Path, known: dict[str, Part]) -> BatchAnswer:
     """The answer to a task.
 
     Parameters
     ----------
-    task : Task
+    task : BatchTask
     scratch : Path
         Folder for files that nobody else writes to.
     known : dict of str to Part
@@ -44,7 +44,7 @@ def carried_out(task: Task, scratch: Path, known: dict[str, Part]) -> Answer:
 
     Returns
     -------
-    Answer
+    BatchAnswer
         Failed, with a sentence, where there is no plan; never an exception.
     """
     began, folder = time.monotonic(), scratch / "plan"
@@ -53,19 +53,19 @@ def carried_out(task: Task, scratch: Path, known: dict[str, Part]) -> Answer:
         if task.version != __version__:
             raise InvalidInput(f"toolaxis is {__version__} here and {task.version} where the batch was started: "
                                "install the same version on all machines")
-        outcome, reason, figures = _planned(task, scratch, folder, known)
+        outcome, reason, figures = _write_planned(task, scratch, folder, known)
         files = {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
-        return Answer(outcome, "", reason, figures, files, time.monotonic() - began)
+        return BatchAnswer(outcome, "", reason, figures, files, time.monotonic() - began)
     except BaseException as reason:
         cause, said = _failure(reason, task)
         for source in (task.part, *task.obstacles):
             said = said.replace(str(_place(source, scratch)), source.name)
-        return Answer("failed", cause, said, spent=time.monotonic() - began)
+        return BatchAnswer("failed", cause, said, spent=time.monotonic() - began)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _failure(reason: BaseException, task: Task) -> tuple[str, str]:
+def _failure(reason: BaseException, task: BatchTask) -> tuple[str, str]:
     """The cause of a failure, and a sentence."""
     if isinstance(reason, MemoryError):
         limit = f": its limit is {task.memory:g} MB" if task.memory else ""
@@ -79,7 +79,8 @@ def _failure(reason: BaseException, task: Task) -> tuple[str, str]:
     return "error", f"{type(reason).__name__}: {said}"
 
 
-def _planned(task: Task, scratch: Path, folder: Path, known: dict[str, Part]) -> tuple[str, str, dict[str, Any]]:
+def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str, Part]) -> tuple[str, str,
+                                                                                                  dict[str, Any]]:
     """Write a plan's folder; its outcome, the reason for it and its figures."""
     from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, write_json, write_plan
     from toolaxis.job.files.verdict_maps import write_views
@@ -128,12 +129,12 @@ def _figures(made: Plan) -> dict[str, Any]:
             **{name: float(size) if isfinite(size) else None for name, size in sizes.items()}}
 
 
-def _place(source: Source, scratch: Path) -> Path:
+def _place(source: PartBytes, scratch: Path) -> Path:
     """Where the file of a source is written to."""
     return scratch / source.sha256 / Path(source.name).name
 
 
-def _part(source: Source, scratch: Path, known: dict[str, Part]) -> Part:
+def _part(source: PartBytes, scratch: Path, known: dict[str, Part]) -> Part:
     """The part of a source, read from a file of its own name where it is a file."""
     found = known.get(source.sha256)
     if found is not None:
@@ -170,15 +171,15 @@ def main(descriptor: int, scratch: Path) -> None:
     with suppress(OSError):  # where memory is short the system is to end this process, not who waits for it
         Path("/proc/self/oom_score_adj").write_text("500")
     compiled, known = compilations(), dict[str, Part]()
-    pipe, tasks = Connection(descriptor), SimpleQueue[Task]()
+    pipe, tasks = Connection(descriptor), SimpleQueue[BatchTask]()
     threading.Thread(target=_listen, args=(pipe, tasks, scratch), daemon=True).start()
     while True:
-        found = carried_out(tasks.get(), scratch, known)
+        found = answer_task(tasks.get(), scratch, known)
         with suppress(BrokenPipeError, ConnectionResetError):  # nobody is there any more: see `_listen`
             pipe.send(replace(found, compiled=compiled() > 0))
 
 
-def _listen(pipe: Connection, tasks: "SimpleQueue[Task]", scratch: Path) -> None:
+def _listen(pipe: Connection, tasks: "SimpleQueue[BatchTask]", scratch: Path) -> None:
     """Take tasks; once nobody is there to give any, end the process with all that it has left behind."""
     alone = False
     try:

@@ -8,9 +8,9 @@ from typing import Any
 
 from toolaxis.batch.summary import NAME, VERSION
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError
-from toolaxis.job.files.plan_folder import PLAN, read_json, staged
+from toolaxis.job.files.plan_folder import PLAN, read_json, stage_folder
 from toolaxis.job.output.report import PAGE, report
-from toolaxis.job.planning.parallel import abreast, checked_workers
+from toolaxis.job.planning.parallel import abreast, check_workers
 from toolaxis.progress import NO_PROGRESS, Progress
 
 SUMMARY = "summary.json"
@@ -57,21 +57,21 @@ def report_batch(folder: Path, file: Path | None = None, progress: Progress = NO
         When the progress object asks to stop; pages of jobs that are finished stay.
     """
     try:
-        from toolaxis.report.html.batch_page import Leaf, batch_page
+        from toolaxis.report.html.batch_page import JobPage, batch_page
     except ImportError as reason:
         raise MissingBackend(f"the page needs {reason.name}: pip install 'toolaxis[report]'") from reason
     target = folder / PAGE if file is None else file
     if target.is_dir():
         raise InvalidInput(f"the page {target} is a folder: give a file name with --out")
     records = _records(folder)
-    with staged(target.absolute().parent) as stage:
+    with stage_folder(target.absolute().parent) as stage:
         planned = [record for record in records if record["folder"]]
         made = abreast(lambda index, told: _leaf(folder, planned[index], (index, len(planned)), told), len(planned),
-                       checked_workers(workers), progress)
+                       check_workers(workers), progress)
         if made.cancelled:
             raise Cancelled("the page of the batch was not made")
-        leaves = {planned[k]["job"]: Leaf(*found) for k, found in made.results.items()}
-        leaves |= {planned[k]["job"]: Leaf("", [], f"no page: {fault.sentence}") for k, fault in made.faults.items()}
+        leaves = {planned[k]["job"]: JobPage(*found) for k, found in made.results.items()}
+        leaves |= {planned[k]["job"]: JobPage("", [], f"no page: {fault.sentence}") for k, fault in made.faults.items()}
         text = batch_page(folder.resolve().name, records, leaves)
         (stage.folder / target.name).write_text(text, encoding="utf-8")
         stage.publish()

@@ -10,11 +10,11 @@ from typing import Any
 
 from toolaxis.batch.folder import BatchFolder
 from toolaxis.batch.hand import by_hand
-from toolaxis.batch.jobfile import Wanted, read_jobs
-from toolaxis.batch.summary import Row
-from toolaxis.batch.task import Answer, Task
+from toolaxis.batch.jobfile import CheckedJob, read_jobs
+from toolaxis.batch.summary import JobRow
+from toolaxis.batch.task import BatchAnswer, BatchTask
 from toolaxis.errors import Cancelled, InvalidInput, JobError
-from toolaxis.job.planning.parallel import checked_workers
+from toolaxis.job.planning.parallel import check_workers
 from toolaxis.progress import NO_PROGRESS, Progress
 
 
@@ -26,7 +26,7 @@ class Batch:
     ----------
     folder : Path
         It holds a folder for each job that has a plan, summary.csv, summary.json and the journal.
-    rows : tuple of Row
+    rows : tuple of JobRow
         One for each job, in the order of the jobs.
     cancelled : bool
         Whether the user stopped it.
@@ -35,7 +35,7 @@ class Batch:
     """
 
     folder: Path
-    rows: tuple[Row, ...]
+    rows: tuple[JobRow, ...]
     cancelled: bool
     repeated: int
 
@@ -92,9 +92,9 @@ def batch(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]], out: str | Pa
     with ExitStack() as stack:
         client = None
         if scheduler is not None:
-            from toolaxis.batch.cluster import by_cluster, connected
+            from toolaxis.batch.cluster import by_cluster, connect_to_scheduler
 
-            client = stack.enter_context(connected(scheduler))
+            client = stack.enter_context(connect_to_scheduler(scheduler))
         folder = stack.enter_context(BatchFolder(Path(out)))
         run = _Run(wanted, folder, told or (lambda _: None), progress)
         run.look()
@@ -104,7 +104,7 @@ def batch(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]], out: str | Pa
 
 
 def _count(workers: int | None, scheduler: str | None) -> int:
-    checked_workers(workers)
+    check_workers(workers)
     if scheduler is not None and workers is not None:
         raise InvalidInput("the workers of a cluster are its own: give either a scheduler or a number of workers")
     if workers is not None:
@@ -115,7 +115,7 @@ def _count(workers: int | None, scheduler: str | None) -> int:
 class _Run:
     """One run of a batch: what is finished, what is at work, and what is still to be done."""
 
-    def __init__(self, wanted: tuple[Wanted, ...], folder: BatchFolder, told: Callable[[str], None],
+    def __init__(self, wanted: tuple[CheckedJob, ...], folder: BatchFolder, told: Callable[[str], None],
                  progress: Progress) -> None:
         self.told = told
         self._wanted, self._folder, self._progress = {job.name: job for job in wanted}, folder, progress
@@ -129,15 +129,15 @@ class _Run:
             found = self._folder.finished(job)
             if found is not None:
                 self._ended += 1
-                self._rows[job.name] = _row(job, Answer(found["outcome"], "", found["reason"], found["figures"],
-                                                        spent=spent.get(job.name, 0.0)))
+                self._rows[job.name] = _row(job, BatchAnswer(found["outcome"], "", found["reason"], found["figures"],
+                                                             spent=spent.get(job.name, 0.0)))
         self._repeated = self._ended
         self._tell_notes()
         if self._ended:
             self.told(f"{self._ended} of {len(self._wanted)} jobs are finished already")
         self._report()
 
-    def tasks(self) -> Iterator[Task]:
+    def tasks(self) -> Iterator[BatchTask]:
         """The jobs that are not finished, each written down as begun when it is asked for."""
         for job in self._wanted.values():
             if self._rows[job.name].outcome != "not done":
@@ -145,13 +145,13 @@ class _Run:
             try:
                 task = job.task()
             except InvalidInput as reason:
-                self._take(job, Answer("failed", "input", str(reason)))
+                self._take(job, BatchAnswer("failed", "input", str(reason)))
                 continue
             self._folder.check()
             self._folder.started(job)
             yield task
 
-    def carried_out(self, answers: Iterator[tuple[Task, Answer] | None]) -> Batch:
+    def carried_out(self, answers: Iterator[tuple[BatchTask, BatchAnswer] | None]) -> Batch:
         """The batch, once all its jobs have ended or the user has stopped it."""
         cancelled = False
         try:
@@ -178,7 +178,7 @@ class _Run:
         if self._folder.stands:
             self._folder.summarise(list(self._rows.values()))
 
-    def _take(self, job: Wanted, answer: Answer) -> None:
+    def _take(self, job: CheckedJob, answer: BatchAnswer) -> None:
         """Keep an answer."""
         if answer.cause == "disk":
             raise JobError("jobs", job.name, f"the disk is full ({answer.reason}): nothing that was finished is lost; "
@@ -200,10 +200,10 @@ class _Run:
             self._progress.report("jobs", self._ended, len(self._wanted))
 
 
-def _row(job: Wanted, answer: Answer | None = None) -> Row:
+def _row(job: CheckedJob, answer: BatchAnswer | None = None) -> JobRow:
     spec = job.spec
     first = (job.name, spec.part, job.tool.name, spec.machine, spec.inputs.scallop)
     if answer is None:
-        return Row(*first)
-    return Row(*first, answer.outcome, answer.cause, answer.reason, answer.figures,
-               "" if answer.outcome == "failed" else job.name, answer.spent)
+        return JobRow(*first)
+    return JobRow(*first, answer.outcome, answer.cause, answer.reason, answer.figures,
+                  "" if answer.outcome == "failed" else job.name, answer.spent)

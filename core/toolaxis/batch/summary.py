@@ -13,7 +13,7 @@ _FIRST = ("job", "outcome", "cause", "reason", "part", "tool", "machine", "scall
 
 
 @dataclass(frozen=True)
-class Row:
+class JobRow:
     """A job and what came of it.
 
     Attributes
@@ -25,7 +25,7 @@ class Row:
         "complete", "incomplete" (a face has no axis, or the verdict is fail), "failed" (there is no plan) or
         "not done".
     cause, reason : str
-        See `toolaxis.batch.task.Answer`.
+        See `toolaxis.batch.task.BatchAnswer`.
     figures : dict
         operations, those without_axis, orientations (different axes), passes, length of cuts and travel in links, mm,
         machining time, s, greatest gouge, mm, verdict.
@@ -54,12 +54,12 @@ class Row:
                 **{name: self.figures.get(name) for name in _FIGURES}, "spent": round(self.spent, 3)}
 
 
-def summary_document(rows: Sequence[Row]) -> dict[str, Any]:
+def summary_document(rows: Sequence[JobRow]) -> dict[str, Any]:
     """Rows as a document that `json.dump` takes.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of JobRow
 
     Returns
     -------
@@ -70,12 +70,12 @@ def summary_document(rows: Sequence[Row]) -> dict[str, Any]:
             "counts": dict(sorted(Counter(row.outcome for row in rows).items())), "jobs": [row.record for row in rows]}
 
 
-def summary_csv(rows: Sequence[Row]) -> str:
+def summary_csv(rows: Sequence[JobRow]) -> str:
     """Rows as comma-separated values with a line of names first.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of JobRow
     """
     text = io.StringIO()
     writer = csv.DictWriter(text, (*_FIRST, *_FIGURES, "spent"), lineterminator="\n")

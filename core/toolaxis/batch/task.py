@@ -11,7 +11,7 @@ CAUSES = ("input", "error", "crash", "timeout", "memory", "disk")
 
 
 @dataclass(frozen=True)
-class Source:
+class PartBytes:
     """A part as bytes, so that it can be read where its file is not.
 
     Attributes
@@ -33,15 +33,15 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Task:
+class BatchTask:
     """One job, complete: it needs no file beside it.
 
     Attributes
     ----------
     name, key : str
         Of the job.
-    part : Source
-    obstacles : tuple of Source
+    part : PartBytes
+    obstacles : tuple of PartBytes
     tool : Tool
     machine : Machine or None
     options : dict
@@ -58,8 +58,8 @@ class Task:
 
     name: str
     key: str
-    part: Source
-    obstacles: tuple[Source, ...]
+    part: PartBytes
+    obstacles: tuple[PartBytes, ...]
     tool: Tool
     machine: Machine | None
     options: dict[str, Any]
@@ -71,7 +71,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Answer:
+class BatchAnswer:
     """What came of a job.
 
     Attributes

@@ -19,7 +19,7 @@ STRAIGHT = np.radians(0.5)
 _MEETS = 1e-6
 
 
-class Nearness(NamedTuple):
+class NearestOnBlades(NamedTuple):
     """The two nearest points of a face and of others.
 
     distance : mm;  here, there : (3,) their places, mm;  number : of the other's face;  straight : whether `there`
@@ -33,7 +33,7 @@ class Nearness(NamedTuple):
     straight: bool
 
 
-def nearness(face: Face, others: Sequence[Face]) -> Nearness:
+def nearness(face: Face, others: Sequence[Face]) -> NearestOnBlades:
     """The two nearest points of a face and of others, by walking downhill from the nearest samples.
 
     Parameters
@@ -50,14 +50,14 @@ def nearness(face: Face, others: Sequence[Face]) -> Nearness:
 
     mine = _samples(face)
     points = face.evaluate(mine).point
-    best: Nearness | None = None
+    best: NearestOnBlades | None = None
     for other in others:
         theirs = _samples(other)
         away, index = cKDTree(other.evaluate(theirs).point).query(points)
         if best is not None and away.min() > best.distance + 0.5 * (face.diagonal + other.diagonal) / _GRID:
             continue
         for k in np.argsort(away, kind="stable")[:_STARTS]:
-            found = _walked(face, other, (mine[k], theirs[index[k]]))
+            found = _walk_downhill(face, other, (mine[k], theirs[index[k]]))
             if best is None or found.distance < best.distance:
                 best = found
     assert best is not None
@@ -69,7 +69,7 @@ def _samples(face: Face) -> Array:
     return np.concatenate([face.grid(_GRID, _GRID), border[::max(1, len(border) // 64)]])
 
 
-def _walked(face: Face, other: Face, start: tuple[Array, Array]) -> Nearness:
+def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> NearestOnBlades:
     """Downhill in the parameters of both faces from a place on each, and where trims end that, to and fro."""
     here, there = _slid(face, other, start)
     if not (face.contains(here[None])[0] and other.contains(there[None])[0]):
@@ -77,7 +77,7 @@ def _walked(face: Face, other: Face, start: tuple[Array, Array]) -> Nearness:
     a, b = face.evaluate(here[None]).point[0], other.evaluate(there[None]).point[0]
     length = float(np.linalg.norm(b - a))
     straight = length > 0 and float(face.normal(here[None])[0] @ (b - a)) >= length * np.cos(STRAIGHT)
-    return Nearness(length, a, b, other.number, straight)
+    return NearestOnBlades(length, a, b, other.number, straight)
 
 
 def _slid(face: Face, other: Face, start: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -114,7 +114,7 @@ def _to_and_fro(face: Face, other: Face, start: Array) -> tuple[Array, Array]:
     return here.uv[0], there.uv[0]
 
 
-def ahead(face: Face, others: Sequence[Face]) -> Nearness | None:
+def ahead(face: Face, others: Sequence[Face]) -> NearestOnBlades | None:
     """The least distance straight along the normals of a face to others, at samples of the face.
 
     Parameters
@@ -124,7 +124,7 @@ def ahead(face: Face, others: Sequence[Face]) -> Nearness | None:
 
     Returns
     -------
-    Nearness, or None where no normal meets another face.
+    NearestOnBlades, or None where no normal meets another face.
 
     Notes
     -----
@@ -133,17 +133,17 @@ def ahead(face: Face, others: Sequence[Face]) -> Nearness | None:
     """
     mine = _samples(face)
     points, normals = face.evaluate(mine).point, face.normal(mine)
-    best: Nearness | None = None
+    best: NearestOnBlades | None = None
     for other in others:
-        length, uv = _met(points, normals, other)
+        length, uv = _ray_hits(points, normals, other)
         k = int(np.argmin(length))
         if np.isfinite(length[k]) and (best is None or length[k] < best.distance):
             there = other.evaluate(uv[k:k + 1]).point[0]
-            best = Nearness(float(length[k]), points[k], there, other.number, True)
+            best = NearestOnBlades(float(length[k]), points[k], there, other.number, True)
     return best
 
 
-def _met(points: Array, normals: Array, other: Face) -> tuple[Array, Array]:
+def _ray_hits(points: Array, normals: Array, other: Face) -> tuple[Array, Array]:
     """Where rays meet a face, by Newton's method from the samples next to each: length, inf where not, and (u, v)."""
     theirs = _samples(other)
     way = other.evaluate(theirs).point[None] - points[:, None]
@@ -164,12 +164,12 @@ def _met(points: Array, normals: Array, other: Face) -> tuple[Array, Array]:
     return np.where((off < _MEETS) & (length > _MEETS) & other.contains(uv), length, np.inf), uv
 
 
-def widest(gap: Nearness, clearance: float) -> float:
+def widest(gap: NearestOnBlades, clearance: float) -> float:
     """Diameter of the widest cutter that can machine a place which others stand straight ahead of, mm.
 
     Parameters
     ----------
-    gap : Nearness
+    gap : NearestOnBlades
     clearance : float
         What the cutter has to keep from the others, mm.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -22,7 +22,7 @@ _AT_END = 1e-9
 _GRID, _DENSE = 5, 16
 
 
-class Chart(NamedTuple):
+class ParameterRule(NamedTuple):
     """Parameters of a counterpart from those of a face: uv' = uv @ linear + offset."""
 
     linear: Array
@@ -42,11 +42,11 @@ class Counterpart(NamedTuple):
     """A face of another blade, and how its parameters follow; chart is None where they do by no straight rule."""
 
     face: Face
-    chart: Chart | None
+    chart: ParameterRule | None
     away: float
 
 
-def moved(matrix: Array, points: Array) -> Array:
+def apply_motion(matrix: Array, points: Array) -> Array:
     """Points under a rigid motion.
 
     Parameters
@@ -96,10 +96,10 @@ def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpar
     2. a face is its own counterpart under the identity.
     """
     uv = _samples(face, _GRID)
-    points = moved(matrix, face.evaluate(uv).point)
+    points = apply_motion(matrix, face.evaluate(uv).point)
     close = [other for other in others
              if np.linalg.norm(other.box.mean(axis=0) - points.mean(axis=0)) <= 0.2 * face.diagonal]
-    for how in (_laid, _searched):
+    for how in (_counterpart_by_parameters, _counterpart_by_nearest_points):
         found = [one for one in (how(face, uv, points, other) for other in close) if one is not None]
         if found:
             return min(found, key=lambda one: one.away)
@@ -112,7 +112,7 @@ def _samples(face: Face, count: int) -> Array:
     return np.concatenate([face.grid(count, count), border[::max(1, len(border) // (4 * count))]])
 
 
-def _laid(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
+def _counterpart_by_parameters(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
     """Another face as the counterpart, where one of the eight ways to lay their parameters onto each other fits."""
     charts = _eight(face.surface.domain, other.surface.domain)
     away = [float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max()) for chart in charts]
@@ -123,7 +123,7 @@ def _laid(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | No
     return Counterpart(other, charts[k], away[k])
 
 
-def _searched(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
+def _counterpart_by_nearest_points(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
     """Another face as the counterpart by its nearest points, with the straight rule of parameters that fits them."""
     found = nearest(other, points, 24)
     distance = float(found.distance.max())
@@ -131,12 +131,12 @@ def _searched(face: Face, uv: Array, points: Array, other: Face) -> Counterpart 
         return None
     table = np.column_stack([uv, np.ones(len(uv))])
     fit: Array = np.asarray(np.linalg.lstsq(table, found.uv, rcond=None)[0], dtype=float)
-    chart = Chart(fit[:2], fit[2])
+    chart = ParameterRule(fit[:2], fit[2])
     off = float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max())
     return Counterpart(other, chart if off <= distance + _AGREE * face.diagonal else None, distance)
 
 
-def _eight(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[Chart]:
+def _eight(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[ParameterRule]:
     """The ways to lay one rectangle of parameters onto another."""
     found = []
     for swap in (False, True):
@@ -147,7 +147,7 @@ def _eight(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, floa
                 start, stop = there[j] if senses[i] > 0 else there[j][::-1]
                 linear[i, j] = (stop - start) / (high - low)
                 offset[j] = start - low * linear[i, j]
-            found.append(Chart(linear, offset))
+            found.append(ParameterRule(linear, offset))
     return found
 
 
@@ -189,11 +189,11 @@ def off(face: Face, other: Counterpart, matrix: Array) -> float:
     assert other.chart is not None
     uv = _samples(face, _DENSE)
     there = other.chart(uv)
-    gap = other.face.evaluate(there).point - moved(matrix, face.evaluate(uv).point)
+    gap = other.face.evaluate(there).point - apply_motion(matrix, face.evaluate(uv).point)
     return float(np.abs((gap * other.face.normal(there)).sum(axis=1)).max())
 
 
-def turned_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, label: str) -> tuple[Face, float]:
+def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, label: str) -> tuple[Face, float]:
     """The piece of a counterpart that a motion brings a piece of a face onto, and how far the two are apart, mm.
 
     Parameters
@@ -212,13 +212,14 @@ def turned_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, la
     """
     target = other.face
     if other.chart is None:
-        loops = tuple(nearest(target, moved(matrix, piece.evaluate(_fine(loop)).point)).uv for loop in piece.outline)
+        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(_fine(loop)).point)).uv
+                      for loop in piece.outline)
         made = target.trimmed(loops, label)
         uv = _samples(piece, _DENSE)
-        return made, float(nearest(target, moved(matrix, piece.evaluate(uv).point)).distance.max())
+        return made, float(nearest(target, apply_motion(matrix, piece.evaluate(uv).point)).distance.max())
     found = target if piece is whole else target.trimmed(_loops(piece, whole, target, other.chart), label)
     uv = _samples(piece, _DENSE)
-    gap = target.evaluate(other.chart(uv)).point - moved(matrix, piece.evaluate(uv).point)
+    gap = target.evaluate(other.chart(uv)).point - apply_motion(matrix, piece.evaluate(uv).point)
     return found.trimmed(found.trims, label), float(np.linalg.norm(gap, axis=1).max())
 
 
@@ -229,16 +230,16 @@ def _fine(loop: Array) -> Array:
     return np.asarray((loop + share * (following - loop)).swapaxes(0, 1).reshape(-1, 2))
 
 
-def _loops(piece: Face, whole: Face, target: Face, chart: Chart) -> tuple[Array, ...]:
+def _loops(piece: Face, whole: Face, target: Face, chart: ParameterRule) -> tuple[Array, ...]:
     """Loops of the counterpart of a piece."""
     source: tuple[Array, ...] = whole.outline
     loops: tuple[Array, ...] = target.outline
     for i, value, above in _cuts(piece, whole):
-        source = clipped(source, i, value, above)
+        source = clip_half_plane(source, i, value, above)
         j = 1 - i if chart.swapped else i
-        loops = clipped(loops, j, float(chart(np.full((1, 2), value))[0, j]), above == (chart.linear[i, j] > 0))
-    pieces = grouped(loops)
-    if len(pieces) == len(grouped(source)) == 1 and abs(_area(source) / _area(piece.outline) - 1) < 1e-4:
+        loops = clip_half_plane(loops, j, float(chart(np.full((1, 2), value))[0, j]), above == (chart.linear[i, j] > 0))
+    pieces = outer_with_holes(loops)
+    if len(pieces) == len(outer_with_holes(source)) == 1 and abs(_area(source) / _area(piece.outline) - 1) < 1e-4:
         return pieces[0]
     return tuple(chart(loop) for loop in piece.outline)
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.numeric.rounding import signed
+from toolaxis.numeric.rounding import canonical_sign
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
@@ -131,7 +131,7 @@ def blades_of(part: Part) -> Bladed:
     if not sculptured:
         raise NoPattern("the part has no sculptured face: blades are looked for among those")
     point, line, count, strangers = _pattern(part, samples, sculptured)
-    axis = -signed(line)
+    axis = -canonical_sign(line)
     if strangers:
         raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
                                   f"{strangers[0]} the first): blades are missing or moved; choose faces by hand")
@@ -187,7 +187,7 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
             if fit > best + (_SLACK if worse else 1e-3) or (found is not None and not worse and count > known[1]
                                                             and fit > best - _SLACK):
                 best, known = fit, (exact, count)
-                line = (point, axis) if exact else _refined(samples, pairs, point, axis)
+                line = (point, axis) if exact else _refine_axis(samples, pairs, point, axis)
                 found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
     if found is None:
         raise NoPattern("no axis has a pattern of like faces around it: blades cannot be found on this part")
@@ -195,7 +195,7 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
         near = [face.number for face in part.faces if face.kind in _ROUND_KINDS
                 and _of_revolution(samples, face.number, found[0], found[1], _ROUGHLY)]
         if near:
-            found = (*_met_by_normals(samples, near), *found[2:])
+            found = (*_line_met_by_normals(samples, near), *found[2:])
     return found
 
 
@@ -207,7 +207,7 @@ def _has_like(samples: _Samples, number: int, numbers: list[int]) -> bool:
 def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bool, Array, Array]]:
     """Axes worth trying: the line that normals of surfaces of revolution meet, exact, and the axis of inertia."""
     round_ = [f.number for f in part.faces if f.kind in _ROUND_KINDS]
-    result = [(True, *_met_by_normals(samples, round_))] if round_ else []
+    result = [(True, *_line_met_by_normals(samples, round_))] if round_ else []
     points = np.concatenate([samples.points[n] for n in sculptured])
     share = [np.full(len(samples.points[n]), samples.area[n] / len(samples.points[n])) for n in sculptured]
     weight = np.concatenate(share)
@@ -216,7 +216,7 @@ def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bo
     return [*result, (False, np.average(points, axis=0, weights=weight), axis)]
 
 
-def _met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array]:
+def _line_met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array]:
     """The line d, m = a x d that lines (p, n) meet: n . (d x p) + n . m = 0, by least squares, strangers left out."""
     point, d = np.zeros(3), np.array([0.0, 0.0, 1.0])
     for _ in range(4):
@@ -258,7 +258,7 @@ def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[
     return {looked[i]: looked[int(best[i])] for i in near}, {looked[i]: float(share[i]) for i in near}
 
 
-def _refined(samples: _Samples, pairs: dict[int, int], point: Array, axis: Array) -> tuple[Array, Array]:
+def _refine_axis(samples: _Samples, pairs: dict[int, int], point: Array, axis: Array) -> tuple[Array, Array]:
     """The axis of the turn that brings the centres of faces closest to their counterparts'."""
     a, b = (np.array([samples.centre[n] for n in numbers]) for numbers in (pairs.keys(), pairs.values()))
     weight = np.array([samples.area[n] for n in pairs])

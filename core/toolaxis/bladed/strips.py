@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
@@ -54,7 +54,7 @@ def strips(face: Face, most: float) -> tuple[Face, ...]:
     if count == 1:
         return (face,)
     cuts = np.interp(np.linspace(0, total[-1], count + 1)[1:-1], total, lines[axis])
-    pieces = [piece for k in range(count) for piece in grouped(_between(face.outline, axis, cuts, k))]
+    pieces = [piece for k in range(count) for piece in outer_with_holes(_between(face.outline, axis, cuts, k))]
     return tuple(face.trimmed(piece, face.label + letters(k)) for k, piece in enumerate(pieces))
 
 
@@ -68,7 +68,7 @@ def _turn(normals: Array, on: NDArray[np.bool_]) -> Array:
 def _between(loops: tuple[Array, ...], axis: int, cuts: Array, k: int) -> tuple[Array, ...]:
     """The part of loops between two neighbouring cuts."""
     if k > 0:
-        loops = clipped(loops, axis, float(cuts[k - 1]), True)
+        loops = clip_half_plane(loops, axis, float(cuts[k - 1]), True)
     if k < len(cuts):
-        loops = clipped(loops, axis, float(cuts[k]), False)
+        loops = clip_half_plane(loops, axis, float(cuts[k]), False)
     return loops

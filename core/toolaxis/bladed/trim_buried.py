@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.numeric.clipping import grouped
+from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divided
+from toolaxis.numeric.polygon_boolean import divide_polygon
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
@@ -136,7 +136,7 @@ def solids_of(part: Part) -> tuple[Solid, ...]:
     return tuple(Solid(tuple(part.face(n) for n in body.faces)) for body in part.bodies if body.closed)
 
 
-def exposed(face: Face, solids: tuple[Solid, ...]) -> tuple[Face, ...]:
+def cut_exposed(face: Face, solids: tuple[Solid, ...]) -> tuple[Face, ...]:
     """What of a face no body covers: pieces of it, the largest first.
 
     Parameters
@@ -188,10 +188,10 @@ def _less(face: Face, solid: Solid) -> list[Face]:
         if not (depth > 0).any():
             return [face]
         try:
-            _, left = divided(face.outline, contours(depth, (lines[0], lines[1])))
+            _, left = divide_polygon(face.outline, contours(depth, (lines[0], lines[1])))
         except InvalidInput:
             continue
-        found = [face.trimmed(loops) for loops in grouped(left)]
+        found = [face.trimmed(loops) for loops in outer_with_holes(left)]
         return [piece for piece in found if mean_width(piece) > cell / 2]
     raise UnsupportedGeometry(f"what of face {face.label} lies inside another body cannot be told, borders coincide: "
                               "unite the bodies in CAD")
@@ -236,8 +236,8 @@ def _depth(face: Face, solid: Solid, lines: tuple[Array, Array]) -> Array:
     return depth.reshape(shape)
 
 
-def uncovered(part: Part, numbers: Collection[int],
-              progress: Progress = NO_PROGRESS) -> tuple[Part, dict[int, tuple[Face, ...]]]:
+def cut_back_covered(part: Part, numbers: Collection[int],
+                     progress: Progress = NO_PROGRESS) -> tuple[Part, dict[int, tuple[Face, ...]]]:
     """A part with faces cut back to what no other of its bodies covers.
 
     Parameters
@@ -266,7 +266,7 @@ def uncovered(part: Part, numbers: Collection[int],
     pieces = {}
     for k, face in enumerate(map(part.face, sorted(numbers))):
         progress.report("looking for what other bodies cover", k, len(numbers))
-        left = exposed(face, solids)
+        left = cut_exposed(face, solids)
         if left != (face,):
             pieces[face.number] = left
     if not pieces:

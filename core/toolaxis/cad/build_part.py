@@ -7,7 +7,7 @@ import numpy as np
 from toolaxis.cad.shape_data import FaceRecord, ShapeRecord
 from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gaps
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.edge_matching import matched
+from toolaxis.shape.joining.edge_matching import match_edges
 from toolaxis.shape.kinks import with_kinks
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import seam_warnings
@@ -39,7 +39,7 @@ def part_from_record(record: ShapeRecord, source: str = "", sha256: str = "") ->
     """
     faces = tuple(face_from_record(item) for item in record.faces)
     part = Part(faces, (), tuple(record.bodies), source, sha256, record.unit)
-    found = matched(record.free, part.diagonal) if len(record.free) > 1 else []
+    found = match_edges(record.free, part.diagonal) if len(record.free) > 1 else []
     numbers = {face.number for face in faces}
     warnings = [*record.warnings, *_gap_warning(part, record), *_sense_warning(part, [*record.borders, *found])]
     if found:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cad.rational_arcs import angle_breaks, arc_knots, arc_rows
-from toolaxis.numeric.knots import restricted, unrolled
+from toolaxis.numeric.knots import restrict_spline, unroll_periodic
 
 Array = NDArray[np.float64]
 
@@ -44,9 +44,9 @@ def parabola(placed: Array, focal: float, low: float, high: float) -> Spline:
 def bspline(knots: Array, control: Array, degree: int, periodic: bool, need: tuple[float, float]) -> Spline:
     """A B-spline with clamped ends; a periodic one is unrolled over the range that is needed."""
     if periodic:
-        return Spline(*unrolled(knots, control, degree, *need), degree)
+        return Spline(*unroll_periodic(knots, control, degree, *need), degree)
     first, last = float(knots[degree]), float(knots[-degree - 1])
-    return Spline(*restricted(knots, control, degree, first, last), degree)
+    return Spline(*restrict_spline(knots, control, degree, first, last), degree)
 
 
 def bezier(control: Array) -> Spline:
@@ -60,7 +60,7 @@ def homogeneous(points: Array, weights: Array) -> Array:
     return np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
 
 
-def extruded(profile: Array, direction: Array, low: float, high: float) -> Array:
+def extrude_profile(profile: Array, direction: Array, low: float, high: float) -> Array:
     """Control net of profile + t direction, t in [low, high]: (n, 4) to (n, 2, 4)."""
     net = np.repeat(profile[:, None, :], 2, axis=1)
     net[:, 0, :3] += low * direction * net[:, 0, 3:]
@@ -68,7 +68,7 @@ def extruded(profile: Array, direction: Array, low: float, high: float) -> Array
     return net
 
 
-def revolved(profile: Array, breaks: Array) -> Array:
+def revolve_profile(profile: Array, breaks: Array) -> Array:
     """Control net of a profile turned about the local z axis: (n, 4) to (2 k - 1, n, 4), the angle first."""
     c, s, w = (column[:, None] for column in arc_rows(breaks).T)
     x, y, z, weight = profile.T

@@ -10,7 +10,7 @@ from toolaxis.cad.kernel_protocol import Box, KernelBody, KernelFace, KernelSurf
 from toolaxis.cad.shape_data import FaceRecord, ShapeRecord, left_out
 from toolaxis.cad.shared_edges import borders_of
 from toolaxis.cad.surfaces import PlainSurface, convert, grid, map_of
-from toolaxis.cad.trims import Loops, arranged, chained, coarse_box, discretised
+from toolaxis.cad.trims import Loops, close_loop, coarse_box, orient_loops, sample_edge
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.progress import breathe
 from toolaxis.shape.part import Body
@@ -109,7 +109,7 @@ def record_of_face(face: KernelFace, number: int = 1, share: float = 1e-5) -> tu
         plain = convert(surface, box)
         _check_reach(plain)
     low, high = _domain(plain)
-    polygons = tuple(_kept_inside(plain.map.to_ours(polygon), low, high) for polygon in loops.polygons)
+    polygons = tuple(_keep_inside(plain.map.to_ours(polygon), low, high) for polygon in loops.polygons)
     if _covers_domain(polygons, low, high):
         polygons = ()
     record = FaceRecord(number, plain.knots_u, plain.knots_v, plain.control, plain.degree, polygons, face.flip,
@@ -143,9 +143,9 @@ def _kernel_loops(face: KernelFace, surface: KernelSurface, share: float) -> tup
     to_ours, periods = map_of(surface, box).to_ours, surface.periods
     chord = min(share * float(np.linalg.norm(np.ptp(surface.points(grid(box, 7)), axis=0))), GREATEST_CHORD)
     warnings: list[str] = []
-    polygons = [chained([discretised(edge, to_ours, surface.tangents, chord) for edge in wire], periods, warnings)
+    polygons = [close_loop([sample_edge(edge, to_ours, surface.tangents, chord) for edge in wire], periods, warnings)
                 for wire in wires]
-    loops = arranged(polygons, periods, warnings)
+    loops = orient_loops(polygons, periods, warnings)
     low, high = loops.polygons[0].min(axis=0), loops.polygons[0].max(axis=0)
     return loops, (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
@@ -156,7 +156,7 @@ def _domain(plain: PlainSurface) -> tuple[Array, Array]:
     return low, np.array([plain.knots_u[-pu - 1], plain.knots_v[-pv - 1]])
 
 
-def _kept_inside(loop: Array, low: Array, high: Array) -> Array:
+def _keep_inside(loop: Array, low: Array, high: Array) -> Array:
     """A loop that strays over the end of its surface, as inaccurate files have it, brought back to the end."""
     if (loop >= low).all() and (loop <= high).all():
         return loop

@@ -8,7 +8,7 @@ from toolaxis.cad.load import load
 from toolaxis.collision.index_moves import hull_of
 from toolaxis.errors import InvalidInput
 from toolaxis.machine import library as catalogue
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.machine import Machine
 from toolaxis.shape.bounding.bounding_tree import forest
 
@@ -49,7 +49,7 @@ def with_hulls(machine: Machine) -> Machine:
                                          for piece in (_hulls(body) if body.kind == "step" else (body,))))
 
 
-def _hulls(body: Body) -> tuple[Body, ...]:
+def _hulls(body: MachineBody) -> tuple[MachineBody, ...]:
     try:
         part = load(body.file)
     except InvalidInput as reason:
@@ -61,5 +61,5 @@ def _hulls(body: Body) -> tuple[Body, ...]:
     found = []
     for solid in part.bodies:
         shape = hull_of(forest([part.face(number) for number in solid.faces]))
-        found.append(Body(body.name, body.carried, "points", shape.centre[0], float(np.max(shape.ball))))
+        found.append(MachineBody(body.name, body.carried, "points", shape.centre[0], float(np.max(shape.ball))))
     return tuple(found)

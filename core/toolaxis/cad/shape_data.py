@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cad.rational_arcs import ParameterMap
 from toolaxis.shape.adjacency import Border
-from toolaxis.shape.joining.edge_matching import Side
+from toolaxis.shape.joining.edge_matching import OpenEdge
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import LEFT_OUT, Body
 
@@ -64,7 +64,7 @@ class ShapeRecord:
     faces : list of FaceRecord
     borders : list of Border
         Edges that faces share.
-    free : list of Side
+    free : list of OpenEdge
         Edges that only one face has.
     bodies : list of Body
     warnings : list of str
@@ -78,7 +78,7 @@ class ShapeRecord:
 
     faces: list[FaceRecord] = field(default_factory=list)
     borders: list[Border] = field(default_factory=list)
-    free: list[Side] = field(default_factory=list)
+    free: list[OpenEdge] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     unit: str = "mm"

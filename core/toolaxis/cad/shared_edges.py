@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.cad.kernel_protocol import KernelEdge, KernelFace
 from toolaxis.cad.shape_data import FaceRecord
 from toolaxis.shape.adjacency import Border
-from toolaxis.shape.joining.edge_matching import Side
+from toolaxis.shape.joining.edge_matching import OpenEdge
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ FINENESS = 1e-4
 CHECKED, APART, SPACING, MOST = 17, 2e-4, 0.1, 1000
 
 
-def borders_of(pairs: Iterable[tuple[FaceRecord, KernelFace]]) -> tuple[list[Border], list[Side]]:
+def borders_of(pairs: Iterable[tuple[FaceRecord, KernelFace]]) -> tuple[list[Border], list[OpenEdge]]:
     """Every edge that two faces share, or that one face has twice (a seam); and the sides that only one face has.
 
     Parameters
@@ -42,10 +42,10 @@ def borders_of(pairs: Iterable[tuple[FaceRecord, KernelFace]]) -> tuple[list[Bor
     return borders, free
 
 
-def _side(user: _User) -> Side:
+def _side(user: _User) -> OpenEdge:
     record, edge = user
     share, points = _polyline(edge)
-    return Side(record.number, points, _parameters(user, share), edge.forward ^ record.turned)
+    return OpenEdge(record.number, points, _parameters(user, share), edge.forward ^ record.turned)
 
 
 def _border(one: _User, other: _User) -> Border:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cad.curves import Spline, arc, extruded, line, revolved
+from toolaxis.cad.curves import Spline, arc, extrude_profile, line, revolve_profile
 from toolaxis.cad.kernel_protocol import (
     Box,
     ExtrusionForm,
@@ -18,7 +18,7 @@ from toolaxis.cad.kernel_protocol import (
 from toolaxis.cad.rational_arcs import ParameterMap, angle_breaks, arc_knots
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
-from toolaxis.numeric.knots import restricted, unrolled
+from toolaxis.numeric.knots import restrict_spline, unroll_periodic
 
 Array = NDArray[np.float64]
 
@@ -130,7 +130,7 @@ def _elementary(form: MeridianForm, box: Box, kind: str) -> PlainSurface:
 
 def _turned(profile: Spline, placed: Array, box: Box, kind: str) -> PlainSurface:
     breaks = angle_breaks(box[0], box[1])
-    net = revolved(profile.control, breaks) @ placed.T
+    net = revolve_profile(profile.control, breaks) @ placed.T
     return PlainSurface(arc_knots(breaks), profile.knots, net, (2, profile.degree), kind,
                         ParameterMap(breaks, profile.breaks))
 
@@ -150,26 +150,27 @@ def _revolution(form: RevolutionForm, box: Box) -> PlainSurface:
 
 def _extrusion(form: ExtrusionForm, box: Box) -> PlainSurface:
     profile = form.curve.spline(box[0], box[1])
-    net = extruded(profile.control, form.direction, box[2], box[3])
+    net = extrude_profile(profile.control, form.direction, box[2], box[3])
     knots_v = np.array([box[2], box[2], box[3], box[3]])
     return PlainSurface(profile.knots, knots_v, net, (profile.degree, 1), "extrusion",
                         ParameterMap(profile.breaks, None))
 
 
 def _bspline(form: SplineForm, box: Box, kind: str) -> PlainSurface:
-    knots_u, net = _clamped(form.knots_u, form.net, form.degree[0], form.periodic[0], box[:2])
-    knots_v, turned = _clamped(form.knots_v, net.swapaxes(0, 1), form.degree[1], form.periodic[1], box[2:])
+    knots_u, net = _clamp_direction(form.knots_u, form.net, form.degree[0], form.periodic[0], box[:2])
+    knots_v, turned = _clamp_direction(form.knots_v, net.swapaxes(0, 1), form.degree[1], form.periodic[1], box[2:])
     return PlainSurface(knots_u, knots_v, np.ascontiguousarray(turned.swapaxes(0, 1)), form.degree, kind)
 
 
-def _clamped(knots: Array, net: Array, degree: int, periodic: bool, need: tuple[float, ...]) -> tuple[Array, Array]:
+def _clamp_direction(knots: Array, net: Array, degree: int, periodic: bool, need: tuple[float, ...]) -> tuple[Array,
+                                                                                                              Array]:
     """One direction of a net with clamped ends; a periodic one over its own period or what is needed beyond."""
     low, high = float(knots[degree]), float(knots[-degree - 1])
     if not periodic:
-        return restricted(knots, net, degree, low, high)
+        return restrict_spline(knots, net, degree, low, high)
     if need[0] < low or need[1] > high:
         low, high = need[0], need[1]
-    return unrolled(knots, net, degree, low, high)
+    return unroll_periodic(knots, net, degree, low, high)
 
 
 def grid(box: Box, count: int) -> Array:
@@ -187,10 +188,10 @@ def _approximation(surface: KernelSurface, box: Box) -> PlainSurface:
                                   "convert it to B-splines in the CAD system")
     plain = _bspline(fit[0], box, surface.kind)
     return PlainSurface(plain.knots_u, plain.knots_v, plain.control, plain.degree, surface.kind, ParameterMap(),
-                        _measured(surface, plain, box, fit[1]))
+                        _error_bound(surface, plain, box, fit[1]))
 
 
-def _measured(surface: KernelSurface, plain: PlainSurface, box: Box, claimed: float) -> float:
+def _error_bound(surface: KernelSurface, plain: PlainSurface, box: Box, claimed: float) -> float:
     """A bound of the approximation's error: twice the largest of what the kernel claims and 41 x 41 checks show."""
     uv = grid(box, 41)
     data = plain.knots_u, plain.knots_v, plain.control, plain.degree[0], plain.degree[1], True

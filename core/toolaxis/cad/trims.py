@@ -46,7 +46,7 @@ def coarse_box(wires: Sequence[Sequence[KernelEdge]]) -> Box:
     return float(u0), float(u1), float(v0), float(v1)
 
 
-def discretised(edge: KernelEdge, to_ours: Callable[[Array], Array], tangents: Callable[[Array], Array],
+def sample_edge(edge: KernelEdge, to_ours: Callable[[Array], Array], tangents: Callable[[Array], Array],
                 tolerance: float) -> Array:
     """The kernel's parameters along an edge, dense enough for chords in our parameters.
 
@@ -89,7 +89,7 @@ def _is_straight(points: Array) -> bool:
                 and along.max() <= length * (1 + STRAIGHT))
 
 
-def chained(pieces: list[Array], periods: tuple[float, float], warnings: list[str]) -> Array:
+def close_loop(pieces: list[Array], periods: tuple[float, float], warnings: list[str]) -> Array:
     """Join pieces into one closed polygon, moving pieces by whole periods where that closes a gap.
 
     Parameters
@@ -121,7 +121,7 @@ def _turns(gap: Array, periods: tuple[float, float]) -> Array:
     return np.array([p * np.round(g / p) if p > 0 else 0.0 for g, p in zip(gap, periods, strict=True)])
 
 
-def arranged(polygons: list[Array], periods: tuple[float, float], warnings: list[str]) -> Loops:
+def orient_loops(polygons: list[Array], periods: tuple[float, float], warnings: list[str]) -> Loops:
     """Sort loops: the outer one first and anticlockwise, holes clockwise and inside its range.
 
     Parameters

@@ -38,7 +38,7 @@ def unit_warnings(part: Part) -> tuple[str, ...]:
     if size < SMALLEST:
         odd = f"the part is {size:.4g} mm across in the unit that the file declares ({part.unit})"
     else:
-        odd = _narrow(part) or _crowded(part)
+        odd = _narrow(part) or _most_crowded_face(part)
     otherwise = " or ".join(f"{_length(size * factor)} if its numbers were {name}" for name, factor in OTHER_UNITS)
     across = "" if size < SMALLEST else f"the part is {size:.4g} mm across, "
     return (f"{odd}: check the unit ({across}{otherwise})",) if odd else ()
@@ -76,7 +76,7 @@ def _narrow(part: Part) -> str:
             f"the file declares ({part.unit}), narrower than is milled")
 
 
-def _crowded(part: Part) -> str:
+def _most_crowded_face(part: Part) -> str:
     """The face along the part whose control points stand closest, where cutters shape nothing so fine."""
     modelled = [(_spacing(face), face) for face in _along(part) if face.kind == "bspline" and not face.tolerance]
     finest = min(FINEST, part.diagonal / FINENESS)

@@ -4,7 +4,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-from toolaxis.cli.display import shown_progress
+from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 
 
@@ -26,7 +26,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     from toolaxis.batch.summary import summary_document
 
     out = Path(given.out or Path("out") / Path(given.jobs).stem)
-    with shown_progress(asked) as progress:
+    with show_progress(asked) as progress:
         made = batch(given.jobs, out, workers=given.workers, scheduler=given.scheduler,
                      told=lambda text: say(f"toolaxis: {text}"), progress=progress)
     if given.json:

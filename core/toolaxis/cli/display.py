@@ -38,16 +38,17 @@ class _Lines:
         if known is None:
             self._stages[stage] = _Stage(share)
             self._said = now
-            print(stage + _left(self._remaining, now, ", {}"), file=sys.stderr, flush=True)
+            print(stage + _format_time_left(self._remaining, now, ", {}"), file=sys.stderr, flush=True)
             return
         further = share > known.share
         known.share = share
         if now - self._said >= _EVERY and further and share < 100 and share >= known.said + _STEP:
             self._said, known.said = now, share
-            print(f"{stage}: {share:.0f} %" + _left(self._remaining, now, ", {}"), file=sys.stderr, flush=True)
+            print(f"{stage}: {share:.0f} %" + _format_time_left(self._remaining, now, ", {}"), file=sys.stderr,
+                  flush=True)
 
 
-def _left(remaining: Remaining, now: float, form: str) -> str:
+def _format_time_left(remaining: Remaining, now: float, form: str) -> str:
     """What is left in words, or nothing while it is not known."""
     left = remaining.left(now)
     if left is None or left.seconds < 0.5:
@@ -58,7 +59,7 @@ def _left(remaining: Remaining, now: float, form: str) -> str:
 
 
 @contextmanager
-def shown_progress(asked: Callable[[], bool]) -> Iterator[Progress]:
+def show_progress(asked: Callable[[], bool]) -> Iterator[Progress]:
     """Progress that is shown on stderr and stops when the user asks for it.
 
     Parameters
@@ -81,7 +82,7 @@ def shown_progress(asked: Callable[[], bool]) -> Iterator[Progress]:
         def _report(stage: str, done: float, total: float) -> None:
             now, known = time.monotonic(), total if total > 0 else None
             remaining.hear(stage, done, total, now)
-            left = _left(remaining, now, "{}")
+            left = _format_time_left(remaining, now, "{}")
             if stage not in tasks:
                 for task in tasks.values():
                     bars.update(task, visible=False)  # type: ignore[arg-type]

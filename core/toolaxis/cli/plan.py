@@ -4,16 +4,16 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-from toolaxis.cli.display import shown_progress
+from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled
-from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, staged, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Inputs, Plan, outcome_of
+from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.progress import Progress
 from toolaxis.strategies.inputs import check_strategy
@@ -39,10 +39,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     tool = spec.resolved_tool()
     check_strategy(given.strategy, Asked(tool, load_machine(spec.machine) if spec.machine else None, given.method,
                                          given.objective, _roughness(given), given.orientations))
-    with staged(Path(given.out)) as stage:
+    with stage_folder(Path(given.out)) as stage:
         from toolaxis.job.planning.pipeline import plan
 
-        with shown_progress(asked) as progress:
+        with show_progress(asked) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
@@ -62,14 +62,14 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                 _draw(made, stage.folder, progress)
         with writing():
             stage.publish(OF_PLAN)
-    return _told(made, given)
+    return _print_plan(made, given)
 
 
 def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
-    inputs = Inputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                    given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit)
+    inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
+                        given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
@@ -93,7 +93,7 @@ def _draw(made: Plan, folder: Path, progress: Progress) -> None:
         say(f"toolaxis: warning: pictures are missing ({type(reason).__name__}: {reason}); the plan is whole")
 
 
-def _told(made: Plan, given: Namespace) -> int:
+def _print_plan(made: Plan, given: Namespace) -> int:
     """Print what was made and turn its outcome into the exit code."""
     for warning in made.part.warnings:
         say(f"toolaxis: warning: {warning}")

@@ -7,11 +7,11 @@ from pathlib import Path
 from toolaxis.cad.machines import load_machine
 from toolaxis.cli.output import print_json, say
 from toolaxis.errors import InvalidInput
-from toolaxis.job.files.plan_folder import read_plan, staged
+from toolaxis.job.files.plan_folder import read_plan, stage_folder
 from toolaxis.job.files.read_cl import read_cl
 from toolaxis.job.inputs.spec import offset_from
-from toolaxis.job.output.post import posted, verdict_of
-from toolaxis.job.output.repost import reposted
+from toolaxis.job.output.post import post_plan, verdict_of
+from toolaxis.job.output.repost import repost_locations
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text
@@ -35,13 +35,13 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     """
     folder = Path(given.folder)
     if folder.is_file():
-        return _written_again(given, folder)
+        return _repost_file(given, folder)
     options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
     plan = read_plan(folder)
     verdict = verdict_of(folder)
-    files = posted(plan, given.dialect, _mounting(given, plan), options, name=folder.resolve().name,
-                   verdict=verdict)
-    with staged(folder) as stage:
+    files = post_plan(plan, given.dialect, _mounting(given, plan), options, name=folder.resolve().name,
+                      verdict=verdict)
+    with stage_folder(folder) as stage:
         for name, text in files.items():
             (stage.folder / name).write_text(text, encoding="utf-8")
         stage.publish()
@@ -58,7 +58,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     return 1 if missing else 0
 
 
-def _written_again(given: Namespace, file: Path) -> int:
+def _repost_file(given: Namespace, file: Path) -> int:
     """Write CL data that were made elsewhere, an APT file or a program, beside them: as APT, or as a program."""
     offset = offset_from(given.offset) if given.offset else None
     source = given.source or given.machine
@@ -70,8 +70,9 @@ def _written_again(given: Namespace, file: Path) -> int:
                            "for")
     else:
         options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
-        files = reposted(found, given.dialect, Mounting(load_machine(given.machine), offset), options, name=file.stem,
-                         feedrate=given.feedrate, spindle=given.spindle)
+        files = repost_locations(found, given.dialect, Mounting(load_machine(given.machine), offset), options,
+                                 name=file.stem,
+                                 feedrate=given.feedrate, spindle=given.spindle)
     targets = []
     for name, text in files.items():
         target = file.with_name(name)

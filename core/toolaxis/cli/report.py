@@ -4,7 +4,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-from toolaxis.cli.display import shown_progress
+from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, say
 from toolaxis.job.output.report import report
 
@@ -27,7 +27,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
     folder = Path(given.folder)
     write = report_batch if is_batch(folder) else report
-    with shown_progress(asked) as progress:
+    with show_progress(asked) as progress:
         made = write(folder, Path(given.out) if given.out else None, progress)
     if given.json:
         print_json({"page": str(made), "bytes": made.stat().st_size})

@@ -9,7 +9,7 @@ import numpy as np
 
 from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine
-from toolaxis.cli.display import shown_progress
+from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.read_cl import read_cl
@@ -45,14 +45,14 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     found = read_cl(file, given.machine or None, offset=offset)
     tool, faces = _tool(given), load(given.part).faces if given.part else ()
     about = None if given.about is None else _direction(given.about)
-    with shown_progress(asked) as progress:
+    with show_progress(asked) as progress:
         made = reschedule(found, tool, curve=given.curve, direction=about, faces=tuple(faces), depth=given.depth,
                           mounting=mounting, progress=progress)
     target.write_text(locations_text(made.locations, file.stem, tool), encoding="utf-8")
-    return _told(given, made, target)
+    return _print_rescheduled(given, made, target)
 
 
-def _told(given: Namespace, made: NewAngles, target: Path) -> int:
+def _print_rescheduled(given: Namespace, made: NewAngles, target: Path) -> int:
     rows = [(name, turning.backwards, degrees(turning.steepest), degrees(turning.total)) for name, turning in
             (("as read", made.before), ("re-scheduled", made.after))]
     if given.json:

@@ -24,7 +24,7 @@ class Ended(KeyboardInterrupt):
     """
 
 
-class Stopping:
+class SignalHearing:
     """Hears the signals while it is entered."""
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class Stopping:
             self._ended = True  # one more would only disturb the clearing up
             raise Ended
 
-    def __enter__(self) -> "Stopping":
+    def __enter__(self) -> "SignalHearing":
         global _current
         with suppress(ValueError):  # not the main thread: no signal comes here
             for number in (signal.SIGINT, signal.SIGTERM):
@@ -74,7 +74,7 @@ class Stopping:
 
 
 #: Signals are the process's, and so is who hears them.
-_current: Stopping | None = None
+_current: SignalHearing | None = None
 
 
 @contextmanager

@@ -4,11 +4,11 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-from toolaxis.cli.display import shown_progress
+from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import Cancelled
-from toolaxis.job.files.plan_folder import OF_VERDICT, read_plan, staged, write_json
+from toolaxis.job.files.plan_folder import OF_VERDICT, read_plan, stage_folder, write_json
 from toolaxis.job.files.verdict_maps import write_views
 from toolaxis.job.output.verify import not_judged, passes, verdict_document, verify_plan
 from toolaxis.plan.plan import Plan
@@ -35,9 +35,9 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         0 where everything passed, 1 where not, 130 where the user stopped it.
     """
     folder = Path(given.folder)
-    with shown_progress(asked) as progress:
+    with show_progress(asked) as progress:
         plan = read_plan(folder)
-        with staged(folder) as stage:
+        with stage_folder(folder) as stage:
             verdict = verify_plan(plan, progress=progress)
             document = verdict_document(plan, verdict)
             with writing():

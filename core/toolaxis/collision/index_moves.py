@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from toolaxis.collision.machine_collision import Meeting, Surroundings, meeting_on, words
+from toolaxis.collision.machine_collision import CollisionPoint, MachineSurroundings, meeting_on, words
 from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.bodies import BED
-from toolaxis.machine.body_poses import bed_from_body, beside_part, carried_by
+from toolaxis.machine.body_poses import axes_carrying, bed_from_body, beside_part
 from toolaxis.machine.kinematics import linear_coordinates, placement, tool_axes
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.numeric.support_functions import Convex, hull, segments, separation
+from toolaxis.numeric.support_functions import ConvexBodies, hull, segments, separation
 from toolaxis.numeric.vectors import angle_between, perpendicular
-from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces
 
 Array = NDArray[np.float64]
@@ -51,11 +51,11 @@ class _Solid(NamedTuple):
 
     name: str
     carried: str
-    shape: Convex
+    shape: ConvexBodies
     shift: Array = np.zeros(3)
 
 
-def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surroundings) -> str:
+def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: MachineSurroundings) -> str:
     """What is in the way from the end of one path to the begin of the next, in words; empty where nothing is.
 
     Parameters
@@ -64,7 +64,7 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surro
         One that `judges_index_moves`.
     before, after : Stop
         Angles turn the way their numbers say.
-    around : Surroundings
+    around : MachineSurroundings
 
     Notes
     -----
@@ -75,7 +75,7 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surro
     start, end = _linear(mounting, before), _linear(mounting, after)
     top = float(mounting.machine.linear[2].high)
     up, over = np.append(start[:2], top), np.append(end[:2], top)
-    if _tilted(mounting.machine, after):
+    if _is_tilted(mounting.machine, after):
         ways = segments(np.array([up, end]))
     else:
         ways = segments(np.array([up, over, end]))
@@ -89,7 +89,7 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Surro
     return turning(mounting, up, (before.rotary, after.rotary), around)
 
 
-def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: Surroundings) -> tuple[str, str]:
+def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: MachineSurroundings) -> tuple[str, str]:
     """What is in the way from above down to the begin of the first path, and up from the end of the last one, in words;
     empty where nothing is.
 
@@ -98,7 +98,7 @@ def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: Sur
     mounting : Mounting
         One that `judges_index_moves`.
     first, last : Stop
-    around : Surroundings
+    around : MachineSurroundings
 
     Notes
     -----
@@ -109,7 +109,7 @@ def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: Sur
     for name, stop in (("on the approach", first), (RETRACT, last)):
         at = _linear(mounting, stop)
         found = None
-        if stop is last or not _tilted(mounting.machine, stop):
+        if stop is last or not _is_tilted(mounting.machine, stop):
             above = np.append(at[:2], float(mounting.machine.linear[2].high))
             found = meeting_on(mounting, stop.rotary, segments(np.array([above, at])), around)
         near = found is not None and found.distance < around.required
@@ -123,13 +123,13 @@ def _linear(mounting: Mounting, stop: Stop) -> Array:
                                          mounting.table_from_part)[0])
 
 
-def _tilted(machine: Machine, stop: Stop) -> bool:
+def _is_tilted(machine: Machine, stop: Stop) -> bool:
     """Whether the spindle leans away from Z at a stop."""
     head = np.concatenate([np.zeros(len(machine.table)), stop.rotary[len(machine.table):]])
     return float(angle_between(tool_axes(machine, head)[0], np.array([0.0, 0.0, 1.0]))) > _TILTED
 
 
-def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], around: Surroundings) -> str:
+def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], around: MachineSurroundings) -> str:
     """What comes too near while the rotary axes turn, in words; empty where nothing does.
 
     Parameters
@@ -139,7 +139,7 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
         Linear coordinates, mm.
     ends : two (m,) array_like
         Rotary angles, rad.
-    around : Surroundings
+    around : MachineSurroundings
     """
     one, other = (np.asarray(end, dtype=float) for end in ends)
     low, high = np.minimum(one, other)[None], np.maximum(one, other)[None]
@@ -153,11 +153,11 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
         proven = np.ones(len(low), dtype=bool)
         for mover, still in pairs:
             swing = half @ (_reaches(mounting.machine, mover) + _reaches(mounting.machine, still))
-            gap = separation([_stood(mounting.machine, mover, middle)], [_stood(mounting.machine, still, middle)],
+            gap = separation([_solid_at(mounting.machine, mover, middle)], [_solid_at(mounting.machine, still, middle)],
                              around.required + float(swing.max()))
             row = int(np.argmin(gap))
             if gap[row] < around.required:
-                found = Meeting(mover.name, still.name, float(gap[row]), 0)
+                found = CollisionPoint(mover.name, still.name, float(gap[row]), 0)
                 return f"while the axes turn {words(mounting, middle[row], found, around.required)}"
             if looked > _MOST:
                 return f"while the axes turn the {mover.name} is not proven to keep clear of the {still.name}"
@@ -173,19 +173,19 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
     return ""
 
 
-def arms(mounting: Mounting, around: Surroundings) -> Array:
+def arms(mounting: Mounting, around: MachineSurroundings) -> Array:
     """How far anything reaches at most from each rotary axis that turns it, in any position of the others, (m,) mm.
 
     Parameters
     ----------
     mounting : Mounting
-    around : Surroundings
+    around : MachineSurroundings
     """
     solids = [solid for pair in _pairs(mounting, around, np.zeros(3)) for solid in pair]
     return np.asarray(np.max([_reaches(mounting.machine, solid) for solid in solids], axis=0, initial=0.0))
 
 
-def _pairs(mounting: Mounting, around: Surroundings, at: Array) -> list[tuple[_Solid, _Solid]]:
+def _pairs(mounting: Mounting, around: MachineSurroundings, at: Array) -> list[tuple[_Solid, _Solid]]:
     """What may meet while rotary axes turn."""
     machine = mounting.machine
     carrier = machine.table[0].name if machine.table else BED
@@ -193,7 +193,7 @@ def _pairs(mounting: Mounting, around: Surroundings, at: Array) -> list[tuple[_S
     part = [_Solid("part", carrier, hull_of(cells).moved(place)) for cells in around.faces]
     still = [_Solid(body.name, body.carried, body.convex) for body in machine.bodies if beside_part(machine, body)]
     movers = [*_tool(mounting, around, at),
-              *(_Solid(one.name, one.carried, one.convex, machine.directions @ carried_by(machine, one.carried) @ at)
+              *(_Solid(one.name, one.carried, one.convex, machine.directions @ axes_carrying(machine, one.carried) @ at)
                 for one in machine.bodies if not beside_part(machine, one))]
     first = machine.linear[0].name
     pairs = [(mover, other) for mover in movers for other in (*still, *part)
@@ -201,7 +201,7 @@ def _pairs(mounting: Mounting, around: Surroundings, at: Array) -> list[tuple[_S
     return pairs + [(other, one) for other in still if other.carried != carrier for one in part]
 
 
-def _tool(mounting: Mounting, around: Surroundings, at: Array) -> list[_Solid]:
+def _tool(mounting: Mounting, around: MachineSurroundings, at: Array) -> list[_Solid]:
     """The tool with the linear axes where they are, rotary ones at zero."""
     machine, axis = mounting.machine, np.asarray(mounting.machine.spindle)
     frame = np.eye(4)
@@ -214,7 +214,7 @@ def _tool(mounting: Mounting, around: Surroundings, at: Array) -> list[_Solid]:
             for k, row in enumerate(rows)]
 
 
-def _stood(machine: Machine, solid: _Solid, rotary: Array) -> Convex:
+def _solid_at(machine: Machine, solid: _Solid, rotary: Array) -> ConvexBodies:
     """A solid at rotary angles, one for each row."""
     poses = bed_from_body(machine, solid.carried, rotary)
     poses[:, :3, 3] += solid.shift
@@ -246,12 +246,12 @@ def _reaches(machine: Machine, solid: _Solid) -> Array:
 
 
 @lru_cache(maxsize=8)
-def hull_of(cells: Cells) -> Convex:
+def hull_of(cells: BoundingTree) -> ConvexBodies:
     """A convex body that holds faces, part's frame.
 
     Parameters
     ----------
-    cells : Cells
+    cells : BoundingTree
     """
     shape, link = cells.shape, cells.link
     fine = (link[:, 2] >= 0) & ((shape[:, 9] <= _COARSE) | (link[:, 0] < 0))

@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.machine.bodies import BED
-from toolaxis.machine.body_poses import Standing, beside_part, part_from_bed, standing
+from toolaxis.machine.body_poses import BodyPose, beside_part, part_from_bed, standing
 from toolaxis.machine.kinematics import forward, linear_coordinates
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting, in_tenths
-from toolaxis.numeric.support_functions import Convex, boxes, places, segments, separation
+from toolaxis.numeric.support_functions import ConvexBodies, boxes, places, segments, separation
 from toolaxis.numeric.vectors import as_rows, perpendicular
 from toolaxis.progress import breathe
-from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces
 from toolaxis.tools.tool import Tool
 
@@ -35,15 +35,15 @@ _BATCH, _ROUNDS = 256, 400
 _DEEPER = 6
 
 
-class Tree(NamedTuple):
+class BodyTree(NamedTuple):
     """Convex bodies that enclose each other: nodes, (n, 2) children (-1 for none), (n,) radius, mm."""
 
-    nodes: Convex
+    nodes: ConvexBodies
     children: Indices
     size: Array
 
 
-class Meeting(NamedTuple):
+class CollisionPoint(NamedTuple):
     """Where two things come nearest: their names, a lower bound of their distance, mm (negative where they meet), and
     the number of the motion."""
 
@@ -54,20 +54,20 @@ class Meeting(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class MachineSurroundings:
     """What a machine with its bodies has to keep clear of, and by how much.
 
     Attributes
     ----------
     tool : Tool
-    faces : tuple of Cells
+    faces : tuple of BoundingTree
         Of the part and of what stands on the table beside it, part's frame.
     required : float
         Least distance, mm.
     """
 
     tool: Tool
-    faces: tuple[Cells, ...]
+    faces: tuple[BoundingTree, ...]
     required: float
 
 
@@ -76,12 +76,12 @@ class _Mover(NamedTuple):
 
     name: str
     carried: str
-    shape: Convex
-    trail: Tree
+    shape: ConvexBodies
+    trail: BodyTree
 
 
 def free_solutions(mounting: Mounting, tips: ArrayLike, axis: ArrayLike,
-                   around: Surroundings) -> tuple[Array, str, float]:
+                   around: MachineSurroundings) -> tuple[Array, str, float]:
     """Rotary angles at which a machine can follow a path without meeting itself, part or tool, and why not at others.
 
     Parameters
@@ -90,7 +90,7 @@ def free_solutions(mounting: Mounting, tips: ArrayLike, axis: ArrayLike,
     tips : (n, 3) array_like
         Tool tips in their order, part's frame, mm.
     axis : (3,) array_like
-    around : Surroundings
+    around : MachineSurroundings
 
     Returns
     -------
@@ -112,7 +112,7 @@ def free_solutions(mounting: Mounting, tips: ArrayLike, axis: ArrayLike,
     return rows[free], why, distance
 
 
-def words(mounting: Mounting, rotary: ArrayLike, found: Meeting, required: float) -> str:
+def words(mounting: Mounting, rotary: ArrayLike, found: CollisionPoint, required: float) -> str:
     """What a meeting says.
 
     Parameters
@@ -120,7 +120,7 @@ def words(mounting: Mounting, rotary: ArrayLike, found: Meeting, required: float
     mounting : Mounting
     rotary : (m,) array_like
         rad
-    found : Meeting
+    found : CollisionPoint
     required : float
         mm
     """
@@ -131,8 +131,8 @@ def words(mounting: Mounting, rotary: ArrayLike, found: Meeting, required: float
             f"{required:g} mm,{at}")
 
 
-def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, around: Surroundings,
-                    *, with_tool: bool = False, most: float | None = None) -> Meeting | None:
+def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, around: MachineSurroundings,
+                    *, with_tool: bool = False, most: float | None = None) -> CollisionPoint | None:
     """Where anything on the spindle's side comes nearest to anything on the table's, or the part to what turns it.
 
     Parameters
@@ -143,7 +143,7 @@ def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, arou
         Where the rotary axes stand still, rad.
     tips : (n, 3) array_like
         Tool tips in their order, part's frame, mm.
-    around : Surroundings
+    around : MachineSurroundings
     with_tool : bool
         Whether the tool is held against the part too; passes have been already.
     most : float, optional
@@ -151,7 +151,7 @@ def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, arou
 
     Returns
     -------
-    Meeting or None
+    CollisionPoint or None
         None where nothing comes nearer than `most`.
     """
     at = linear_coordinates(mounting.machine, as_rows(tips, 3, "tool tips"), rotary, float(mounting.tool_length or 0.0),
@@ -159,15 +159,16 @@ def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, arou
     return meeting_on(mounting, rotary, segments(at), around, with_tool=with_tool, most=most)
 
 
-def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surroundings, *, with_tool: bool = True,
-               most: float | None = None, over_table: bool = True) -> Meeting | None:
+def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: ConvexBodies, around: MachineSurroundings, *,
+               with_tool: bool = True,
+               most: float | None = None, over_table: bool = True) -> CollisionPoint | None:
     """The same where linear axes move inside some bodies, such as the rectangle that two of them may take any way in.
 
     Parameters
     ----------
     mounting, rotary, around, with_tool, most
         As for `nearest_meeting`.
-    ways : Convex
+    ways : ConvexBodies
         In linear coordinates, one after the other, mm.
     over_table : bool
         Whether the tool is held against bodies that go along with the part too.
@@ -176,7 +177,7 @@ def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surr
     stand = standing(machine, rotary, mounting.table_from_part)
     still = [(one.body.name, one.body.carried, single(one.shape)) for one in stand if beside_part(machine, one.body)]
     faces = [tree_of(cells) for cells in around.faces]
-    best: Meeting | None = None
+    best: CollisionPoint | None = None
     besides = "" if over_table else carrier_of(machine)
     movers = list(_movers(mounting, rotary, ways, stand, around.tool))
     pairs = [*_between(machine, movers, still, faces, with_tool, besides),
@@ -186,12 +187,12 @@ def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: Convex, around: Surr
         distance, motion, node = approach(mover.shape, mover.trail, tree, least)
         if distance < least:
             label = name or f"face {_label(around.faces, faces, tree, node)}"
-            best = Meeting(mover.name, label, distance, motion)
+            best = CollisionPoint(mover.name, label, distance, motion)
         if best is not None and best.distance < 0 and most is None:
             return best
     if best is not None and best.distance < enough:
         return best
-    return _swallowed(machine, stand, around, ways.centre[0, 0])
+    return _body_inside_part(machine, stand, around, ways.centre[0, 0])
 
 
 def carrier_of(machine: Machine) -> str:
@@ -204,10 +205,11 @@ def carrier_of(machine: Machine) -> str:
     return machine.table[0].name if machine.table else BED
 
 
-_PairRow = tuple[_Mover, str, Tree]
+_PairRow = tuple[_Mover, str, BodyTree]
 
 
-def _movers(mounting: Mounting, rotary: ArrayLike, ways: Convex, stand: list[Standing], tool: Tool) -> Iterator[_Mover]:
+def _movers(mounting: Mounting, rotary: ArrayLike, ways: ConvexBodies, stand: list[BodyPose],
+            tool: Tool) -> Iterator[_Mover]:
     """The tool's pieces and the bodies on the spindle's side with their ways."""
     frame, machine = np.eye(4), mounting.machine
     axis = mounting.axis_at(rotary)
@@ -218,23 +220,23 @@ def _movers(mounting: Mounting, rotary: ArrayLike, ways: Convex, stand: list[Sta
     rows = solid_pieces(tool.profile, tool.outlines)
     pieces = convex_pieces(rows).moved(frame)
     carrier = part_from_bed(machine, rotary, mounting.table_from_part)[:3, :3] @ machine.directions
-    trails = {carrier.tobytes(): tree_over(_carried(ways, carrier))}
+    trails = {carrier.tobytes(): tree_over(_motions_in_part(ways, carrier))}
     for k, row in enumerate(rows):
         yield _Mover(COMPONENTS[int(row[7])], "", pieces.rows(np.array([k])), trails[carrier.tobytes()])
     for one in stand:
         if not beside_part(machine, one.body):
             key = one.carrier.tobytes()
             if key not in trails:
-                trails[key] = tree_over(_carried(ways, one.carrier))
+                trails[key] = tree_over(_motions_in_part(ways, one.carrier))
             yield _Mover(one.body.name, one.body.carried, one.shape, trails[key])
 
 
-def _carried(ways: Convex, carrier: Array) -> Convex:
+def _motions_in_part(ways: ConvexBodies, carrier: Array) -> ConvexBodies:
     """Ways in linear coordinates as motions in the part's frame."""
     return ways._replace(centre=ways.centre @ carrier.T, spread=ways.spread @ carrier.T)
 
 
-def _between(machine: Machine, movers: list[_Mover], still: list[tuple[str, str, Tree]], faces: list[Tree],
+def _between(machine: Machine, movers: list[_Mover], still: list[tuple[str, str, BodyTree]], faces: list[BodyTree],
              with_tool: bool, besides: str) -> Iterator[_PairRow]:
     """The spindle's side against the table's; what the first linear axis carries slides on the bed.  The tool is not
     held against what an axis carries that is named."""
@@ -248,7 +250,7 @@ def _between(machine: Machine, movers: list[_Mover], still: list[tuple[str, str,
                 yield mover, "", tree
 
 
-def _with_part(machine: Machine, stand: list[Standing], faces: list[Tree]) -> Iterator[_PairRow]:
+def _with_part(machine: Machine, stand: list[BodyPose], faces: list[BodyTree]) -> Iterator[_PairRow]:
     """Bodies on the table's side that the part turns against."""
     carrier = carrier_of(machine)
     for one in stand:
@@ -257,13 +259,14 @@ def _with_part(machine: Machine, stand: list[Standing], faces: list[Tree]) -> It
                 yield _Mover(one.body.name, one.body.carried, one.shape, tree_over(places(np.zeros((1, 3))))), "", tree
 
 
-def _label(cells: Sequence[Cells], trees: list[Tree], tree: Tree, node: int) -> str:
+def _label(cells: Sequence[BoundingTree], trees: list[BodyTree], tree: BodyTree, node: int) -> str:
     some = next(one for one, other in zip(cells, trees, strict=True) if other is tree)
     number = int(some.link[node, 2])
     return some.faces[max(number, 0)].label
 
 
-def _swallowed(machine: Machine, stand: list[Standing], around: Surroundings, at: Array) -> Meeting | None:
+def _body_inside_part(machine: Machine, stand: list[BodyPose], around: MachineSurroundings,
+                      at: Array) -> CollisionPoint | None:
     """A body that lies wholly inside the box around the part, where the distance from its faces would not tell."""
     carrier = carrier_of(machine)
     for cells in around.faces:
@@ -275,26 +278,26 @@ def _swallowed(machine: Machine, stand: list[Standing], around: Surroundings, at
             ways = np.concatenate([np.eye(3), -np.eye(3)])
             far = np.einsum("nc,nc->n", one.shape.support(ways), ways) + ways @ one.carrier @ at
             if (far[:3] <= high).all() and (far[3:] <= -low).all():
-                return Meeting(one.body.name, "part", -float(far.sum()) / 6, 0)
+                return CollisionPoint(one.body.name, "part", -float(far.sum()) / 6, 0)
     return None
 
 
-def single(shape: Convex) -> Tree:
+def single(shape: ConvexBodies) -> BodyTree:
     """One body as a tree.
 
     Parameters
     ----------
-    shape : Convex
+    shape : ConvexBodies
     """
-    return Tree(shape, np.full((1, 2), -1), np.zeros(1))
+    return BodyTree(shape, np.full((1, 2), -1), np.zeros(1))
 
 
-def tree_over(nodes: Convex) -> Tree:
+def tree_over(nodes: ConvexBodies) -> BodyTree:
     """Motions as a tree: two by two in boxes, the root last.
 
     Parameters
     ----------
-    nodes : Convex
+    nodes : ConvexBodies
     """
     count = len(nodes.centre)
     ends = np.abs(nodes.spread).sum(axis=1)
@@ -311,28 +314,29 @@ def tree_over(nodes: Convex) -> Tree:
         children.append(np.where(pair >= 0, pair + start, -1))
         start += size
     above = boxes(np.concatenate([np.empty((0, 3)), *low[1:]]), np.concatenate([np.empty((0, 3)), *high[1:]]))
-    whole = Convex(*(np.concatenate(both) for both in zip(nodes, above, strict=True)))
-    return Tree(whole, np.concatenate(children), np.linalg.norm(whole.spread, axis=(1, 2)))
+    whole = ConvexBodies(*(np.concatenate(both) for both in zip(nodes, above, strict=True)))
+    return BodyTree(whole, np.concatenate(children), np.linalg.norm(whole.spread, axis=(1, 2)))
 
 
 @lru_cache(maxsize=8)
-def tree_of(cells: Cells) -> Tree:
+def tree_of(cells: BoundingTree) -> BodyTree:
     """The cells of faces as convex bodies that hold them, the faces' own tolerance included.
 
     Parameters
     ----------
-    cells : Cells
+    cells : BoundingTree
     """
     shape, count = cells.shape, len(cells.shape)
     spread = np.zeros((count, 3, 3))
     spread[:, 0], spread[:, 1] = shape[:, 3:6], shape[:, 6:9]
     ball = shape[:, 9:10] + max(face.tolerance for face in cells.faces)
-    nodes = Convex(shape[:, None, :3], np.tile([0.0, 0.0, 1.0], (count, 1, 1)), np.zeros((count, 1)), ball, spread)
+    nodes = ConvexBodies(shape[:, None, :3], np.tile([0.0, 0.0, 1.0], (count, 1, 1)), np.zeros((count, 1)), ball,
+                         spread)
     fine = (shape[:, 9] <= FLAT) & (cells.link[:, 2] >= 0)
-    return Tree(nodes, np.where(fine[:, None], -1, cells.link[:, :2]), shape[:, 10])
+    return BodyTree(nodes, np.where(fine[:, None], -1, cells.link[:, :2]), shape[:, 10])
 
 
-def approach(moving: Convex, trail: Tree, fixed: Tree, enough: float) -> tuple[float, int, int]:
+def approach(moving: ConvexBodies, trail: BodyTree, fixed: BodyTree, enough: float) -> tuple[float, int, int]:
     """A lower bound of the least distance of a body that is carried along a path, mm, at most `enough`; the motion and
     the node of the other body where that is.
 
@@ -340,9 +344,9 @@ def approach(moving: Convex, trail: Tree, fixed: Tree, enough: float) -> tuple[f
 
     Parameters
     ----------
-    moving : Convex
+    moving : ConvexBodies
         One body.
-    trail, fixed : Tree
+    trail, fixed : BodyTree
         Where it goes, and what it comes near.
     enough : float
         mm
@@ -376,7 +380,7 @@ def approach(moving: Convex, trail: Tree, fixed: Tree, enough: float) -> tuple[f
     return min(float(gaps[first]), enough), _first_leaf(trail, int(pairs[first, 0])), int(pairs[first, 1])
 
 
-def _split(trail: Tree, fixed: Tree, pairs: Indices) -> Indices:
+def _split(trail: BodyTree, fixed: BodyTree, pairs: Indices) -> Indices:
     """Pairs with the larger one of the two that can be split replaced by its children."""
     t, f = pairs.T
     can_t, can_f = trail.children[t, 0] >= 0, fixed.children[f, 0] >= 0
@@ -389,7 +393,7 @@ def _split(trail: Tree, fixed: Tree, pairs: Indices) -> Indices:
     return np.asarray(whole[(whole >= 0).all(axis=1)])
 
 
-def _first_leaf(trail: Tree, node: int) -> int:
+def _first_leaf(trail: BodyTree, node: int) -> int:
     while trail.children[node, 0] >= 0:
         node = int(trail.children[node, 0])
     return node

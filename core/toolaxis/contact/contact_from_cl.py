@@ -18,7 +18,7 @@ _SAMPLES, _STARTS = 40, 3
 _ROUNDS, _STEP = 40, 1e-6
 
 
-class Contacts(NamedTuple):
+class FoundContacts(NamedTuple):
     """Contacts of n tool tips: parameters (n, 2), which may lie beyond the face, and how far off, mm, the tips are that
     follow from them (n,)."""
 
@@ -26,7 +26,7 @@ class Contacts(NamedTuple):
     off: Array
 
 
-def contacts_of(face: Face, tool: Tool, tip: ArrayLike, axis: ArrayLike, allowance: float = 0.0) -> Contacts:
+def contacts_of(face: Face, tool: Tool, tip: ArrayLike, axis: ArrayLike, allowance: float = 0.0) -> FoundContacts:
     """Parameters of the contacts for which tool tips were placed: the inverse of `toolaxis.contact.placement.place`.
 
     Parameters
@@ -43,7 +43,7 @@ def contacts_of(face: Face, tool: Tool, tip: ArrayLike, axis: ArrayLike, allowan
 
     Returns
     -------
-    Contacts
+    FoundContacts
 
     Raises
     ------
@@ -62,22 +62,22 @@ def contacts_of(face: Face, tool: Tool, tip: ArrayLike, axis: ArrayLike, allowan
     grid = face.grid(_SAMPLES, _SAMPLES)
     grid = np.concatenate([grid, *face.outline])
     if not len(tips):
-        return Contacts(np.zeros((0, 2)), np.zeros(0))
+        return FoundContacts(np.zeros((0, 2)), np.zeros(0))
     mean = axes.mean(axis=0)
     tree = cKDTree(place(face, tool, grid, mean if np.linalg.norm(mean) > 1e-6 else axes[0], allowance))
     starts = tree.query(tips, k=min(_STARTS, len(grid)))[1].reshape(len(tips), -1)
-    best = _solved((face, tool, allowance), tips, axes, grid[starts[:, 0]])
+    best = _solve_contacts((face, tool, allowance), tips, axes, grid[starts[:, 0]])
     for column in starts.T[1:]:
         poor = np.flatnonzero(best.off > 1e-6)
         if not poor.size:
             break
-        again = _solved((face, tool, allowance), tips[poor], axes[poor], grid[column[poor]])
+        again = _solve_contacts((face, tool, allowance), tips[poor], axes[poor], grid[column[poor]])
         better = again.off < best.off[poor]
         best.uv[poor[better]], best.off[poor[better]] = again.uv[better], again.off[better]
     return best
 
 
-def _solved(placed: tuple[Face, Tool, float], tips: Array, axes: Array, uv: Array) -> Contacts:
+def _solve_contacts(placed: tuple[Face, Tool, float], tips: Array, axes: Array, uv: Array) -> FoundContacts:
     """Damped Gauss-Newton steps, each taken where it brings the tip nearer."""
     face, tool, allowance = placed
     u0, u1, v0, v1 = face.bounds
@@ -100,7 +100,7 @@ def _solved(placed: tuple[Face, Tool, float], tips: Array, axes: Array, uv: Arra
         taken = at_work[better]
         uv[taken], gap[taken], off[taken] = trial[better], found[better], size[better]
         damping[at_work] = np.where(better, 0.1 * damping[at_work], np.maximum(10 * damping[at_work], 1e-6))
-    return Contacts(uv, off)
+    return FoundContacts(uv, off)
 
 
 def _step(su: Array, sv: Array, gap: Array, damping: Array) -> Array:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import judged, motions
-from toolaxis.numeric.rounding import settled
+from toolaxis.contact.clearance.queries import keeps_limits, motions
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -16,7 +16,7 @@ Bools = NDArray[np.bool_]
 
 
 
-class Contacts(NamedTuple):
+class CheckPoints(NamedTuple):
     """Places on a face.
 
     uv : (n, 2);  point, normal : (n, 3);  share : (n,) of the area that each stands for;  near : (n, k) bool, whether
@@ -30,7 +30,7 @@ class Contacts(NamedTuple):
     near: Bools
 
 
-def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], reach: float) -> Contacts:
+def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], reach: float) -> CheckPoints:
     """Contacts at parameters; degenerate places are left out.
 
     Parameters
@@ -48,8 +48,8 @@ def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], re
     share[weighed:] = 0.0
     good = np.linalg.norm(normal, axis=1) > 0.5
     total = float(share[good].sum())
-    return Contacts(uv[good], d.point[good], normal[good], share[good] / (total if total > 0 else 1.0),
-                    _near(d.point[good], walls, reach))
+    return CheckPoints(uv[good], d.point[good], normal[good], share[good] / (total if total > 0 else 1.0),
+                       _near(d.point[good], walls, reach))
 
 
 def _near(points: Array, walls: tuple[Face, ...], reach: float) -> Bools:
@@ -63,7 +63,7 @@ def _near(points: Array, walls: tuple[Face, ...], reach: float) -> Bools:
             rest = close[~found[close, k]]
             if len(rest):
                 moves = motions(points[rest] - reach * axis, axis)
-                found[rest, k] = judged(cells(wall), half, moves, np.zeros((1, 3))).blocked >= 0
+                found[rest, k] = keeps_limits(cells(wall), half, moves, np.zeros((1, 3))).blocked >= 0
     return found
 
 
@@ -86,6 +86,7 @@ def around(face: Face, count: int) -> Array:
         fine = np.vstack([fine, closed[-1:]])
         length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(fine).point, axis=0), axis=1))])
         wanted = max(8, round(count * length[-1] / total)) if total > 0 else 8
-        at = np.searchsorted(settled(length), settled(np.linspace(0, length[-1], wanted, endpoint=False)))
+        at = np.searchsorted(round_significant(length), round_significant(np.linspace(0, length[-1], wanted,
+                                                                                      endpoint=False)))
         rows += [fine[at], loop] if len(loop) <= wanted // 2 else [fine[at]]
     return np.concatenate(rows)

@@ -14,13 +14,13 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.clearance.queries import bounded, motions
+from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.contact.placement import tips
-from toolaxis.feasibility.check_points import Contacts, around, contacts_at
-from toolaxis.feasibility.interference import COARSE, Scene, stands_free, trouble_at
+from toolaxis.feasibility.check_points import CheckPoints, around, contacts_at
+from toolaxis.feasibility.interference import COARSE, InterferenceScene, stands_free, trouble_at
 from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.feasibility.point_check import deepest
-from toolaxis.feasibility.surroundings import OTHER, ROLES, SKIN, Group
+from toolaxis.feasibility.surroundings import OTHER, ROLES, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import (
     BACK,
     CUTTER,
@@ -28,12 +28,12 @@ from toolaxis.feasibility.violations import (
     GOUGE,
     LIMITS,
     WANDERS,
-    Trouble,
-    Verdicts,
-    Witness,
+    ScreeningResult,
+    Violation,
+    Violations,
 )
 from toolaxis.machine.limits import AxisLimits, refusal
-from toolaxis.numeric.rounding import settled
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
@@ -55,8 +55,8 @@ class Feasibility:
     ----------
     face : Face
     tool : Tool
-    groups : tuple of Group
-        From `toolaxis.feasibility.surroundings.grouped`.
+    groups : tuple of CheckSurfaces
+        From `toolaxis.feasibility.surroundings.group_surroundings`.
     tolerance : Tolerance
     limits : AxisLimits or None
     allowance : float
@@ -69,7 +69,7 @@ class Feasibility:
 
     face: Face
     tool: Tool
-    groups: tuple[Group, ...]
+    groups: tuple[CheckSurfaces, ...]
     tolerance: Tolerance
     limits: AxisLimits | None = None
     allowance: float = 0.0
@@ -103,7 +103,7 @@ class Feasibility:
                          watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
         if "sparse" in self.__dict__:
             more = zip(self.sparse, self._contacts(rows, 0), strict=True)
-            new.__dict__["sparse"] = Contacts(*(np.concatenate(both) for both in more))
+            new.__dict__["sparse"] = CheckPoints(*(np.concatenate(both) for both in more))
         return new
 
     def learning(self, points: Array) -> "Feasibility":
@@ -122,21 +122,21 @@ class Feasibility:
         return new
 
     @cached_property
-    def sparse(self) -> Contacts:
+    def sparse(self) -> CheckPoints:
         """Contacts for screening: a coarse grid, points along the border, and the most concave places."""
         grid = self.face.grid(5, 5)
         fine = self.face.grid(24, 24)
-        bent = fine[np.argsort(-settled(self.face.curvature(fine).k1), kind="stable")[:6]]
+        bent = fine[np.argsort(-round_significant(self.face.curvature(fine).k1), kind="stable")[:6]]
         rows = [grid, bent, around(self.face, 24)]
         return self._contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
 
     @cached_property
-    def dense(self) -> Contacts:
+    def dense(self) -> CheckPoints:
         """Contacts for proving: a fine grid, and points along the border."""
         grid = self.face.grid(_DENSE, _DENSE)
         return self._contacts(np.concatenate([grid, around(self.face, 6 * _DENSE)]), len(grid))
 
-    def _contacts(self, uv: Array, weighed: int) -> Contacts:
+    def _contacts(self, uv: Array, weighed: int) -> CheckPoints:
         return contacts_at(self.face, uv, weighed, self.walls, 2 * self.tool.radius + self.tolerance.cutter_clearance)
 
     @cached_property
@@ -146,8 +146,8 @@ class Feasibility:
                      if self.groups[0].role == SKIN and face.number != self.face.number)
 
     @cached_property
-    def _scene(self) -> Scene:
-        return Scene(self.face.number, self.tool, self.groups, self.neighbours)
+    def _scene(self) -> InterferenceScene:
+        return InterferenceScene(self.face.number, self.tool, self.groups, self.neighbours)
 
     @property
     def walls(self) -> tuple[Face, ...]:
@@ -155,7 +155,7 @@ class Feasibility:
         others = tuple(face for group in self.groups if group.role == OTHER for face in group.faces)
         return others + self.neighbours
 
-    def screen(self, axes: ArrayLike) -> Verdicts:
+    def screen(self, axes: ArrayLike) -> ScreeningResult:
         """Verdicts on axes from a few contacts: cheap, and wrong only towards "free".
 
         Parameters
@@ -172,7 +172,7 @@ class Feasibility:
                 reason[i], amount[i] = GOUGE, depth
             else:
                 reason[i], amount[i], unreached[i] = self.stand(rows[i], some, thorough=False)
-        return Verdicts(reason, amount, unreached)
+        return ScreeningResult(reason, amount, unreached)
 
     def depth(self, axis: Array, points: Array) -> float:
         """How deep the cutter reaches below points of the skin at the screening contacts, mm.
@@ -213,44 +213,44 @@ class Feasibility:
         reason = np.select([outside, back > 0, wanders > 0], [LIMITS, BACK, WANDERS], FREE).astype(np.int8)
         return reason, np.choose(reason, [np.zeros(len(rows)), excess, back, wanders])
 
-    def stand(self, axis: Array, contacts: Contacts, thorough: bool = True) -> tuple[int, float, float]:
+    def stand(self, axis: Array, contacts: CheckPoints, thorough: bool = True) -> tuple[int, float, float]:
         """Reason, amount (mm) and unreached share of one axis at contacts.
 
         Parameters
         ----------
         axis : (3,) array
-        contacts : Contacts
+        contacts : CheckPoints
         thorough : bool
             Whether gouges of the skin are looked for too.
         """
         return self.verdict(self.trouble(axis, contacts, thorough), contacts)
 
-    def verdict(self, trouble: Trouble, contacts: Contacts) -> tuple[int, float, float]:
+    def verdict(self, trouble: Violations, contacts: CheckPoints) -> tuple[int, float, float]:
         """Reason, amount and unreached share that follow from what is worst at each contact.
 
         Parameters
         ----------
-        trouble : Trouble
-        contacts : Contacts
+        trouble : Violations
+        contacts : CheckPoints
         """
         left = trouble.wall & (trouble.reason != FREE)
         bad = (trouble.reason != FREE) & ~left
-        unreached = float(settled(contacts.share[left].sum()))
+        unreached = float(round_significant(contacts.share[left].sum()))
         if not bad.any() and ((left | (contacts.share == 0)).all() or unreached > MOST_LEFT):
             bad = left
         if not bad.any():
             return FREE, 0.0, unreached
-        i = int(np.argmax(np.where(bad, settled(trouble.amount), -np.inf)))
+        i = int(np.argmax(np.where(bad, round_significant(trouble.amount), -np.inf)))
         return int(trouble.reason[i]), float(trouble.amount[i]), unreached
 
-    def trouble(self, axis: Array, contacts: Contacts, thorough: bool = True,
-                roles: tuple[str, ...] = ROLES) -> Trouble:
+    def trouble(self, axis: Array, contacts: CheckPoints, thorough: bool = True,
+                roles: tuple[str, ...] = ROLES) -> Violations:
         """What is worst at each contact.
 
         Parameters
         ----------
         axis : (3,) array
-        contacts : Contacts
+        contacts : CheckPoints
         thorough : bool
             Whether gouges of the skin are looked for too.
         roles : tuple of str
@@ -259,7 +259,7 @@ class Feasibility:
         places = tips(contacts.point, contacts.normal, axis, self.tool, self.allowance)
         return trouble_at(self._scene, places, axis, contacts.near, (thorough, roles))
 
-    def witness(self, axis: ArrayLike) -> Witness | None:
+    def witness(self, axis: ArrayLike) -> Violation | None:
         """The proof form: what forbids an axis, at dense contacts and with bounds of the normals between them.
 
         Parameters
@@ -272,10 +272,10 @@ class Feasibility:
         """
         t = unit(as_rows(axis, 3, "axis")[0])
         if self.limits is not None and not self.limits.allowed(t)[0]:
-            return Witness(LIMITS, float(self.limits.excess(t)[0]), words=refusal(self.limits, t))
+            return Violation(LIMITS, float(self.limits.excess(t)[0]), words=refusal(self.limits, t))
         return self.turned_away(t) or self.worst(t, self.dense)
 
-    def screened(self, axis: Array) -> Witness | None:
+    def screened(self, axis: Array) -> Violation | None:
         """What screening has against an axis, at its own contacts; None where it has nothing, or knows no place.
 
         Parameters
@@ -288,7 +288,7 @@ class Feasibility:
         bad = hit & ~trouble.wall
         return self.witness_of(trouble, bad if bad.any() else hit, some.uv)
 
-    def turned_away(self, axis: Array) -> Witness | None:
+    def turned_away(self, axis: Array) -> Violation | None:
         """What the angles between an axis and all normals forbid, proven between samples too, or None.
 
         Parameters
@@ -299,16 +299,16 @@ class Feasibility:
         for code, amount, uv in ((BACK, spread.high - self.greatest_angle, spread.greatest),
                                  (WANDERS, self.least_angle - spread.low, spread.least)):
             if amount > 1e-9:
-                return Witness(code, float(amount), "", self.face.evaluate(uv[None]).point[0], uv)
+                return Violation(code, float(amount), "", self.face.evaluate(uv[None]).point[0], uv)
         return None
 
-    def worst(self, axis: Array, contacts: Contacts) -> Witness | None:
+    def worst(self, axis: Array, contacts: CheckPoints) -> Violation | None:
         """The worst contact of those that forbid an axis, or None.
 
         Parameters
         ----------
         axis : (3,) array
-        contacts : Contacts
+        contacts : CheckPoints
         """
         trouble = self.trouble(axis, contacts)
         bad = (trouble.reason != FREE) & ~trouble.wall
@@ -316,22 +316,22 @@ class Feasibility:
             bad = trouble.reason != FREE
         return self.witness_of(trouble, bad, contacts.uv)
 
-    def witness_of(self, trouble: Trouble, bad: Bools, uv: Array) -> Witness | None:
+    def witness_of(self, trouble: Violations, bad: Bools, uv: Array) -> Violation | None:
         """The worst of the rows marked bad, or None.
 
         Parameters
         ----------
-        trouble : Trouble
+        trouble : Violations
         bad : (n,) array of bool
         uv : (n, 2) array
         """
         if not bad.any():
             return None
-        i = int(np.argmax(np.where(bad, settled(trouble.amount), -np.inf)))
+        i = int(np.argmax(np.where(bad, round_significant(trouble.amount), -np.inf)))
         group, amount = self.groups[int(trouble.group[i])], float(trouble.amount[i])
         label = group.faces[int(trouble.face[i])].label if trouble.face[i] >= 0 else ""
         distance = float(group.required[max(int(trouble.reason[i]) - CUTTER, 0)]) - amount
-        return Witness(int(trouble.reason[i]), amount, label, trouble.point[i], uv[i], distance)
+        return Violation(int(trouble.reason[i]), amount, label, trouble.point[i], uv[i], distance)
 
     def unreached(self, axis: ArrayLike) -> float:
         """Share of the area that is left to a clean-up tool, from the dense contacts.
@@ -388,6 +388,6 @@ class Feasibility:
             if group.role != OTHER and not self.tool.outlines:
                 continue
             left_out = None if group.role == OTHER else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
-            found = bounded(group.cells, self.tool, moves, group.required + most, 10 * COARSE, left_out)
+            found = lower_bounds(group.cells, self.tool, moves, group.required + most, 10 * COARSE, left_out)
             least = min(least, float((found.lower - group.required).min()))
         return least

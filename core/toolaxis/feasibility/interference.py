@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import Found, bounded, judged, motions
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.feasibility.violations import CUTTER, FREE, GOUGE, Trouble
+from toolaxis.contact.clearance.queries import NearestFound, keeps_limits, lower_bounds, motions
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
+from toolaxis.feasibility.violations import CUTTER, FREE, GOUGE, Violations
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -20,44 +20,46 @@ FINE, COARSE = 0.0003, 0.002
 #: Edges of the cubes in which positions are first decided together, in radii of the tool; how many positions a cube
 #: must hold on average for that.
 _BLOCKS, _WORTH = (0.8, 0.2, 0.05), 4
-#: Depths are bounded to this share of themselves, see `toolaxis.contact.clearance.queries.bounded`, and a little more.
+#: Depths are bounded to this share of themselves and a little more, see
+#: `toolaxis.contact.clearance.queries.lower_bounds`.
 _DEPTH_SHARE = 0.06
 
 
-class Scene(NamedTuple):
+class InterferenceScene(NamedTuple):
     """A tool at a face: the face's number, the tool, the groups around, and the faces that continue the face."""
 
     number: int
     tool: Tool
-    groups: tuple[Group, ...]
+    groups: tuple[CheckSurfaces, ...]
     neighbours: tuple[Face, ...]
 
 
-def trouble_at(scene: Scene, places: Array, axis: Array, near: Bools, asked: tuple[bool, tuple[str, ...]]) -> Trouble:
+def trouble_at(scene: InterferenceScene, places: Array, axis: Array, near: Bools,
+               asked: tuple[bool, tuple[str, ...]]) -> Violations:
     """What is worst at each position.
 
     Parameters
     ----------
-    scene : Scene
+    scene : InterferenceScene
     places : (n, 3) array
         Tool tips, mm.
     axis : (3,) array
     near : (n, k) bool
-        Which walls are near, as in `toolaxis.feasibility.check_points.Contacts`.
+        Which walls are near, as in `toolaxis.feasibility.check_points.CheckPoints`.
     asked : bool, tuple of str
         Whether gouges of the skin are looked for too; the groups that are looked at.
     """
     thorough, roles = asked
     moves, n = motions(places, axis), len(places)
-    worst = Trouble(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
-                    np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
+    worst = Violations(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
+                       np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
     for number, group in enumerate(scene.groups):
         if group.role not in roles:
             continue
         fine = FINE if group.role != OTHER else COARSE
         left_out = None if thorough or group.role != SKIN else np.tile([-np.inf, 0.0, 0.0], (len(group.faces), 1))
-        tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
-        found = bounded(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
+        tool = _extend_tool(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
+        found = lower_bounds(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
         beside = np.zeros(n, dtype=bool)
         if group.role == OTHER and len(near):
             beside = _beside(tool, group, moves, (found, near[:, :len(group.faces)]))
@@ -69,12 +71,12 @@ def trouble_at(scene: Scene, places: Array, axis: Array, near: Bools, asked: tup
     return worst
 
 
-def stands_free(scene: Scene, places: Array, axis: Array, asked: tuple[bool, tuple[str, ...]]) -> Bools:
+def stands_free(scene: InterferenceScene, places: Array, axis: Array, asked: tuple[bool, tuple[str, ...]]) -> Bools:
     """Whether the tool keeps its distances from some groups at positions, (n,).
 
     Parameters
     ----------
-    scene : Scene
+    scene : InterferenceScene
     places : (n, 3) array
         Tool tips, mm.
     axis : (3,) array
@@ -86,15 +88,15 @@ def stands_free(scene: Scene, places: Array, axis: Array, asked: tuple[bool, tup
     for group in scene.groups:
         some = np.flatnonzero(free)
         if group.role in roles and len(some):
-            tool = _carried_on(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
+            tool = _extend_tool(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
             required = np.tile(group.required, (len(group.faces), 1))
             if not itself and group.role == SKIN:  # obstacles have numbers of their own
                 required[[face.number == scene.number for face in group.faces]] = -np.inf
-            free[some] = _kept(group, tool, places[some], axis, required)
+            free[some] = _keeps_distances(group, tool, places[some], axis, required)
     return free
 
 
-def _kept(group: Group, tool: Tool, places: Array, axis: Array, required: Array) -> Bools:
+def _keeps_distances(group: CheckSurfaces, tool: Tool, places: Array, axis: Array, required: Array) -> Bools:
     """Whether the tool keeps its distances at positions, (n,): those close together are decided together if they can.
 
     A distance changes by no more than the tip moves: what the tool keeps at the centre of a ball, and its radius more,
@@ -111,11 +113,11 @@ def _kept(group: Group, tool: Tool, places: Array, axis: Array, required: Array)
         np.minimum.at(low, block, places[rest])
         np.maximum.at(high, block, places[rest])
         radius = float(np.linalg.norm(high - low, axis=1).max()) / 2
-        found = judged(group.cells, tool, motions((low + high) / 2, axis), required + radius)
+        found = keeps_limits(group.cells, tool, motions((low + high) / 2, axis), required + radius)
         done = found.blocked[block] < 0
         kept[rest[done]], rest = True, rest[~done]
     if len(rest):
-        kept[rest] = judged(group.cells, tool, motions(places[rest], axis), required).blocked < 0
+        kept[rest] = keeps_limits(group.cells, tool, motions(places[rest], axis), required).blocked < 0
     return kept
 
 
@@ -127,7 +129,7 @@ def _blocks(places: Array, size: float) -> tuple[NDArray[np.intp], int]:
     return block, len(found)
 
 
-def _carried_on(tool: Tool, places: Array, axis: Array, group: Group) -> Tool:
+def _extend_tool(tool: Tool, places: Array, axis: Array, group: CheckSurfaces) -> Tool:
     """The tool as far up as what stands around: it is drawn back along its axis, and the spindle is above it.
 
     What is above all that stands there changes no distance: a few lengths do for all axes.
@@ -136,27 +138,28 @@ def _carried_on(tool: Tool, places: Array, axis: Array, group: Group) -> Tool:
     needed = highest - float((places @ axis).min())
     if needed <= tool.height:
         return tool
-    return _carried_to(tool, float(tool.height * 2.0 ** np.ceil(np.log2(needed / tool.height))))
+    return _height_to_extend(tool, float(tool.height * 2.0 ** np.ceil(np.log2(needed / tool.height))))
 
 
 @lru_cache(maxsize=64)
-def _carried_to(tool: Tool, height: float) -> Tool:
+def _height_to_extend(tool: Tool, height: float) -> Tool:
     return tool.carried_on(height)
 
 
-def _into_neighbours(scene: Scene, group: Group, moves: Array, hit: Bools, left_out: Array | None) -> Bools:
+def _into_neighbours(scene: InterferenceScene, group: CheckSurfaces, moves: Array, hit: Bools,
+                     left_out: Array | None) -> Bools:
     """Which of the positions that were hit are so by faces that continue this one alone, as a boss's fillet."""
     into, rows = hit.copy(), np.flatnonzero(hit)
     if len(rows):
         only = np.full((len(group.faces), 3), -np.inf)
         own = [face.number == scene.number for face in group.faces]
         only[own] = 0.0 if left_out is None else left_out[own]
-        found = bounded(group.cells, scene.tool, moves[rows], group.required + 2 * FINE, FINE, only)
+        found = lower_bounds(group.cells, scene.tool, moves[rows], group.required + 2 * FINE, FINE, only)
         into[rows] = (found.lower >= group.required).all(axis=1)
     return into
 
 
-def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Found, Bools]) -> Bools:
+def _beside(tool: Tool, group: CheckSurfaces, moves: Array, at: tuple[NearestFound, Bools]) -> Bools:
     """Which of the positions come too near to a wall that is near them."""
     found, near = at
     amount = group.required - found.lower
@@ -171,12 +174,12 @@ def _beside(tool: Tool, group: Group, moves: Array, at: tuple[Found, Bools]) -> 
         if len(rows):
             only = np.full((len(group.faces), 3), -np.inf)
             only[k] = 0.0
-            alone = bounded(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
+            alone = lower_bounds(group.cells, tool, moves[rows], group.required + 2 * COARSE, COARSE, only)
             beside[rows] = (alone.lower < group.required).any(axis=1)
     return beside
 
 
-def _worse(worst: Trouble, found: Found, which: tuple[Group, int], wall: Bools) -> Trouble:
+def _worse(worst: Violations, found: NearestFound, which: tuple[CheckSurfaces, int], wall: Bools) -> Violations:
     """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
     group, number = which
     for c in range(3):
@@ -186,7 +189,7 @@ def _worse(worst: Trouble, found: Found, which: tuple[Group, int], wall: Bools) 
         take = hit & (~before | (wall & ~worst.wall) | ((worst.wall == wall) & (amount > worst.amount)))
         code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
         point = np.where(take[:, None], found.point[:, c], worst.point)
-        worst = Trouble(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
-                        np.where(take, wall, worst.wall), np.where(take, found.face[:, c], worst.face),
-                        np.where(take, number, worst.group), point)
+        worst = Violations(np.where(take, code, worst.reason).astype(np.int8), np.where(take, amount, worst.amount),
+                           np.where(take, wall, worst.wall), np.where(take, found.face[:, c], worst.face),
+                           np.where(take, number, worst.group), point)
     return worst

@@ -28,7 +28,7 @@ _KEPT = 50_000
 _QUESTION, _CELL = 3000, 3
 
 
-class FaceCells(NamedTuple):
+class TrimmedFaceCells(NamedTuple):
     """Cells that may hold a point of the face.
 
     rect : (n, 4) u0, u1, v0, v1;  bounds : (n, 3) of |Suu|, |Suv|, |Svv|;  crossed : (n,) whether an edge of a loop
@@ -48,9 +48,10 @@ class FaceCells(NamedTuple):
         """Parameters of the middles, (n, 2)."""
         return (self.rect[:, 0::2] + self.rect[:, 1::2]) / 2
 
-    def chosen(self, rows: Index | Bools) -> "FaceCells":
+    def chosen(self, rows: Index | Bools) -> "TrimmedFaceCells":
         """Some of the cells."""
-        return FaceCells(self.rect[rows], self.bounds[rows], self.crossed[rows], self.inside[rows], self.normal[rows],
+        return TrimmedFaceCells(self.rect[rows], self.bounds[rows], self.crossed[rows], self.inside[rows],
+                                self.normal[rows],
                      self.spread[rows])
 
 
@@ -68,16 +69,16 @@ class NormalCells:
         self._cells = self._first()
         #: First child of each kept cell, and how many follow it; -1 where the cell was not divided.
         self._child = np.full((len(self._cells.rect), 2), -1, dtype=np.intp)
-        self.roots: tuple[Index | None, FaceCells] = np.arange(len(self._cells.rect)), self._cells
+        self.roots: tuple[Index | None, TrimmedFaceCells] = np.arange(len(self._cells.rect)), self._cells
 
-    def below(self, kept: Index | None, cells: FaceCells) -> tuple[Index | None, FaceCells]:
+    def below(self, kept: Index | None, cells: TrimmedFaceCells) -> tuple[Index | None, TrimmedFaceCells]:
         """The quarters of cells, as far as they may hold a point of the face.
 
         Parameters
         ----------
         kept : (n,) array of int or None
             Numbers of the cells, from `roots` or from here; None where they are not kept.
-        cells : FaceCells
+        cells : TrimmedFaceCells
             The cells themselves.
         """
         if kept is None:
@@ -90,13 +91,13 @@ class NormalCells:
             first = len(self._child) + np.cumsum(count) - count
             self._child[kept[fresh]] = np.column_stack([first, count])
             self._child = np.concatenate([self._child, np.full((len(made.rect), 2), -1, dtype=np.intp)])
-            self._cells = FaceCells(*(np.concatenate(both) for both in zip(self._cells, made, strict=True)))
+            self._cells = TrimmedFaceCells(*(np.concatenate(both) for both in zip(self._cells, made, strict=True)))
         first, count = self._child[kept].T
         within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
         numbers = np.repeat(first, count) + within
         return numbers, self._cells.chosen(numbers)
 
-    def _first(self) -> FaceCells:
+    def _first(self) -> TrimmedFaceCells:
         """An even grid of cells, with the surface's knots among their borders."""
         u0, u1, v0, v1 = self._face.bounds
         data = self._face.surface.data
@@ -106,23 +107,24 @@ class NormalCells:
         rect = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)
         return self._made(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))[0]
 
-    def _divided(self, cells: FaceCells) -> tuple[FaceCells, Index]:
+    def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
         """The quarters of cells, those of one after those of the other, and how many there are of each."""
-        return self._made(_quartered(cells.rect), np.repeat(cells.bounds, 4, axis=0), np.repeat(cells.crossed, 4),
+        return self._made(_quarter_rectangles(cells.rect), np.repeat(cells.bounds, 4, axis=0),
+                          np.repeat(cells.crossed, 4),
                           len(cells.rect))
 
-    def _made(self, rect: Array, bounds: Array, crossed: Bools, parents: int = 1) -> tuple[FaceCells, Index]:
+    def _made(self, rect: Array, bounds: Array, crossed: Bools, parents: int = 1) -> tuple[TrimmedFaceCells, Index]:
         """Cells from rectangles, a few thousand at once; of those that an edge may cross, those that hold something."""
         parts = []
         for first in range(0, len(rect), _AT_ONCE):
             breathe()
             some = slice(first, first + _AT_ONCE)
             parts.append(self._looked(rect[some], bounds[some], crossed[some]))
-        found = parts[0] if len(parts) == 1 else FaceCells(*map(np.concatenate, zip(*parts, strict=True)))
+        found = parts[0] if len(parts) == 1 else TrimmedFaceCells(*map(np.concatenate, zip(*parts, strict=True)))
         met = found.inside | found.crossed
         return found.chosen(met), met.reshape(parents, -1).sum(axis=1)
 
-    def _looked(self, rect: Array, bounds: Array, near: Bools) -> FaceCells:
+    def _looked(self, rect: Array, bounds: Array, near: Bools) -> TrimmedFaceCells:
         spend(_QUESTION + _CELL * len(rect))
         middle = (rect[:, 0::2] + rect[:, 1::2]) / 2
         half = (rect[:, 1::2] - rect[:, 0::2]) / 2
@@ -130,7 +132,7 @@ class NormalCells:
         crossed[near] = self._edges_meet(middle[near], half[near])
         inside[near] = self._face.contains(middle[near])
         normal, spread = self._normals(middle, half, bounds)
-        return FaceCells(rect, bounds, crossed, inside, normal, spread)
+        return TrimmedFaceCells(rect, bounds, crossed, inside, normal, spread)
 
     def _normals(self, middle: Array, half: Array, bounds: Array) -> tuple[Array, Array]:
         """Normals in the middles of cells, and how far others of the cell are from them at most."""
@@ -176,7 +178,7 @@ def _grid_lines(knots: Array, low: float, high: float) -> Array:
     return np.sort(np.concatenate([even[apart], inner]))
 
 
-def _quartered(rect: Array) -> Array:
+def _quarter_rectangles(rect: Array) -> Array:
     """The quarters of rectangles, (4 n, 4), those of one after those of the other."""
     u0, u1, v0, v1 = rect.T
     u, v = (u0 + u1) / 2, (v0 + v1) / 2

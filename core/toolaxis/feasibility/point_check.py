@@ -5,14 +5,14 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@jit
 def _deepest(cutter: Array, axis: Array, tips: Array, points: Array) -> float:
     """Least signed distance of points to the cutter at any of the tips, mm."""
     reach = cutter[4] ** 2 + (cutter[0] + cutter[1] + cutter[4] * cutter[3] / cutter[2]) ** 2

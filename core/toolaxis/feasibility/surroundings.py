@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.bounding.bounding_tree import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import BoundingTree, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import Mismatch, mismatch_of
@@ -24,7 +24,7 @@ MARGIN = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class CheckSurfaces:
     """Faces that the tool has to keep the same distances from.
 
     Attributes
@@ -44,7 +44,7 @@ class Group:
     mismatch: Mismatch | None = None
 
     @cached_property
-    def cells(self) -> Cells:
+    def cells(self) -> BoundingTree:
         """The faces' cells under one root."""
         return forest(self.faces).missing(self.mismatch)
 
@@ -55,9 +55,9 @@ class Group:
         return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
 
-def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: Part | None = None,
-            skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
-            obstacles: Obstacles = None) -> tuple[Group, ...]:
+def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: Part | None = None,
+                       skin: Sequence[Face] = (), surroundings: Sequence[Face] = (),
+                       obstacles: Obstacles = None) -> tuple[CheckSurfaces, ...]:
     """Everything around a face, sorted by what the tool has to keep from it.
 
     Parameters
@@ -77,7 +77,7 @@ def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: P
 
     Returns
     -------
-    tuple of Group, the skin first; empty groups are left out.
+    tuple of CheckSurfaces, the skin first; empty groups are left out.
 
     Raises
     ------
@@ -96,9 +96,9 @@ def grouped(face: Face, tolerance: Tolerance, allowance: float = 0.0, *, part: P
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
     edges, touched = () if part is None else part.edges, {one.number for one in own}
     skin_off, touching_off = mismatch_of(own, edges, touched, allowance), mismatch_of(touching, edges, touched)
-    groups = (Group(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
-              Group(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
-              Group(OTHER, tuple(others), np.array([tolerance.cutter_clearance, *far])))
+    groups = (CheckSurfaces(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
+              CheckSurfaces(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
+              CheckSurfaces(OTHER, tuple(others), np.array([tolerance.cutter_clearance, *far])))
     return tuple(group for group in groups if group.faces)
 
 

@@ -12,7 +12,7 @@ Bools = NDArray[np.bool_]
 FREE, LIMITS, BACK, WANDERS, GOUGE, CUTTER, SHANK, HOLDER = range(8)
 
 
-class Verdicts(NamedTuple):
+class ScreeningResult(NamedTuple):
     """Verdicts on k axes: reason (k,), index into `REASONS`; amount (k,) rad or mm; unreached (k,) share of area."""
 
     reason: NDArray[np.int8]
@@ -20,7 +20,7 @@ class Verdicts(NamedTuple):
     unreached: Array
 
 
-class Trouble(NamedTuple):
+class Violations(NamedTuple):
     """What is worst at n positions: reason (n,), amount (n,) mm, whether a clean-up tool can do it (n,), face index
     within its group (n,), group index (n,), and a point near it (n, 3)."""
 
@@ -32,7 +32,7 @@ class Trouble(NamedTuple):
     point: Array
 
 
-class Witness(NamedTuple):
+class Violation(NamedTuple):
     """The one place that decides against an axis.
 
     reason : index into `REASONS`;  amount : by how much the limit is missed, mm or rad;  label : of the face in the

@@ -16,7 +16,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
 from toolaxis.machine.machine import Machine
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ _PROBE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Following:
+class AxisTrajectory:
     """Machine axes at the points of a path, and at those put between them.
 
     Attributes
@@ -57,7 +57,7 @@ class Following:
 
 
 def following(machine: Machine, path: ToolPath, table_from_part: ArrayLike | None = None, tool_length: float = 0.0, *,
-              near: ArrayLike = (), travel: bool = False) -> Following:
+              near: ArrayLike = (), travel: bool = False) -> AxisTrajectory:
     """Machine axes along a path, turning without jumps.
 
     Of the solutions and whole turns to begin with, that whose rotary axes turn least in all is taken; of two that turn
@@ -90,7 +90,7 @@ def following(machine: Machine, path: ToolPath, table_from_part: ArrayLike | Non
     found, why = [], ""
     for begin in _begins(machine, path, table_from_part, stand):
         try:
-            one = _tracked(machine, path, table_from_part, begin)
+            one = _track_path(machine, path, table_from_part, begin)
         except InvalidInput as reason:
             why = why or str(reason)
             continue
@@ -99,7 +99,7 @@ def following(machine: Machine, path: ToolPath, table_from_part: ArrayLike | Non
         if beyond:
             why = why or beyond
             continue
-        found.append(Following(one[0], one[1], one[2], linear, one[3]))
+        found.append(AxisTrajectory(one[0], one[1], one[2], linear, one[3]))
     if not found:
         raise InvalidInput(why or f"no position of {machine.name} takes the first axis of the path: choose another "
                            "machine, offset or strategy")
@@ -141,14 +141,14 @@ def _beyond(machine: Machine, linear: Array) -> str:
     return ""
 
 
-def _tracked(machine: Machine, path: ToolPath, place: ArrayLike | None,
-             begin: Array) -> tuple[Array, Array, Array, NDArray[np.int64]]:
+def _track_path(machine: Machine, path: ToolPath, place: ArrayLike | None,
+                begin: Array) -> tuple[Array, Array, Array, NDArray[np.int64]]:
     """Tips, axes, rotary angles and arrivals, with points between where rotary axes would leave the way."""
     tips, axes = path.cl, np.asarray(unit(path.axis))
     arrival = np.arange(len(tips), dtype=np.int64)
     turn = placement(place)[:3, :3]
     for _ in range(_ROUNDS):
-        angles = _followed(machine, axes, place, begin)
+        angles = _follow_nearest(machine, axes, place, begin)
         middle = tool_axes(machine, (angles[1:] + angles[:-1]) / 2) @ turn
         off = angle_between(middle, unit(axes[1:] + axes[:-1]))
         parts = np.clip(np.ceil(np.sqrt(off / OFF)), 1, 8).astype(np.int64)
@@ -156,14 +156,14 @@ def _tracked(machine: Machine, path: ToolPath, place: ArrayLike | None,
             return tips, axes, angles, arrival
         if parts.sum() > _MOST:
             break
-        tips, axes, arrival = _divided(tips, axes, arrival, parts)
+        tips, axes, arrival = _divide_gaps(tips, axes, arrival, parts)
     k = int(arrival[1:][np.argmax(parts)])
     raise InvalidInput(f"rotary axes of {machine.name} cannot follow the tool axis to point {k}, near a singular "
                        "direction or where their range ends: choose another machine, offset or strategy")
 
 
-def _divided(tips: Array, axes: Array, arrival: NDArray[np.int64],
-             parts: NDArray[np.int64]) -> tuple[Array, Array, NDArray[np.int64]]:
+def _divide_gaps(tips: Array, axes: Array, arrival: NDArray[np.int64],
+                 parts: NDArray[np.int64]) -> tuple[Array, Array, NDArray[np.int64]]:
     """Points put between those whose gaps are in parts, on the straight ways of tips and axes."""
     owner = np.repeat(np.arange(len(parts)), parts)
     share = ((np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 1) / parts[owner])[:, None]
@@ -172,7 +172,7 @@ def _divided(tips: Array, axes: Array, arrival: NDArray[np.int64],
     return new[0], np.asarray(unit(new[1])), np.concatenate([arrival[:1], arrival[owner + 1]])
 
 
-def _followed(machine: Machine, axes: Array, place: ArrayLike | None, begin: Array) -> Array:
+def _follow_nearest(machine: Machine, axes: Array, place: ArrayLike | None, begin: Array) -> Array:
     """Rotary angles from the first ones on, at each axis those of the solution that is nearest to the last, (n, m)."""
     found = rotary_angles(machine, axes, table_from_part=place)
     ranges = np.array([(axis.low - _ROUNDING, axis.high + _ROUNDING) for axis in machine.rotary]).reshape(-1, 2)
@@ -185,10 +185,10 @@ def _followed(machine: Machine, axes: Array, place: ArrayLike | None, begin: Arr
     return out
 
 
-@compiled
+@jit
 def _follow(joints: Array, reached: NDArray[np.bool_], free: NDArray[np.bool_], ranges: Array, begin: Array,
             out: Array) -> int:
-    """Fill in what `_followed` gives from solutions (n, k, m) and ranges (m, 2); return where none is left, else -1."""
+    """Fill in what `_follow_nearest` gives from solutions (n, k, m) and ranges (m, 2); where none is left, else -1."""
     last, row = begin.copy(), begin.copy()
     for i in range(len(joints)):
         least = inf
@@ -210,14 +210,14 @@ def _follow(joints: Array, reached: NDArray[np.bool_], free: NDArray[np.bool_], 
     return -1
 
 
-def levers(machine: Machine, along: Following, tool_length: float = 0.0, table_from_part: ArrayLike | None = None,
+def levers(machine: Machine, along: AxisTrajectory, tool_length: float = 0.0, table_from_part: ArrayLike | None = None,
            ) -> Array:
     """How far the linear axes go at most for a turn of each rotary axis that leaves the tip in its place, (m,) mm.
 
     Parameters
     ----------
     machine : Machine
-    along : Following
+    along : AxisTrajectory
     tool_length : float
         mm
     table_from_part : (4, 4) array_like, optional

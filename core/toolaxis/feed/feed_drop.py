@@ -15,7 +15,7 @@ SLOW, LONG = 0.05, 0.2
 
 
 @dataclass(frozen=True)
-class Crawl:
+class FeedDrop:
     """A place at which the tip crawls.
 
     Attributes
@@ -33,7 +33,7 @@ class Crawl:
     place: tuple[float, float, float]
 
 
-def crawl(found: CurveSchedule, feed: float, tips: Array) -> Crawl | None:
+def crawl(found: CurveSchedule, feed: float, tips: Array) -> FeedDrop | None:
     """Where a cut is slower than `SLOW` times its feed for longest; None where that takes no longer than `LONG`.
 
     Parameters
@@ -55,4 +55,4 @@ def crawl(found: CurveSchedule, feed: float, tips: Array) -> Crawl | None:
     a, b = found.states[edges[k], 0]
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(tips, axis=0), axis=1))])
     x, y, z = (float(np.interp((a + b) / 2, way, column)) for column in tips.T)
-    return Crawl(float(spans[k]), float(abs(b - a)), (x, y, z))
+    return FeedDrop(float(spans[k]), float(abs(b - a)), (x, y, z))

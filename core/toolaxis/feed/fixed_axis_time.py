@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
-from toolaxis.feed.velocity_ramps import Ramps, ramps
+from toolaxis.feed.velocity_ramps import VelocityRamps, ramps
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import angle_between, unit
@@ -119,7 +119,7 @@ def path_schedule(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayL
     return schedule_polyline(moves.joints, moves.tips, feeds_of, linear_bounds(machine), feeds.tolerance), moves.kinds
 
 
-class _Moves(NamedTuple):
+class _PathMoves(NamedTuple):
     """Linear coordinates and tips where a path bends, and kind and rapidity of each motion between them."""
 
     joints: Array
@@ -128,7 +128,7 @@ class _Moves(NamedTuple):
     rapid: NDArray[np.bool_]
 
 
-def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None, table_from_part: ArrayLike | None) -> _Moves:
+def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None, table_from_part: ArrayLike | None) -> _PathMoves:
     steps = np.linalg.norm(np.diff(path.cl, axis=0), axis=1)
     moving = np.concatenate([[True], steps > NO_STEP])
     tips, kinds, rapid = path.cl[moving], path.kind[moving][1:], path.rapid[moving][1:]
@@ -137,7 +137,7 @@ def _moves(machine: Machine, path: ToolPath, rotary: ArrayLike | None, table_fro
     if angle_between(path.axis, path.axis[0]).max() > FIXED:
         raise UnsupportedGeometry("the tool axis varies along the path: only paths with a fixed axis are timed")
     angles = _angles(machine, path.axis[0], table_from_part) if rotary is None else np.asarray(rotary, dtype=float)
-    return _Moves(linear_coordinates(machine, tips, angles, table_from_part=table_from_part), tips, kinds, rapid)
+    return _PathMoves(linear_coordinates(machine, tips, angles, table_from_part=table_from_part), tips, kinds, rapid)
 
 
 def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
@@ -168,7 +168,7 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
 
 
 def longest_cut(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
-                table_from_part: ArrayLike | None = None) -> Ramps | None:
+                table_from_part: ArrayLike | None = None) -> VelocityRamps | None:
     """Speeds along the longest smooth cut of a path, as `machining_time` takes it; None where there is none.
 
     Parameters
@@ -185,7 +185,7 @@ def longest_cut(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLik
     return ramps(moves.joints[here], moves.tips[here], feeds.cut, linear_bounds(machine), feeds.tolerance)
 
 
-def _smooth_cuts(moves: _Moves) -> list[tuple[int, int]]:
+def _smooth_cuts(moves: _PathMoves) -> list[tuple[int, int]]:
     """Ranges of points of cuts between corners that are worth a curve."""
     ways = unit(np.diff(moves.tips, axis=0))
     corner = angle_between(ways[1:], ways[:-1]) > CORNER

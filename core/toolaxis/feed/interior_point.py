@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solveh_banded
 
-from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solved
+from toolaxis.feed.interior_point_compiled import barrier_system, barrier_value, solve_pentadiagonal
 from toolaxis.numeric import jit as compiled
 
 Array = NDArray[np.float64]
@@ -132,7 +132,7 @@ def _step(bands: Array, gradient: Array) -> Array:
     """Newton's step, (n,): the solution of the system, whose bands are spent."""
     if compiled.available:
         spent, step = bands.copy(), -gradient
-        if solved(spent, step):
+        if solve_pentadiagonal(spent, step):
             return step
     try:
         return np.asarray(solveh_banded(bands, -gradient, check_finite=False))

@@ -8,12 +8,12 @@ from math import inf, log, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@jit
 def barrier_value(stations: Array, most: Array, acceleration: Array, jerk: Array, b: Array, weight: float) -> float:
     """Weighted time less the logarithms of all that is left of the limits; infinite where one is not kept.
 
@@ -52,7 +52,7 @@ def barrier_value(stations: Array, most: Array, acceleration: Array, jerk: Array
     return total
 
 
-@compiled
+@jit
 def barrier_system(stations: Array, most: Array, acceleration: Array, jerk: Array, b: Array, weight: float,
                    gradient: Array, bands: Array) -> None:
     """Gradient of the barrier, and the three upper diagonals of its Hessian's convex part, added to zeros.
@@ -76,7 +76,7 @@ def barrier_system(stations: Array, most: Array, acceleration: Array, jerk: Arra
             if i < last:
                 one, two = acceleration[i, axis, 0], acceleration[i, axis, 1]
                 form = one * b[i] + two * b[i + 1]
-                pull, curve = _bounded(form)
+                pull, curve = _barrier_derivatives(form)
                 gradient[i] += pull * one
                 gradient[i + 1] += pull * two
                 bands[2, i] += curve * one * one
@@ -87,7 +87,7 @@ def barrier_system(stations: Array, most: Array, acceleration: Array, jerk: Arra
                 form += jerk[i, axis, 0] * b[i - 1]
             if i < last:
                 form += jerk[i, axis, 2] * b[i + 1]
-            pull, curve = _bounded(form * root)
+            pull, curve = _barrier_derivatives(form * root)
             before, after = jerk[i, axis, 0] * root, jerk[i, axis, 2] * root
             here = jerk[i, axis, 1] * root + form / (2 * root)
             gradient[i] += pull * here
@@ -104,8 +104,8 @@ def barrier_system(stations: Array, most: Array, acceleration: Array, jerk: Arra
                 bands[0, i + 1] += curve * before * after
 
 
-@compiled
-def solved(bands: Array, right: Array) -> bool:
+@jit
+def solve_pentadiagonal(bands: Array, right: Array) -> bool:
     """Solve a symmetric positive definite system of five diagonals in place; False where it is not definite.
 
     Parameters
@@ -139,14 +139,14 @@ def solved(bands: Array, right: Array) -> bool:
     return True
 
 
-@compiled
-def _bounded(form: float) -> tuple[float, float]:
+@jit
+def _barrier_derivatives(form: float) -> tuple[float, float]:
     """First and second derivative of -log(1 - form^2)."""
     low, high = 1 / (1 - form), 1 / (1 + form)
     return low - high, low * low + high * high
 
 
-@compiled
+@jit
 def _add_time(way: float, here: float, there: float, i: int, gradient: Array, bands: Array) -> None:
     """What the time 2 way / (here + there) between stations i and i + 1 adds, by their speeds."""
     total = here + there

@@ -18,7 +18,7 @@ _BISECTIONS = 60
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class JerkProfile:
     """One motion of seven segments of constant jerk.
 
     Attributes
@@ -166,11 +166,12 @@ def peak_velocity(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLik
     peak = np.array(np.where(same, np.minimum(top, reachable(v0, way / 2, a, j)), high))
     beyond = ~same & (_needed(v0, v1, high, a, j) > way)
     if beyond.any():
-        peak[beyond] = _bisected(*(np.broadcast_to(x, peak.shape)[beyond] for x in (low, high, v0, v1, way, a, j)))
+        peak[beyond] = _bisect_velocity(*(np.broadcast_to(x, peak.shape)[beyond]
+                                          for x in (low, high, v0, v1, way, a, j)))
     return peak
 
 
-def _bisected(low: Array, high: Array, v0: Array, v1: Array, way: Array, a: Array, j: Array) -> Array:
+def _bisect_velocity(low: Array, high: Array, v0: Array, v1: Array, way: Array, a: Array, j: Array) -> Array:
     """Greatest velocity between two that leaves way to change to it and from it."""
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
@@ -202,7 +203,7 @@ def travel_time(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike,
 
 
 def profile(length: float, velocity: float, acceleration: float, jerk: float,
-            ends: tuple[float, float] = (0.0, 0.0)) -> Profile:
+            ends: tuple[float, float] = (0.0, 0.0)) -> JerkProfile:
     """The fastest motion over a length between two velocities, no acceleration at the ends.
 
     Parameters
@@ -229,7 +230,7 @@ def profile(length: float, velocity: float, acceleration: float, jerk: float,
     if needed > length * (1 + 1e-9) + 1e-12:
         raise InvalidInput(f"length is {length} mm: changing from {ends[0]} to {ends[1]} mm/s takes {needed} mm")
     durations = segment_durations(length, velocity, acceleration, jerk, ends)
-    return Profile(durations, _jerks(durations, ends, jerk), float(ends[0]))
+    return JerkProfile(durations, _jerks(durations, ends, jerk), float(ends[0]))
 
 
 def segment_durations(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,

@@ -87,7 +87,7 @@ def linear_bounds(machine: Machine) -> AxisBounds:
     return AxisBounds(levels[:, 0], levels[:, 1], levels[:, 2])
 
 
-def followed(points: ArrayLike, tips: ArrayLike, feed: float, width: int) -> tuple[Array, Array, Array]:
+def check_path(points: ArrayLike, tips: ArrayLike, feed: float, width: int) -> tuple[Array, Array, Array]:
     """Axis positions and tips of a curved path, checked, and the way of the tip to each.
 
     Parameters

@@ -16,7 +16,7 @@ from scipy.interpolate import BSpline, make_lsq_spline
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.continuous_ik import following, levers
-from toolaxis.feed.feed_drop import Crawl, crawl
+from toolaxis.feed.feed_drop import FeedDrop, crawl
 from toolaxis.feed.fixed_axis_time import CORNER, NO_STEP, Feeds
 from toolaxis.feed.limits import AxisBounds, linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
@@ -56,7 +56,7 @@ REACH = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class PathSegment:
     """Part of a path that is planned from rest to rest.
 
     Attributes
@@ -110,7 +110,7 @@ class FiveAxisSchedule:
             raise InvalidInput(f"the path has {len(path.cl)} points and no motion between them: nothing can be timed")
         self.levers = np.maximum(levers(machine, self.along, tool_length, table_from_part), _LEVER)
 
-    def stretches(self) -> list[Stretch]:
+    def stretches(self) -> list[PathSegment]:
         """The parts of the path between stops, in their order."""
         along, path = self.along, self.path
         kinds, rapid = path.kind[along.arrival[1:]], path.rapid[along.arrival[1:]]
@@ -124,17 +124,17 @@ class FiveAxisSchedule:
         ends = (cut[1:] != cut[:-1]) | corner | (turns[1:] != turns[:-1])
         ends |= turns[1:] & (along.arrival[2:] != along.arrival[1:-1])
         edges = [0, *(np.flatnonzero(ends) + 1).tolist(), len(kinds)]
-        return [Stretch(Motion(int(kinds[a])), a, b, bool(cut[a] or turns[a]), bool(rapid[a])) for a, b in
+        return [PathSegment(Motion(int(kinds[a])), a, b, bool(cut[a] or turns[a]), bool(rapid[a])) for a, b in
                 pairwise(edges)]
 
-    def curve(self, one: Stretch) -> CurveSchedule | None:
+    def curve(self, one: PathSegment) -> CurveSchedule | None:
         """What the axes do on a stretch that turns or cuts; None where nothing moves.
 
         Rotary axes count by their levers, mm: those of `curve_bounds`.
 
         Parameters
         ----------
-        one : Stretch
+        one : PathSegment
         """
         rows = slice(one.begin, one.end + 1)
         tips, axes = self.along.tips[rows], self.along.axes[rows]
@@ -156,13 +156,13 @@ class FiveAxisSchedule:
                 break
         return best
 
-    def _scheduled(self, one: Stretch, places: Array, poses: Array) -> CurveSchedule:
+    def _scheduled(self, one: PathSegment, places: Array, poses: Array) -> CurveSchedule:
         """What the axes do along poses at places."""
         if len(places) < _POINTS:
             fine = np.linspace(0.0, places[-1], _POINTS)
             poses = np.column_stack([np.interp(fine, places, column) for column in poses.T])
             places = fine
-        curve = smoothed(places, poses, self._room(poses[:, 3:]))
+        curve = fit_smooth_curve(places, poses, self._room(poses[:, 3:]))
         knots = np.unique(curve.t)
         shares = np.arange(_FINE) / _FINE
         fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * shares).ravel(), knots[-1])
@@ -188,15 +188,15 @@ class FiveAxisSchedule:
         scale = np.concatenate([np.ones(3), self.levers])
         return AxisBounds(self.bounds.velocity * scale, self.bounds.acceleration * scale, self.bounds.jerk * scale)
 
-    def _feed(self, one: Stretch) -> float:
+    def _feed(self, one: PathSegment) -> float:
         return float(self.feeds.of([one.kind], [one.rapid])[0])
 
-    def straight(self, one: Stretch) -> Iterator[tuple[Motion, float]]:
+    def straight(self, one: PathSegment) -> Iterator[tuple[Motion, float]]:
         """Kinds and times of a stretch on which the axis stands still, s.
 
         Parameters
         ----------
-        one : Stretch
+        one : PathSegment
         """
         rows = slice(one.begin, one.end + 1)
         tips, joints = self.along.tips[rows], self.along.linear[rows]
@@ -211,7 +211,7 @@ class FiveAxisSchedule:
             yield kind, float(taken[kinds == kind].sum())
 
 
-def smoothed(places: Array, poses: Array, room: Array) -> BSpline:
+def fit_smooth_curve(places: Array, poses: Array, room: Array) -> BSpline:
     """A smooth curve near poses with few knots: more of them where it needs them to keep near.
 
     Parameters
@@ -284,14 +284,14 @@ class FiveAxisMotion:
     time : MachiningTime
     begin, end : (m,) array
         Rotary angles there, rad.
-    crawl : Crawl or None
+    crawl : FeedDrop or None
         Where the tip all but stands still while it cuts, for longest; None where it does so nowhere.
     """
 
     time: MachiningTime
     begin: Array
     end: Array
-    crawl: Crawl | None
+    crawl: FeedDrop | None
 
 
 def five_axis_motion(machine: Machine, path: ToolPath, feeds: Feeds, table_from_part: ArrayLike | None = None,
@@ -308,7 +308,7 @@ def five_axis_motion(machine: Machine, path: ToolPath, feeds: Feeds, table_from_
     **Property**: no axis exceeds its velocity, acceleration or jerk.
     """
     plan = FiveAxisSchedule(machine, path, feeds, table_from_part, tool_length, near)
-    seconds, slow = dict.fromkeys(Motion, 0.0), list[Crawl]()
+    seconds, slow = dict.fromkeys(Motion, 0.0), list[FeedDrop]()
     for one in plan.stretches():
         if not one.turning:
             for kind, taken in plan.straight(one):

@@ -23,7 +23,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.feed.jerk_profile import ramp_length, reachable, segment_durations, travel_time
 from toolaxis.feed.joint_motion import JointMotion
 from toolaxis.feed.limits import AxisBounds
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]
@@ -263,7 +263,7 @@ def _runs(lengths: Array, speeds: Array, jumps: Array, bounds: AxisBounds) -> Ar
     return np.asarray(np.maximum(lengths - cut[:-1] - cut[1:], 0.0))
 
 
-@compiled
+@jit
 def look_ahead(runs: Array, acceleration: Array, jerk: Array, caps: Array) -> Array:
     """Greatest speeds at corners below caps such that each can be reached from both neighbours, (k + 1,) mm/s.
 
@@ -281,7 +281,7 @@ def look_ahead(runs: Array, acceleration: Array, jerk: Array, caps: Array) -> Ar
     return speeds
 
 
-@compiled
+@jit
 def _reach(start: float, way: float, a: float, j: float) -> float:
     """One of `profile.reachable`, the cubic solved by Newton from above, where it is convex."""
     if way <= 0.0:

@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from toolaxis.feed.interior_point import SpeedProblem, greatest_speeds
 from toolaxis.feed.jerk_profile import profile
-from toolaxis.feed.limits import AxisBounds, followed
+from toolaxis.feed.limits import AxisBounds, check_path
 
 Array = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
     **Source** [grandguillaume2021] Eq. (9), with 3 s' s'' f_s + s'^3 f_ss in its third line.
     Property: no axis exceeds its velocity, acceleration or jerk by more than a millionth at the sampled times.
     """
-    joints, rows, along = followed(points, tips, feed, len(bounds.velocity))
+    joints, rows, along = check_path(points, tips, feed, len(bounds.velocity))
     curve, tip = make_interp_spline(along, joints, 5), make_interp_spline(along, rows, 5)
     limits = _limits_along(curve, tip, float(along[-1]), feed, bounds)
     count = stations or _enough(float(along[-1]), limits, len(rows))
@@ -212,13 +212,13 @@ def _pieces(inner: Array, b: Array, length: float) -> tuple[Array, Array]:
     a = np.concatenate([[0.0], np.diff(b) / (2 * step), [0.0]])
     x = times / times[-1]
     shapes = [x * (1 - x), x * (1 - x) * (1 - 2 * x)]
-    ends = np.array([_integrated(times, shape)[-1, :2] for shape in shapes]).T
-    missing = np.array([length, 0.0]) - _integrated(times, a)[-1, :2]
+    ends = np.array([_integrate_motion(times, shape)[-1, :2] for shape in shapes]).T
+    missing = np.array([length, 0.0]) - _integrate_motion(times, a)[-1, :2]
     a = a + np.linalg.solve(ends, missing) @ np.array(shapes)
-    return times, _integrated(times, a)
+    return times, _integrate_motion(times, a)
 
 
-def _integrated(times: Array, a: Array) -> Array:
+def _integrate_motion(times: Array, a: Array) -> Array:
     """Way, velocity and acceleration from rest for accelerations that are linear between times, (k, 3)."""
     t, jerk = np.diff(times), np.diff(a) / np.diff(times)
     v = np.concatenate([[0.0], np.cumsum(t * (a[:-1] + a[1:]) / 2)])

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 
 from toolaxis.feed.jerk_profile import travel_time
-from toolaxis.feed.limits import AxisBounds, followed
+from toolaxis.feed.limits import AxisBounds, check_path
 from toolaxis.feed.polyline import look_ahead
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ _BATCH = 512
 _NOTHING = 1e-12
 
 
-class Bend(NamedTuple):
+class CurveShape(NamedTuple):
     """A smooth curve and how it bends, or several over one parameter.
 
     Attributes
@@ -54,7 +54,7 @@ class Bend(NamedTuple):
     stretch: Array | None = None
 
 
-class Ramps(NamedTuple):
+class VelocityRamps(NamedTuple):
     """Speeds along windows of a curve.
 
     Attributes
@@ -85,7 +85,8 @@ class Ramps(NamedTuple):
         return float(self.times.sum())
 
 
-def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, tolerance: float = 1e-3) -> Ramps:
+def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds,
+          tolerance: float = 1e-3) -> VelocityRamps:
     """Speeds from rest to rest along a smooth curve through axis positions.
 
     Parameters
@@ -111,20 +112,20 @@ def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds, t
     finishing within some percent of it.
     """
     bend = bend_of(points, tips, feed, len(bounds.velocity), tolerance)
-    tries = [_windowed(np.eye(len(bounds.velocity))[None], bend, number, feed, bounds)
+    tries = [_ramps_in_windows(np.eye(len(bounds.velocity))[None], bend, number, feed, bounds)
              for number in _numbers(bend.derivatives[0].shape[-2])]
     best = tries[int(np.argmin([float(_times(one).sum()) for one in tries]))]
     number = best.limits[0].shape[1]
-    return Ramps(bend.curve, np.linspace(0.0, bend.length, number + 1), best.speeds[0],
-                 (best.limits[0][0], best.limits[1][0], best.limits[2][0]))
+    return VelocityRamps(bend.curve, np.linspace(0.0, bend.length, number + 1), best.speeds[0],
+                         (best.limits[0][0], best.limits[1][0], best.limits[2][0]))
 
 
-def durations(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
+def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
     """Time along one curve, or k curves, with the axes set up in k ways, (k,) s: that of `ramps` for each.
 
     Parameters
     ----------
-    bend : Bend
+    bend : CurveShape
     joint_from_path : (k, m, d) array_like
         What the axes move for a motion along the curve's coordinates.
     feed : float
@@ -141,11 +142,11 @@ def durations(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisB
             part = bend._replace(derivatives=(first, second, third),
                                  stretch=None if bend.stretch is None else bend.stretch[some])
         for number in _numbers(bend.derivatives[0].shape[-2]):
-            best[some] = np.minimum(best[some], _times(_windowed(matrices[some], part, number, feed, bounds)))
+            best[some] = np.minimum(best[some], _times(_ramps_in_windows(matrices[some], part, number, feed, bounds)))
     return best
 
 
-def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tolerance: float = 1e-3) -> Bend:
+def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tolerance: float = 1e-3) -> CurveShape:
     """The smooth curve that a controller follows past points.
 
     Parameters
@@ -160,15 +161,15 @@ def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tol
     InvalidInput
         As `ramps`.
     """
-    joints, _, along = followed(points, tips, feed, width)
+    joints, _, along = check_path(points, tips, feed, width)
     curve, knots = _smooth(along, joints, tolerance)
     count = int(np.clip(4 * knots, 16 * _PLACES, _MOST))
     s = (np.arange(count) + 0.5) * (along[-1] / count)
     first, second, third = (np.asarray(curve(s, order)) for order in (1, 2, 3))
-    return Bend(curve, float(along[-1]), (first, second, third))
+    return CurveShape(curve, float(along[-1]), (first, second, third))
 
 
-def bends_of(points: ArrayLike, along: ArrayLike) -> Bend:
+def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
     """Smooth curves near points that belong to the same parameters, one for each of k ways to go, with few knots.
 
     Parameters
@@ -190,7 +191,7 @@ def bends_of(points: ArrayLike, along: ArrayLike) -> Bend:
     pace = np.maximum(stretch, _NOTHING)[..., None]
     way = first / pace
     bent = (second - (way * second).sum(axis=2, keepdims=True) * way) / pace**2
-    return Bend(curve, float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
+    return CurveShape(curve, float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
 
 
 def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int]:
@@ -206,7 +207,7 @@ def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int
     return make_interp_spline(along, joints, _DEGREE), len(along)
 
 
-def greatest_speeds(bend: Bend, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
+def greatest_speeds(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
     """Speed along k curves that their bends allow at even places of the parameter, (k, n) mm/s.
 
     Parameters
@@ -239,7 +240,7 @@ def _numbers(count: int) -> list[int]:
     return [4**k for k in range(10) if 4**k * _PLACES <= count]
 
 
-def _windowed(matrices: Array, bend: Bend, number: int, feed: float, bounds: AxisBounds) -> _Windows:
+def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: float, bounds: AxisBounds) -> _Windows:
     """Ramps between a number of windows of one length."""
     count = bend.derivatives[0].shape[-2]
     starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))

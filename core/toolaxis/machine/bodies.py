@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.support_functions import Convex, boxes, hull, turned_body
+from toolaxis.numeric.support_functions import ConvexBodies, boxes, hull, revolve_body
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ _WORDS = {"name", "carried", "radius", "round", *SHAPES}
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MachineBody:
     """One convex piece of a machine; pieces of one name and one axis are one body.
 
     Attributes
@@ -78,7 +78,7 @@ class Body:
                                "or more and no negative radius are needed")
 
     @property
-    def convex(self) -> Convex:
+    def convex(self) -> ConvexBodies:
         """Its shape, machine coordinates.
 
         Raises
@@ -92,11 +92,11 @@ class Body:
         if self.kind == "box":
             return boxes(self.points.min(axis=0), self.points.max(axis=0))
         if self.kind == "cylinder":
-            return turned_body(self.points, self.radius)
+            return revolve_body(self.points, self.radius)
         return hull(self.points, self.radius)
 
 
-def body_from(item: Any, folder: Path | None = None) -> Body:
+def body_from(item: Any, folder: Path | None = None) -> MachineBody:
     """A body from its table in a TOML file.
 
     Parameters
@@ -132,11 +132,11 @@ def body_from(item: Any, folder: Path | None = None) -> Body:
         raise InvalidInput(f"body {name} is carried by {carried!r}: give the name of an axis, or \"{BED}\"")
     if kind == "step":
         path = Path(str(item["step"]))
-        return Body(name, carried, kind, np.empty((0, 3)), file=str(path if folder is None else folder / path))
+        return MachineBody(name, carried, kind, np.empty((0, 3)), file=str(path if folder is None else folder / path))
     radius = item.get(SHAPES[kind][0], 0.0) if SHAPES[kind] else 0.0
     if isinstance(radius, bool) or not isinstance(radius, int | float):
         raise InvalidInput(f"{SHAPES[kind][0]} of body {name} is {radius!r}: a number of mm is needed")
-    return Body(name, carried, kind, _rows(item[kind], f"{kind} of body {name}"), float(radius))
+    return MachineBody(name, carried, kind, _rows(item[kind], f"{kind} of body {name}"), float(radius))
 
 
 def _rows(values: Any, what: str) -> Array:
@@ -149,12 +149,12 @@ def _rows(values: Any, what: str) -> Array:
     return rows
 
 
-def body_lines(body: Body) -> list[str]:
+def body_lines(body: MachineBody) -> list[str]:
     """The lines of a TOML file that `body_from` reads back.
 
     Parameters
     ----------
-    body : Body
+    body : MachineBody
     """
     rows = ", ".join("[" + ", ".join(repr(float(value)) for value in row) + "]" for row in body.points)
     shape = f"step = {_quoted(body.file)}" if body.kind == "step" else f"{body.kind} = [{rows}]"

@@ -6,33 +6,33 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.machine.axis import RotaryAxis
-from toolaxis.machine.bodies import BED, Body
+from toolaxis.machine.bodies import BED, MachineBody
 from toolaxis.machine.kinematics import linear_coordinates, placement
 from toolaxis.machine.machine import Machine
-from toolaxis.numeric.support_functions import Convex, places, separation
+from toolaxis.numeric.support_functions import ConvexBodies, places, separation
 
 Array = NDArray[np.float64]
 
 
-class Standing(NamedTuple):
+class BodyPose(NamedTuple):
     """A piece of the machine in the part's frame, and the linear motion that carries it.
 
     body : Body;  shape : its one Convex with the linear axes at zero;  carrier : (3, 3) array: the piece moves by
     carrier @ (linear coordinates), mm, in the part's frame; zero on the table's side.
     """
 
-    body: Body
-    shape: Convex
+    body: MachineBody
+    shape: ConvexBodies
     carrier: Array
 
 
-def beside_part(machine: Machine, body: Body) -> bool:
+def beside_part(machine: Machine, body: MachineBody) -> bool:
     """Whether a body stands on the table's side of the linear axes.
 
     Parameters
     ----------
     machine : Machine
-    body : Body
+    body : MachineBody
     """
     return body.carried in (BED, *(axis.name for axis in machine.table))
 
@@ -53,7 +53,7 @@ def part_from_bed(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLik
     return matrix
 
 
-def standing(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLike | None = None) -> list[Standing]:
+def standing(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLike | None = None) -> list[BodyPose]:
     """All bodies at rotary angles.
 
     Parameters
@@ -69,8 +69,8 @@ def standing(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLike | N
     the tool does in `toolaxis.machine.kinematics.forward`.
     """
     part_from = part_from_bed(machine, rotary, table_from_part)
-    return [Standing(body, body.convex.moved(part_from @ bed_from_body(machine, body.carried, rotary)),
-                     part_from[:3, :3] @ machine.directions @ carried_by(machine, body.carried))
+    return [BodyPose(body, body.convex.moved(part_from @ bed_from_body(machine, body.carried, rotary)),
+                     part_from[:3, :3] @ machine.directions @ axes_carrying(machine, body.carried))
             for body in machine.bodies]
 
 
@@ -104,20 +104,20 @@ def meeting_at(machine: Machine, rotary: Array, points: Array, length: float, ta
     for one, other in _pairs(machine):
         moving = one.convex.moved(stands[one.carried]).rows(row)
         still = other.convex.moved(stands[other.carried]).rows(row)
-        ways = places(at @ carried_by(machine, one.carried) @ machine.directions.T)
+        ways = places(at @ axes_carrying(machine, one.carried) @ machine.directions.T)
         found.append(separation([moving, ways], [still]).reshape(count, p).min(axis=1))
         names.append((one.name, other.name))
     return np.array(found).reshape(len(found), count).T, names
 
 
-def _pairs(machine: Machine) -> list[tuple[Body, Body]]:
+def _pairs(machine: Machine) -> list[tuple[MachineBody, MachineBody]]:
     """Bodies of the spindle's side with those of the table's; what the first linear axis carries slides on the bed."""
     return [(one, other) for one in machine.bodies for other in machine.bodies
             if not beside_part(machine, one) and beside_part(machine, other)
             and not (other.carried == BED and one.carried == machine.linear[0].name)]
 
 
-def carried_by(machine: Machine, name: str) -> Array:
+def axes_carrying(machine: Machine, name: str) -> Array:
     """Which linear coordinates move what an axis carries: a diagonal matrix of ones and zeros, (3, 3).
 
     Parameters

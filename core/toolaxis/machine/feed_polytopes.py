@@ -89,7 +89,7 @@ def along(machine: Machine, level: Level, feeds: ArrayLike, rotary: ArrayLike) -
     return reach(box(machine, level), joint)
 
 
-def preferred(machine: Machine, level: Level) -> tuple[Array, Array]:
+def preferred_direction(machine: Machine, level: Level) -> tuple[Array, Array]:
     """The joint direction in which the axes together do most at a level, and what they do there at every level.
 
     Parameters

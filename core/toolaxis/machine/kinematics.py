@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.machine import Machine
-from toolaxis.numeric.rotations import one_turn, turned, two_turns
+from toolaxis.numeric.rotations import one_turn, rotate_vectors, two_turns
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions:
+class AxisSolutions:
     """All ways in which a machine takes tool axes, or tool axes at points.
 
     Attributes
@@ -53,7 +53,7 @@ class Solutions:
 
 
 def rotary_angles(machine: Machine, axes: ArrayLike, near: ArrayLike = (), table_from_part: ArrayLike | None = None,
-                  ) -> Solutions:
+                  ) -> AxisSolutions:
     """All rotary angles that give tool axes, each by whole turns inside its limits and there nearest to where it is.
 
     Parameters
@@ -86,7 +86,7 @@ def rotary_angles(machine: Machine, axes: ArrayLike, near: ArrayLike = (), table
             wanted = np.where(free[:, None], np.clip(stand[0], axis.low, axis.high), wanted)
         angles[..., i], inside = axis.within(wanted, stand[i])
         within &= inside
-    return Solutions(angles, reached, within, free, determinant)
+    return AxisSolutions(angles, reached, within, free, determinant)
 
 
 def _turns(machine: Machine, rows: Array) -> tuple[Array, Bools, Bools, Array]:
@@ -146,7 +146,7 @@ def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, t
 
 
 def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: float = 0.0,
-            table_from_part: ArrayLike | None = None, *, near: ArrayLike = ()) -> Solutions:
+            table_from_part: ArrayLike | None = None, *, near: ArrayLike = ()) -> AxisSolutions:
     """All joint coordinates that bring the tool to points with tool axes.
 
     Parameters
@@ -176,7 +176,7 @@ def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: f
         joints[:, branch, :3] = linear_coordinates(machine, rows, found.joints[:, branch], tool_length, table_from_part)
         for i, axis in enumerate(machine.linear):
             within[:, branch] &= axis.excess(joints[:, branch, i]) <= 0
-    return Solutions(joints, found.reached, within, found.free, found.determinant)
+    return AxisSolutions(joints, found.reached, within, found.free, found.determinant)
 
 
 def forward(machine: Machine, joints: ArrayLike, tool_length: float = 0.0,
@@ -213,7 +213,7 @@ def tool_axes(machine: Machine, rotary: ArrayLike) -> Array:
     angles = np.atleast_2d(np.asarray(rotary, dtype=float))
     axes = np.broadcast_to(np.asarray(machine.spindle), (len(angles), 3))
     for i in reversed(range(len(machine.rotary))):
-        axes = turned(axes, machine.rotary[i].direction, angles[:, i])
+        axes = rotate_vectors(axes, machine.rotary[i].direction, angles[:, i])
     return axes
 
 
@@ -239,7 +239,7 @@ def part_from_machine(machine: Machine, rotary: ArrayLike, table_from_part: Arra
     for direction in machine.directions.T:
         rows = np.broadcast_to(direction, (len(angles), 3))
         for i in reversed(range(len(machine.table))):
-            rows = turned(rows, machine.table[i].direction, angles[:, i])
+            rows = rotate_vectors(rows, machine.table[i].direction, angles[:, i])
         columns.append(rows @ placement(table_from_part)[:3, :3])
     return np.stack(columns, axis=2)
 
@@ -288,4 +288,4 @@ def _tip(machine: Machine, angles: Array, tool_length: float) -> Array:
 
 
 def _about(points: Array, axis: RotaryAxis, angles: Array) -> Array:
-    return turned(points - axis.point, axis.direction, angles) + axis.point
+    return rotate_vectors(points - axis.point, axis.direction, angles) + axis.point

@@ -18,7 +18,7 @@ from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.bodies import body_from, body_lines
 from toolaxis.machine.freecad_machine import machine_from_fcm
 from toolaxis.machine.machine import Machine
-from toolaxis.resources import named_files
+from toolaxis.resources import find_files
 
 _MACHINE = {"name", "source", "assumed", "spindle", "gauge", "linear", "table", "head", "body"}
 _LINEAR = {"name", "direction", "limits", "velocity", "acceleration", "jerk"}
@@ -36,7 +36,7 @@ def library() -> dict[str, Path]:
     dict of str to Path
         The folder in the environment variable TOOLAXIS_MACHINES, if set, comes first.
     """
-    return named_files("machines", ".toml", ".fcm")
+    return find_files("machines", ".toml", ".fcm")
 
 
 def load_machine(text: str) -> Machine:

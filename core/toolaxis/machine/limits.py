@@ -239,7 +239,7 @@ def parse_limits(text: str) -> AxisLimits:
     return parts[0] if len(parts) == 1 else AllOf(tuple(parts))
 
 
-def written(limits: AxisLimits | None) -> str:
+def format_limits(limits: AxisLimits | None) -> str:
     """The short form of limits, which `parse_limits` reads back; empty for none.
 
     Parameters
@@ -254,7 +254,7 @@ def written(limits: AxisLimits | None) -> str:
     if limits is None:
         return ""
     if isinstance(limits, AllOf):
-        return "+".join(written(part) for part in limits.parts)
+        return "+".join(format_limits(part) for part in limits.parts)
     if isinstance(limits, Cone):
         return "cone:" + ",".join(repr(float(x)) for x in (*limits.direction, degrees(limits.tilt)))
     if isinstance(limits, RotaryRanges):

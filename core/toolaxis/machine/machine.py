@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.axis import LinearAxis, RotaryAxis
-from toolaxis.machine.bodies import BED, Body
+from toolaxis.machine.bodies import BED, MachineBody
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ class Machine:
         Where its numbers are from.
     assumed : tuple of str
         Which of its numbers are assumed, in words.
-    bodies : tuple of Body
+    bodies : tuple of MachineBody
         What it is made of, as far as that is known; the linear axes then stand in their order from the table.
 
     Raises
@@ -61,7 +61,7 @@ class Machine:
     gauge: Array | tuple[float, float, float] = (0.0, 0.0, 0.0)
     source: str = ""
     assumed: tuple[str, ...] = ()
-    bodies: tuple[Body, ...] = ()
+    bodies: tuple[MachineBody, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spindle", unit(as_rows(self.spindle, 3, "spindle direction")[0]))

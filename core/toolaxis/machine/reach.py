@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import inverse, placement, rotary_angles
 from toolaxis.machine.machine import Machine
-from toolaxis.numeric.rotations import ON_AXIS, across, turn_between, turned
+from toolaxis.numeric.rotations import ON_AXIS, across, rotate_vectors, turn_between
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 
 Array = NDArray[np.float64]
@@ -93,7 +93,7 @@ def _border(machine: Machine) -> list[tuple[Array, Array, float]]:
 
 
 def _one(vector: Array, axis: Array, angle: float) -> Array:
-    return np.asarray(turned(vector, axis, angle))
+    return np.asarray(rotate_vectors(vector, axis, angle))
 
 
 def _to_arc(rows: Array, axis: Array, start: Array, turn: float) -> Array:

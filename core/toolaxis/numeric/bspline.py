@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import built_in, compiled, fused
+from toolaxis.numeric.jit import jit, jit_fma, jit_fma_inline
 
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]
@@ -22,7 +22,7 @@ MAX_DEGREE = 25
 WORK_SHAPE = (6, MAX_DEGREE + 1)
 
 
-@built_in
+@jit_fma_inline
 def find_span(knots: Array, degree: int, t: float) -> int:
     """Index i with knots[i] <= t < knots[i + 1], the last non-empty span at the upper end.
 
@@ -39,7 +39,7 @@ def find_span(knots: Array, degree: int, t: float) -> int:
     return low
 
 
-@fused
+@jit_fma
 def basis_derivatives(knots: Array, degree: int, span: int, t: float, rows: Array) -> None:
     """Basis functions and their first two derivatives at t into rows[0:3, 0:degree+1].
 
@@ -48,7 +48,7 @@ def basis_derivatives(knots: Array, degree: int, span: int, t: float, rows: Arra
     _basis(knots, (degree, span), t, rows, 0)
 
 
-@built_in
+@jit_fma_inline
 def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int) -> None:
     """The same into rows[at:at+3]; a slice there would count references in the hot loop.
 
@@ -81,7 +81,7 @@ def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int)
             rows[at + 2, d] = d * previous
 
 
-@built_in
+@jit_fma_inline
 def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
     """The recursion of `basis_derivatives` written out for degree 3, with six divisions."""
     a, b, c = knots[span - 2], knots[span - 1], knots[span]
@@ -100,7 +100,7 @@ def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
     rows[at + 2, 0], rows[at + 2, 1], rows[at + 2, 2], rows[at + 2, 3] = -x, x - y, y - z, z
 
 
-@compiled
+@jit
 def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work: Array) -> None:
     """S, Su, Sv, Suu, Suv, Svv at one (u, v).
 
@@ -118,8 +118,8 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
         Scratch.
     """
     knots_u, knots_v, control, pu, pv, rational = data
-    uc = _clamped(knots_u, pu, u)
-    vc = _clamped(knots_v, pv, v)
+    uc = _clamp_parameter(knots_u, pu, u)
+    vc = _clamp_parameter(knots_v, pv, v)
     span_u = find_span(knots_u, pu, uc)
     span_v = find_span(knots_v, pv, vc)
     _basis(knots_u, (pu, span_u), uc, work, 0)
@@ -134,8 +134,8 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
         _extend((u - uc, v - vc), weights, thirds, out)
 
 
-@built_in
-def _clamped(knots: Array, degree: int, t: float) -> float:
+@jit_fma_inline
+def _clamp_parameter(knots: Array, degree: int, t: float) -> float:
     """The nearest parameter in the domain; NaN stays NaN."""
     if t < knots[degree]:
         return float(knots[degree])
@@ -144,7 +144,7 @@ def _clamped(knots: Array, degree: int, t: float) -> float:
     return t
 
 
-@built_in
+@jit_fma_inline
 def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array, out: Array) -> None:
     """Contract the first three homogeneous coordinates; every sum is kept in a register."""
     (i0, j0), (pu, pv) = first, degree
@@ -173,7 +173,7 @@ def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work
     out[5, 0], out[5, 1], out[5, 2] = svv0, svv1, svv2
 
 
-@built_in
+@jit_fma_inline
 def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> Six:
     """The weight and its five derivatives."""
     (i0, j0), (pu, pv) = first, degree
@@ -189,7 +189,7 @@ def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int], wo
     return w, wu, wv, wuu, wuv, wvv
 
 
-@built_in
+@jit_fma_inline
 def _divide(weights: Six, out: Array) -> None:
     w, wu, wv, wuu, wuv, wvv = weights
     share = 1.0 / w
@@ -205,7 +205,7 @@ def _divide(weights: Six, out: Array) -> None:
         out[2, c] = sv
 
 
-@built_in
+@jit_fma_inline
 def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> tuple[Four, Four]:
     """The mixed third derivatives uuv and uvv of the four homogeneous coordinates."""
     (i0, j0), (pu, pv) = first, degree
@@ -220,7 +220,7 @@ def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], wor
     return (x, y, z, w), (x2, y2, z2, w2)
 
 
-@built_in
+@jit_fma_inline
 def _extend(beyond: tuple[float, float], weights: Six, thirds: tuple[Four, Four], out: Array) -> None:
     """Carry the six vectors of the border on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
     (du, dv), (w, wu, wv, wuu, wuv, wvv), (uuv, uvv) = beyond, weights, thirds
@@ -235,14 +235,14 @@ def _extend(beyond: tuple[float, float], weights: Six, thirds: tuple[Four, Four]
         out[5, c] = svv + du * suvv if dv == 0.0 else 0.0 * dv
 
 
-@compiled
+@jit
 def _many(data: SurfaceData, uv: Array, out: Array) -> None:
     work = np.empty((6, 26))
     for k in range(uv.shape[0]):
         surface_derivatives(data, uv[k, 0], uv[k, 1], out[k], work)
 
 
-@compiled
+@jit
 def _many_cubic(data: SurfaceData, uv: Array, out: Array) -> bool:
     """The six vectors at the nearest parameters of the domain of a bicubic surface; whether all were inside.
 
@@ -252,7 +252,7 @@ def _many_cubic(data: SurfaceData, uv: Array, out: Array) -> bool:
     work = np.empty((6, 26))
     inside = True
     for k in range(uv.shape[0]):
-        u, v = _clamped(knots_u, 3, uv[k, 0]), _clamped(knots_v, 3, uv[k, 1])
+        u, v = _clamp_parameter(knots_u, 3, uv[k, 0]), _clamp_parameter(knots_v, 3, uv[k, 1])
         inside = inside and u == uv[k, 0] and v == uv[k, 1]
         span_u, span_v = find_span(knots_u, 3, u), find_span(knots_v, 3, v)
         _cubic(knots_u, span_u, u, work, 0)

@@ -13,7 +13,7 @@ SLIVER = 1e-6
 ON_LINE = 1e-9
 
 
-def clipped(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> tuple[Array, ...]:
+def clip_half_plane(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> tuple[Array, ...]:
     """The part of a polygon with holes on one side of an axis-parallel line.
 
     Parameters
@@ -38,7 +38,7 @@ def clipped(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> t
         return ()
     sign = 1.0 if above else -1.0
     size = np.ptp(np.concatenate(loops), axis=0)
-    snapped = [_snapped(loop, axis, limit, ON_LINE * float(size[axis])) for loop in loops]
+    snapped = [_snap_to_line(loop, axis, limit, ON_LINE * float(size[axis])) for loop in loops]
     depths = [sign * (loop[:, axis] - limit) for loop in snapped]
     if all((depth >= 0).all() for depth in depths):
         return _with_width(snapped, size)
@@ -49,10 +49,10 @@ def clipped(loops: tuple[Array, ...], axis: int, limit: float, above: bool) -> t
             whole.append(loop)
         elif (depth > 0).any():
             chains += _chains(loop, depth, axis, limit)
-    return _with_width(whole + _joined(chains, axis), size)
+    return _with_width(whole + _join_chains(chains, axis), size)
 
 
-def _snapped(loop: Array, axis: int, limit: float, reach: float) -> Array:
+def _snap_to_line(loop: Array, axis: int, limit: float, reach: float) -> Array:
     """A loop with its vertices next to the line moved onto it."""
     moved = loop.copy()
     moved[np.abs(loop[:, axis] - limit) <= reach, axis] = limit
@@ -70,7 +70,7 @@ def _with_width(loops: list[Array], size: Array) -> tuple[Array, ...]:
     return tuple(kept)
 
 
-def grouped(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
+def outer_with_holes(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
     """Loops of several separate polygons, sorted into one tuple a polygon: its border first, then its holes.
 
     Parameters
@@ -121,7 +121,7 @@ def _crossing(p: Array, q: Array, dp: float, dq: float, axis: int, limit: float)
     return np.asarray(point)
 
 
-def _joined(chains: list[Array], axis: int) -> list[Array]:
+def _join_chains(chains: list[Array], axis: int) -> list[Array]:
     """Closed loops from chains, their ends joined in pairs along the line, in the order in which they leave it."""
     ends = []
     for k, chain in enumerate(chains):

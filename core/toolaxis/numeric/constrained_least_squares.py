@@ -47,7 +47,7 @@ def constrained_least_squares(rows: ArrayLike, right: ArrayLike, equal: tuple[Ar
     [1.0, 1.0]
     """
     a, b = np.atleast_2d(np.asarray(rows, dtype=float)), np.asarray(right, dtype=float)
-    first, null = _solved(equal, a.shape[1])
+    first, null = _solve_equations(equal, a.shape[1])
     if null.shape[1] == 0:
         _check(first, at_least)
         return first
@@ -65,7 +65,7 @@ def constrained_least_squares(rows: ArrayLike, right: ArrayLike, equal: tuple[Ar
     return np.asarray(first + null @ y)
 
 
-def _solved(equal: tuple[ArrayLike, ArrayLike] | None, n: int) -> tuple[Array, Array]:
+def _solve_equations(equal: tuple[ArrayLike, ArrayLike] | None, n: int) -> tuple[Array, Array]:
     """The shortest solution of equations, and an orthonormal basis of what is left free, (n, f)."""
     if equal is None:
         return np.zeros(n), np.eye(n)
@@ -111,10 +111,10 @@ def _least_distance(g: Array, h: Array) -> Array:
     if np.linalg.norm(rest) <= _APART or rest[-1] >= 0:
         raise InvalidInput("the inequalities contradict each other: none but a wider one can be met")
     z = -scale * rest[:-1] / rest[-1]
-    return _polished(g, h, np.asarray(z), dual > 0)
+    return _polish_active(g, h, np.asarray(z), dual > 0)
 
 
-def _polished(g: Array, h: Array, z: Array, active: NDArray[np.bool_]) -> Array:
+def _polish_active(g: Array, h: Array, z: Array, active: NDArray[np.bool_]) -> Array:
     """The same from its active rows as equations, where that misses the others by less."""
     better = np.linalg.lstsq(g[active], h[active], rcond=_RANK)[0]
     return np.asarray(better if (h - g @ better).max() <= max(float((h - g @ z).max()), 0.0) + 1e-12 else z)

@@ -12,7 +12,7 @@ _ROUNDS = 25
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class FeatureCell:
     """One cell of the partition.
 
     Attributes
@@ -101,7 +101,7 @@ def _cut(points: Array, members: Index, second: NDArray[np.bool_], rectangle: Ar
     return axis, float(values[middle - 1] + values[middle]) / 2
 
 
-def partition(points: Array, groups: tuple[Array, ...], tolerance: float, rectangle: Array) -> list[Patch]:
+def partition(points: Array, groups: tuple[Array, ...], tolerance: float, rectangle: Array) -> list[FeatureCell]:
     """Split a rectangle until every point is within the tolerance of the centroid of its cell.
 
     Parameters
@@ -117,10 +117,10 @@ def partition(points: Array, groups: tuple[Array, ...], tolerance: float, rectan
 
     Returns
     -------
-    list of Patch, in depth-first order, lower side first; cells without points are left out.
+    list of FeatureCell, in depth-first order, lower side first; cells without points are left out.
     """
-    done: list[Patch] = []
-    open_ = [Patch(np.asarray(rectangle, dtype=float), np.arange(len(points)))] if len(points) else []
+    done: list[FeatureCell] = []
+    open_ = [FeatureCell(np.asarray(rectangle, dtype=float), np.arange(len(points)))] if len(points) else []
     while open_:
         patch = open_.pop()
         members = patch.members
@@ -132,5 +132,5 @@ def partition(points: Array, groups: tuple[Array, ...], tolerance: float, rectan
         below = points[members, axis] < place
         lower, upper = patch.rectangle.copy(), patch.rectangle.copy()
         lower[2 * axis + 1] = upper[2 * axis] = place
-        open_ += [Patch(upper, members[~below]), Patch(lower, members[below])]
+        open_ += [FeatureCell(upper, members[~below]), FeatureCell(lower, members[below])]
     return done

@@ -32,7 +32,7 @@ _numba = _load()
 available: bool = _numba is not None
 
 
-def compiled(function: _Function) -> _Function:
+def jit(function: _Function) -> _Function:
     """Compile a kernel, or hand it back unchanged where numba cannot be used.
 
     Compiled code is kept on disk, releases the interpreter lock and divides as IEEE 754 does.
@@ -45,8 +45,8 @@ def compiled(function: _Function) -> _Function:
     return _compile(function, False)
 
 
-def fused(function: _Function) -> _Function:
-    """Compile a kernel as `compiled` does, with a * b + c rounded once where the processor can.
+def jit_fma(function: _Function) -> _Function:
+    """Compile a kernel as `jit` does, with a * b + c rounded once where the processor can.
 
     For long sums of products; not where a difference of products must vanish exactly.
 
@@ -58,8 +58,8 @@ def fused(function: _Function) -> _Function:
     return _compile(function, {"contract"})
 
 
-def built_in(function: _Function) -> _Function:
-    """Compile a small kernel as `fused` does, and build it into the code of whatever calls it.
+def jit_fma_inline(function: _Function) -> _Function:
+    """Compile a small kernel as `jit_fma` does, and build it into the code of whatever calls it.
 
     Calls that are left cost a reference count for each array that is passed, more than a short sum of products.
 
@@ -71,10 +71,10 @@ def built_in(function: _Function) -> _Function:
     return _compile(function, {"contract"}, True)
 
 
-def inlined(function: _Function) -> _Function:
-    """Compile a small kernel as `compiled` does, and build it into the code of whatever calls it.
+def jit_inline(function: _Function) -> _Function:
+    """Compile a small kernel as `jit` does, and build it into the code of whatever calls it.
 
-    The results are those of `compiled` to the last bit; see `built_in` for why it is worth it.
+    The results are those of `jit` to the last bit; see `jit_fma_inline` for why it is worth it.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def insert_knot(knots: Array, control: Array, degree: int, t: float) -> tuple[Ar
     return np.insert(knots, place, t), np.concatenate([control[:k - degree + 1], mixed, control[k:]])
 
 
-def restricted(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
+def restrict_spline(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
     """The piece of a spline over [low, high], with clamped ends.
 
     Parameters
@@ -99,7 +99,7 @@ def restricted(knots: Array, control: Array, degree: int, low: float, high: floa
     return clamped, np.ascontiguousarray(control[first:first + len(clamped) - degree - 1])
 
 
-def unrolled(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
+def unroll_periodic(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
     """A periodic spline written without period over [low, high], with clamped ends.
 
     Parameters
@@ -122,10 +122,10 @@ def unrolled(knots: Array, control: Array, degree: int, low: float, high: float)
     apart = np.diff(flat, prepend=flat[0] - period) > SAME * period
     flat = flat[apart][np.cumsum(apart) - 1]
     net = np.concatenate([control] * len(turns))[:len(flat) - degree - 1]
-    return restricted(flat, net, degree, low, high)
+    return restrict_spline(flat, net, degree, low, high)
 
 
-def refined(knots: Array, control: Array, degree: int, target: Array) -> Array:
+def insert_knots(knots: Array, control: Array, degree: int, target: Array) -> Array:
     """Control points of a spline on more knots.
 
     Parameters
@@ -148,7 +148,7 @@ def refined(knots: Array, control: Array, degree: int, target: Array) -> Array:
     return control
 
 
-def elevated(knots: Array, control: Array, degree: int, target: int) -> tuple[Array, Array]:
+def elevate_degree(knots: Array, control: Array, degree: int, target: int) -> tuple[Array, Array]:
     """A continuous spline with clamped ends written with a higher degree.
 
     Parameters

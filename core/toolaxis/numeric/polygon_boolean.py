@@ -26,7 +26,7 @@ class _Chain(NamedTuple):
     last: int
 
 
-def divided(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
+def divide_polygon(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     """A polygon divided by another one.
 
     Parameters
@@ -58,8 +58,8 @@ def divided(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     own, cutting = _chains(loops, one, points), _chains(by, other, points)
     own_in, cutting_in = _within(own, by), _within(cutting, loops)
     within = [chain for chain, kept in zip(cutting, cutting_in, strict=True) if kept]
-    return (_closed([chain for chain, kept in zip(own, own_in, strict=True) if kept] + within, len(points)),
-            _closed([chain for chain, kept in zip(own, own_in, strict=True) if not kept] + within, len(points)))
+    return (_close_chains([chain for chain, kept in zip(own, own_in, strict=True) if kept] + within, len(points)),
+            _close_chains([chain for chain, kept in zip(own, own_in, strict=True) if not kept] + within, len(points)))
 
 
 def _edges(loops: Loops) -> tuple[Array, Array]:
@@ -115,7 +115,7 @@ def _within(chains: list[_Chain], loops: Loops) -> list[bool]:
     return list(inside(slabs(loops), np.array(middles)))
 
 
-def _closed(chains: list[_Chain], crossings: int) -> Loops:
+def _close_chains(chains: list[_Chain], crossings: int) -> Loops:
     """Loops from chains of which two meet at every crossing."""
     loops = [chain.points for chain in chains if chain.first < 0]
     open_ = [chain for chain in chains if chain.first >= 0]
@@ -148,13 +148,13 @@ def without(loops: Loops, zone: Loops) -> Loops:
     Parameters
     ----------
     loops, zone : tuple of (m, 2) arrays
-        Closed loops; corners and edges of the piece that lie on the border are the border's own, as `divided` and
-        `toolaxis.numeric.clipping.clipped` leave them.
+        Closed loops; corners and edges of the piece that lie on the border are the border's own, as `divide_polygon`
+        and `toolaxis.numeric.clipping.clip_half_plane` leave them.
     """
     return _not_in_both(loops, zone)
 
 
-def united(loops: Loops, beside: Loops) -> Loops:
+def unite_polygons(loops: Loops, beside: Loops) -> Loops:
     """A polygon and another one beside it as one: edges that both have cancel out.
 
     Parameters
@@ -179,7 +179,7 @@ def _not_in_both(loops: Loops, others: Loops) -> Loops:
                 del edges[b, a]
             else:
                 edges[a, b] = None
-    return _chained(list(edges))
+    return _chain_edges(list(edges))
 
 
 def _with_corners(loops: Loops, others: Loops) -> list[Array]:
@@ -200,7 +200,7 @@ def _with_corners(loops: Loops, others: Loops) -> list[Array]:
     return made
 
 
-def _chained(edges: list[Edge]) -> Loops:
+def _chain_edges(edges: list[Edge]) -> Loops:
     """Closed loops from edges in any order."""
     beside: dict[Corner, list[int]] = {}
     for k, pair in enumerate(edges):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ def signed_area(loop: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Slabs:
+class EdgeIndex:
     """Edges of closed loops sorted into horizontal slabs.
 
     Attributes
@@ -53,7 +53,7 @@ class Slabs:
     border: tuple[float, float]
 
 
-def slabs(loops: tuple[Array, ...]) -> Slabs:
+def slabs(loops: tuple[Array, ...]) -> EdgeIndex:
     """Sort the edges of closed loops for `inside`.
 
     Parameters
@@ -76,10 +76,10 @@ def slabs(loops: tuple[Array, ...]) -> Slabs:
     slab = np.repeat(first, width) + np.arange(len(owner)) - np.repeat(np.cumsum(width) - width, width)
     order = np.argsort(slab, kind="stable")
     start = np.concatenate([[0], np.cumsum(np.bincount(slab, minlength=count))]).astype(np.int64)
-    return Slabs(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height, border)
+    return EdgeIndex(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height, border)
 
 
-@compiled
+@jit
 def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
             grid: tuple[float, float, float, float], points: Array, out: NDArray[np.bool_]) -> None:
     start, member = table
@@ -105,12 +105,12 @@ def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
         out[k] = odd
 
 
-def inside(table: Slabs, points: Array) -> NDArray[np.bool_]:
+def inside(table: EdgeIndex, points: Array) -> NDArray[np.bool_]:
     """Whether points lie inside an odd number of loops.
 
     Parameters
     ----------
-    table : Slabs
+    table : EdgeIndex
     points : (n, 2) array
 
     Returns
@@ -125,7 +125,7 @@ def inside(table: Slabs, points: Array) -> NDArray[np.bool_]:
     return out
 
 
-def inside_numpy(table: Slabs, points: Array) -> NDArray[np.bool_]:
+def inside_numpy(table: EdgeIndex, points: Array) -> NDArray[np.bool_]:
     """The plain twin of `inside`: every point against every edge.
 
     Parameters and result as there.

@@ -38,7 +38,7 @@ class Turns(NamedTuple):
     determinant: Array
 
 
-def turned(vectors: ArrayLike, axis: ArrayLike, angles: ArrayLike) -> Array:
+def rotate_vectors(vectors: ArrayLike, axis: ArrayLike, angles: ArrayLike) -> Array:
     """Vectors turned about an axis through the origin, (n, 3).
 
     Parameters
@@ -99,7 +99,7 @@ def one_turn(axis: ArrayLike, start: ArrayLike, target: ArrayLike) -> tuple[Arra
     a, k, t = unit(axis), unit(as_rows(start, 3, "direction")), unit(as_rows(target, 3, "direction"))
     k, t = np.broadcast_arrays(k, t)
     angles = turn_between(k, t, a)
-    reached = angle_between(turned(k, a, angles), t) <= ROUNDING
+    reached = angle_between(rotate_vectors(k, a, angles), t) <= ROUNDING
     free = (np.linalg.norm(across(t, a), axis=1) <= ON_AXIS) & (np.linalg.norm(across(k, a), axis=1) <= ON_AXIS)
     return np.where(free, 0.0, angles), reached, free
 
@@ -139,13 +139,13 @@ def two_turns(first: ArrayLike, second: ArrayLike, start: ArrayLike, target: Arr
     free = np.linalg.norm(across(t, a), axis=1) <= ON_AXIS
     angles = np.empty((len(t), 2, 2))
     for branch, sign in enumerate((1.0, -1.0)):
-        turn = wrapped(sign * corner - begin)
+        turn = wrap_to_pi(sign * corner - begin)
         angles[:, branch, 1] = turn
-        angles[:, branch, 0] = np.where(free, 0.0, turn_between(turned(k, b, turn), t, a))
+        angles[:, branch, 0] = np.where(free, 0.0, turn_between(rotate_vectors(k, b, turn), t, a))
     return Turns(angles, np.asarray(reached), free, np.abs(np.sin(ab) * np.sin(bk) * np.sin(corner)))
 
 
-def wrapped(angles: ArrayLike) -> Array:
+def wrap_to_pi(angles: ArrayLike) -> Array:
     """Angles brought into -pi to pi by whole turns, without change where they lie there.
 
     Parameters

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 _AMOUNT, _PRICE = 9, 6
 
 
-def settled(values: ArrayLike) -> NDArray[np.float64]:
+def round_significant(values: ArrayLike) -> NDArray[np.float64]:
     """Amounts rounded, so that those that are equal but for rounding are ties.
 
     Parameters
@@ -22,7 +22,7 @@ def settled(values: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(np.round(np.asarray(values, dtype=float), _AMOUNT))
 
 
-def settled_prices(values: ArrayLike) -> NDArray[np.float64]:
+def round_costs(values: ArrayLike) -> NDArray[np.float64]:
     """Prices of axes rounded, so that those that are equal but for rounding are ties.
 
     Parameters
@@ -33,7 +33,7 @@ def settled_prices(values: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(np.round(np.asarray(values, dtype=float), _PRICE))
 
 
-def signed(direction: ArrayLike) -> NDArray[np.float64]:
+def canonical_sign(direction: ArrayLike) -> NDArray[np.float64]:
     """A direction whose sense says nothing, such as an eigenvector, in a sense that does not hang on rounding.
 
     Parameters
@@ -47,5 +47,5 @@ def signed(direction: ArrayLike) -> NDArray[np.float64]:
         The direction or its opposite: the one whose first component that is not zero is above zero.
     """
     row = np.asarray(direction, dtype=float)
-    named = settled(row)
+    named = round_significant(row)
     return row if named[np.flatnonzero(named)[0]] > 0 else -row

@@ -20,7 +20,7 @@ _TRIALS = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class Steps:
+class TransitionCosts:
     """What goes between states.
 
     Attributes
@@ -47,7 +47,7 @@ class Steps:
 
 
 @dataclass(frozen=True)
-class Tour:
+class VisitingOrder:
     """States in their order, what they cost together, a bound below which no order is, and whether that is the cost."""
 
     states: tuple[int, ...]
@@ -60,12 +60,12 @@ class Tour:
         return self.cost <= self.bound + 1e-9 * max(abs(self.bound), 1.0)
 
 
-def in_order(steps: Steps, order: Indices) -> Tour:
+def in_order(steps: TransitionCosts, order: Indices) -> VisitingOrder:
     """The cheapest states of things in a given order.
 
     Parameters
     ----------
-    steps : Steps
+    steps : TransitionCosts
     order : (k,) array of int
         Things.
     """
@@ -80,25 +80,25 @@ def in_order(steps: Steps, order: Indices) -> Tour:
     for choice in reversed(before):
         states.append(int(choice[states[-1]]))
     cost = float(best[last])
-    return Tour(tuple(int(rows[k][s]) for k, s in enumerate(reversed(states))), cost, cost)
+    return VisitingOrder(tuple(int(rows[k][s]) for k, s in enumerate(reversed(states))), cost, cost)
 
 
-def shortest(steps: Steps) -> Tour:
+def shortest(steps: TransitionCosts) -> VisitingOrder:
     """The cheapest order, and what no order can be cheaper than.
 
     Parameters
     ----------
-    steps : Steps
+    steps : TransitionCosts
 
     Returns
     -------
-    Tour
+    VisitingOrder
         Its cost is infinite where there is no way through all.
     """
-    return _exact(steps) if steps.things <= EXACT else _inserted(steps)
+    return _exact(steps) if steps.things <= EXACT else _insert_groups(steps)
 
 
-def _exact(steps: Steps) -> Tour:
+def _exact(steps: TransitionCosts) -> VisitingOrder:
     count, n = steps.things, len(steps.owner)
     bit = np.left_shift(1, steps.owner)
     whole = np.array([sum(1 << int(k) for k in np.flatnonzero(steps.group == g)) for g in steps.group])[steps.owner]
@@ -128,10 +128,10 @@ def _exact(steps: Steps) -> Tour:
         previous = int(before[mask, states[-1]])
         mask &= ~int(bit[states[-1]])
         states.append(previous)
-    return Tour(tuple(reversed(states)), cost, cost)
+    return VisitingOrder(tuple(reversed(states)), cost, cost)
 
 
-def _inserted(steps: Steps) -> Tour:
+def _insert_groups(steps: TransitionCosts) -> VisitingOrder:
     """Groups one after the other by the nearest next thing, then things and groups moved while that helps."""
     groups = [np.flatnonzero(steps.group == g) for g in dict.fromkeys(steps.group.tolist())]
     orders = [np.concatenate(groups), _nearest_next(steps, groups)]
@@ -149,17 +149,17 @@ def _inserted(steps: Steps) -> Tour:
             if found.cost < best.cost - 1e-9:
                 best, improved = found, True
                 order = [int(steps.owner[state]) for state in best.states]
-    return Tour(best.states, best.cost, min(_bound(steps), best.cost))
+    return VisitingOrder(best.states, best.cost, min(_bound(steps), best.cost))
 
 
-def _blocks(steps: Steps, order: list[int]) -> list[list[int]]:
+def _blocks(steps: TransitionCosts, order: list[int]) -> list[list[int]]:
     """Whole groups as they lie in an order, and single things of larger groups."""
     groups = [[thing for thing in order if steps.group[thing] == g]
               for g in dict.fromkeys(steps.group[order].tolist())]
     return [*groups, *([thing] for group in groups if len(group) > 1 for thing in group)]
 
 
-def _fits(steps: Steps, rest: list[int], place: int, block: list[int]) -> bool:
+def _fits(steps: TransitionCosts, rest: list[int], place: int, block: list[int]) -> bool:
     """Whether a block in a place leaves all groups together."""
     own = steps.group[block[0]]
     beside = [steps.group[rest[k]] for k in (place - 1, place) if 0 <= k < len(rest)]
@@ -168,7 +168,7 @@ def _fits(steps: Steps, rest: list[int], place: int, block: list[int]) -> bool:
     return len(beside) < 2 or beside[0] != beside[1]
 
 
-def _nearest_next(steps: Steps, groups: list[Indices]) -> Indices:
+def _nearest_next(steps: TransitionCosts, groups: list[Indices]) -> Indices:
     state = int(np.argmin(steps.start))
     left = set(range(steps.things)) - {int(steps.owner[state])}
     order = [int(steps.owner[state])]
@@ -181,7 +181,7 @@ def _nearest_next(steps: Steps, groups: list[Indices]) -> Indices:
     return np.array(order)
 
 
-def _bound(steps: Steps) -> float:
+def _bound(steps: TransitionCosts) -> float:
     """Each thing but the first is come to from somewhere: the least of these costs, the greatest of them left out."""
     other = steps.owner[:, None] != steps.owner
     arrive = np.where(other, steps.cost, np.inf).min(axis=0)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def thinned(points: Array, bound: float) -> NDArray[np.int64]:
+def simplify_polyline(points: Array, bound: float) -> NDArray[np.int64]:
     """Which points of a polyline to keep.
 
     Parameters
@@ -44,7 +44,7 @@ def thinned(points: Array, bound: float) -> NDArray[np.int64]:
     return np.flatnonzero(kept)
 
 
-def thinned_loop(points: Array, bound: float) -> NDArray[np.int64]:
+def simplify_loop(points: Array, bound: float) -> NDArray[np.int64]:
     """Which vertices of a closed polygon to keep: three at least.
 
     Parameters
@@ -52,7 +52,7 @@ def thinned_loop(points: Array, bound: float) -> NDArray[np.int64]:
     points : (n, k) array
         The last one does not repeat the first.
     bound : float
-        As for `thinned`.
+        As for `simplify_polyline`.
     """
     rows = np.asarray(points, dtype=float)
     if len(rows) <= 3:
@@ -60,8 +60,8 @@ def thinned_loop(points: Array, bound: float) -> NDArray[np.int64]:
     far = int(np.argmax(((rows - rows[0])**2).sum(axis=1)))
     if far == 0:
         return np.arange(3)
-    there = thinned(rows[:far + 1], bound)
-    back = far + thinned(np.vstack([rows[far:], rows[:1]]), bound)[:-1]
+    there = simplify_polyline(rows[:far + 1], bound)
+    back = far + simplify_polyline(np.vstack([rows[far:], rows[:1]]), bound)[:-1]
     kept = np.unique(np.concatenate([there, back]))
     if len(kept) < 3:
         off = _distances(rows, rows[0], rows[far])

@@ -23,7 +23,7 @@ _STEPS = (0.3, 0.1, 0.03)
 _SUBSETS = tuple(some for size in range(1, 5) for some in combinations(range(4), size))
 
 
-class Convex(NamedTuple):
+class ConvexBodies(NamedTuple):
     """k convex bodies: each the hull of j discs with rounded rims, moved along all sums of three vectors.
 
     centre (k, j, 3), mm;  axis (k, j, 3): unit normals of the discs;  radius (k, j): of the discs, mm;  ball (k, j):
@@ -36,17 +36,18 @@ class Convex(NamedTuple):
     ball: Array
     spread: Array
 
-    def rows(self, chosen: NDArray[np.int64] | Bools) -> "Convex":
+    def rows(self, chosen: NDArray[np.int64] | Bools) -> "ConvexBodies":
         """Some of the bodies; a single one stands for all."""
-        return self if len(self.centre) == 1 else Convex(*(each[chosen] for each in self))
+        return self if len(self.centre) == 1 else ConvexBodies(*(each[chosen] for each in self))
 
-    def moved(self, matrix: Array) -> "Convex":
+    def moved(self, matrix: Array) -> "ConvexBodies":
         """The bodies after a rigid motion (4, 4), or a single one after each of some (n, 4, 4)."""
         turn = np.swapaxes(matrix[..., :3, :3], -1, -2)
         centre = self.centre @ turn + matrix[..., None, :3, 3]
         size = (len(centre), self.radius.shape[1])
-        return Convex(centre, self.axis @ turn, np.broadcast_to(self.radius, size), np.broadcast_to(self.ball, size),
-                      self.spread @ turn)
+        return ConvexBodies(centre, self.axis @ turn, np.broadcast_to(self.radius, size),
+                            np.broadcast_to(self.ball, size),
+                            self.spread @ turn)
 
     def support(self, ways: Array) -> Array:
         """The point of each body that is farthest along a direction, (n, 3).
@@ -78,7 +79,7 @@ class Convex(NamedTuple):
         return np.asarray(far.max(axis=1) + np.linalg.norm(self.spread, axis=2).sum(axis=1))
 
 
-def boxes(low: ArrayLike, high: ArrayLike) -> Convex:
+def boxes(low: ArrayLike, high: ArrayLike) -> ConvexBodies:
     """Boxes along the coordinate axes.
 
     Parameters
@@ -91,7 +92,7 @@ def boxes(low: ArrayLike, high: ArrayLike) -> Convex:
     return _discs(((one + other) / 2)[:, None], spread=half[:, :, None] * np.eye(3))
 
 
-def hull(points: ArrayLike, ball: float = 0.0) -> Convex:
+def hull(points: ArrayLike, ball: float = 0.0) -> ConvexBodies:
     """The hull of points, with a ball carried around it.
 
     Parameters
@@ -105,7 +106,7 @@ def hull(points: ArrayLike, ball: float = 0.0) -> Convex:
     return _discs(rows)._replace(ball=np.full(rows.shape[:2], float(ball)))
 
 
-def places(points: ArrayLike) -> Convex:
+def places(points: ArrayLike) -> ConvexBodies:
     """Points as bodies of no size: what is carried along them is moved there.
 
     Parameters
@@ -116,7 +117,7 @@ def places(points: ArrayLike) -> Convex:
     return _discs(np.asarray(points, dtype=float)[:, None])
 
 
-def segments(points: ArrayLike) -> Convex:
+def segments(points: ArrayLike) -> ConvexBodies:
     """The straight ways from each point to the next one.
 
     Parameters
@@ -132,7 +133,7 @@ def segments(points: ArrayLike) -> Convex:
     return _discs(((rows[1:] + rows[:-1]) / 2)[:, None], spread=spread)
 
 
-def turned_body(ends: ArrayLike, radius: ArrayLike, ball: ArrayLike = 0.0) -> Convex:
+def revolve_body(ends: ArrayLike, radius: ArrayLike, ball: ArrayLike = 0.0) -> ConvexBodies:
     """One body of revolution: the hull of discs along a line.
 
     Parameters
@@ -145,19 +146,19 @@ def turned_body(ends: ArrayLike, radius: ArrayLike, ball: ArrayLike = 0.0) -> Co
     rows = np.asarray(ends, dtype=float)
     way = rows[-1] - rows[0]
     count = (1, len(rows))
-    return Convex(rows[None], np.broadcast_to(way / np.linalg.norm(way), (*count, 3)),
-                  np.broadcast_to(np.asarray(radius, dtype=float), count),
-                  np.broadcast_to(np.asarray(ball, dtype=float), count), np.zeros((1, 3, 3)))
+    return ConvexBodies(rows[None], np.broadcast_to(way / np.linalg.norm(way), (*count, 3)),
+                        np.broadcast_to(np.asarray(radius, dtype=float), count),
+                        np.broadcast_to(np.asarray(ball, dtype=float), count), np.zeros((1, 3, 3)))
 
 
-def _discs(centre: Array, spread: Array | None = None) -> Convex:
+def _discs(centre: Array, spread: Array | None = None) -> ConvexBodies:
     """Points (k, j, 3) as discs of no size."""
     count = centre.shape[:2]
-    return Convex(centre, np.tile([0.0, 0.0, 1.0], (*count, 1)), np.zeros(count), np.zeros(count),
-                  np.zeros((len(centre), 3, 3)) if spread is None else spread)
+    return ConvexBodies(centre, np.tile([0.0, 0.0, 1.0], (*count, 1)), np.zeros(count), np.zeros(count),
+                        np.zeros((len(centre), 3, 3)) if spread is None else spread)
 
 
-def separation(one: Sequence[Convex], other: Sequence[Convex], enough: float = np.inf,
+def separation(one: Sequence[ConvexBodies], other: Sequence[ConvexBodies], enough: float = np.inf,
                tolerance: float = 1e-3, inner: Bools | None = None) -> Array:
     """Lower bounds of the signed distance between pairs of bodies, (n,) mm; negative where they may meet.
 
@@ -185,14 +186,14 @@ def separation(one: Sequence[Convex], other: Sequence[Convex], enough: float = n
              - sum((each.centre.mean(axis=1) for each in other), np.zeros(3)))
     towards = np.broadcast_to(start, (count, 3)).copy()
     towards[np.linalg.norm(towards, axis=1) < 1e-9] = [0.0, 0.0, 1.0]
-    best, meets = _searched(pair, towards, (enough, tolerance))
+    best, meets = _search_separation(pair, towards, (enough, tolerance))
     rows = np.flatnonzero(meets if inner is None else meets & ~inner)
     if len(rows):
         best[rows] = np.maximum(best[rows], _depths(_chosen(pair, rows), len(rows)))
     return best
 
 
-_Pair = tuple[tuple[Convex, ...], tuple[Convex, ...]]
+_Pair = tuple[tuple[ConvexBodies, ...], tuple[ConvexBodies, ...]]
 
 
 def _chosen(pair: _Pair, rows: NDArray[np.int64] | Bools) -> _Pair:
@@ -206,7 +207,7 @@ def _nearest_along(pair: _Pair, ways: Array) -> Array:
                       - sum((each.support(ways) for each in pair[1]), zero))
 
 
-def _searched(pair: _Pair, towards: Array, limits: tuple[float, float]) -> tuple[Array, Bools]:
+def _search_separation(pair: _Pair, towards: Array, limits: tuple[float, float]) -> tuple[Array, Bools]:
     """The best gap of each pair, and whether the pair seems to meet."""
     enough, tolerance = limits
     count = len(towards)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.rounding import settled
+from toolaxis.numeric.rounding import round_significant
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ def perpendicular(axis: ArrayLike) -> tuple[Array, Array]:
     """
     z = unit(axis)
     x = np.zeros(3)
-    x[int(np.argmin(settled(np.abs(z))))] = 1.0
+    x[int(np.argmin(round_significant(np.abs(z))))] = 1.0
     x = unit(x - (x @ z) * z)
     return x, np.cross(z, x)
 

@@ -81,7 +81,7 @@ def bosses_of(part: Part, number: int) -> tuple[Boss, ...]:
     found = []
     for k in range(1, len(loops)):
         walls = tuple(sorted(other for other, at in near.items() if at == k))
-        reached = _reached(part, number, walls)
+        reached = _faces_beyond_walls(part, number, walls)
         if walls and not outer.intersection(reached):
             boss = _boss(part, face, k, walls, reached)
             if boss.height > 0:
@@ -109,7 +109,7 @@ def _segments_nearest(loop: Array, point: Array) -> Array:
     return np.asarray(away[np.linalg.norm(away, axis=1).argmin()])
 
 
-def _reached(part: Part, number: int, walls: tuple[int, ...]) -> tuple[int, ...]:
+def _faces_beyond_walls(part: Part, number: int, walls: tuple[int, ...]) -> tuple[int, ...]:
     """Faces that hang together with the walls without the face itself, the walls first."""
     reached = list(walls)
     for other in reached:

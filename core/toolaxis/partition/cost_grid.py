@@ -15,8 +15,8 @@ from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import CLEAN_UP, FEEDS, Worth
-from toolaxis.search.time_estimate import Pace
+from toolaxis.search.cost import CLEAN_UP, FEEDS, MachiningCost
+from toolaxis.search.time_estimate import TimeEstimate
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -28,7 +28,7 @@ FORBIDDEN = 1e12
 
 
 @dataclass(frozen=True, eq=False)
-class Prices:
+class CostGrid:
     """Rates of passes at the nodes of a lattice.
 
     Attributes
@@ -55,7 +55,7 @@ class Prices:
     extra: Array
     whole: Array
 
-    def of(self, places: NDArray[np.intp]) -> "Prices":
+    def of(self, places: NDArray[np.intp]) -> "CostGrid":
         """The prices of some of the axes.
 
         Parameters
@@ -63,30 +63,31 @@ class Prices:
         places : (m,) array of int
         """
         u, v = (line if len(line) == 1 else line[places] for line in self.lines)
-        return Prices(self.axes[places], self.rates[places], self.left[places], (u, v), self.extra[places], self.whole)
+        return CostGrid(self.axes[places], self.rates[places], self.left[places], (u, v), self.extra[places],
+                        self.whole)
 
-    def joined(self, other: "Prices") -> "Prices":
+    def joined(self, other: "CostGrid") -> "CostGrid":
         """The prices of more axes after these.
 
         Parameters
         ----------
-        other : Prices
+        other : CostGrid
         """
         u, v = (line if len(line) == 1 else np.concatenate([line, more])
                 for line, more in zip(self.lines, other.lines, strict=True))
-        return Prices(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
-                      np.concatenate([self.left, other.left]), (u, v), np.concatenate([self.extra, other.extra]),
-                      self.whole)
+        return CostGrid(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
+                        np.concatenate([self.left, other.left]), (u, v), np.concatenate([self.extra, other.extra]),
+                        self.whole)
 
 
-def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array,
-           progress: Progress = NO_PROGRESS) -> Prices:
+def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasibility, axes: Array,
+                      progress: Progress = NO_PROGRESS) -> CostGrid:
     """Prices of axes at every node.
 
     Parameters
     ----------
     lattice : Lattice
-    worth : Worth
+    worth : MachiningCost
         Tool, scallop height and allowance, and the pace where the least time is asked for.
     feasibility : Feasibility
         Of the whole face.
@@ -96,7 +97,7 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
 
     Returns
     -------
-    Prices
+    CostGrid
         Judged at the nodes alone, with angles to the normal kept as if half-way to the next node: a screen, not a
         proof.
 
@@ -122,13 +123,13 @@ def priced(lattice: Lattice, worth: Worth, feasibility: Feasibility, axes: Array
     rates, everywhere = rates.reshape(len(axes), 2, *shape), everywhere.reshape(len(axes), *shape)
     extra = _clean_up(lattice, worth, everywhere)
     if worth.timed is None:
-        return Prices(axes, rates, everywhere, (lattice.lengths[0][None], lattice.lengths[1][None]), extra,
-                      lattice.areas)
+        return CostGrid(axes, rates, everywhere, (lattice.lengths[0][None], lattice.lengths[1][None]), extra,
+                        lattice.areas)
     lines = _line_seconds(lattice, worth.timed, axes, progress)
-    return Prices(axes, rates, everywhere, lines, extra / worth.timed.feeds.cut, lattice.areas)
+    return CostGrid(axes, rates, everywhere, lines, extra / worth.timed.feeds.cut, lattice.areas)
 
 
-def _line_seconds(lattice: Lattice, pace: Pace, axes: Array, progress: Progress) -> tuple[Array, Array]:
+def _line_seconds(lattice: Lattice, pace: TimeEstimate, axes: Array, progress: Progress) -> tuple[Array, Array]:
     """Seconds that a pass takes between neighbouring nodes along u and along v, for each axis."""
     found = []
     for along in (0, 1):
@@ -144,7 +145,7 @@ def _line_seconds(lattice: Lattice, pace: Pace, axes: Array, progress: Progress)
     return found[0].swapaxes(1, 2), found[1]
 
 
-def _clean_up(lattice: Lattice, worth: Worth, left: Bools) -> Array:
+def _clean_up(lattice: Lattice, worth: MachiningCost, left: Bools) -> Array:
     """What it costs to clean up in each cell, (k, nu, nv) mm, as `Worth.charge` reckons.
 
     The share of a cell is that of its corners.  Passes that are reckoned through it are not taken off: where hardly

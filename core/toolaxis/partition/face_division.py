@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, about
-from toolaxis.partition.cost_grid import Prices, priced
-from toolaxis.partition.guillotine import Corners, Division, Offers, each_axis, offers, proper
+from toolaxis.partition.cost_grid import CostGrid, compute_cost_grid
+from toolaxis.partition.guillotine import BestCosts, CheapestDivisions, Corners, each_axis, offers, proper
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.direction_grid import own_frame, ring, spiral
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 
@@ -92,9 +92,9 @@ class Regions(Sequence[Face]):
 class Solution(NamedTuple):
     """What prices come to: the cheapest axis of every rectangle, and the cheapest divisions."""
 
-    prices: Prices
-    offers: Offers
-    division: Division
+    prices: CostGrid
+    offers: BestCosts
+    division: CheapestDivisions
 
     @property
     def known(self) -> NDArray[np.intp]:
@@ -111,7 +111,7 @@ class Solution(NamedTuple):
         return self.division.pieces(count)
 
 
-class Row(NamedTuple):
+class DivisionRow(NamedTuple):
     """A piece of a face with the rectangle that it comes from, in a solution of its divider."""
 
     piece: Face
@@ -120,14 +120,14 @@ class Row(NamedTuple):
     box: Corners
 
 
-def named_pieces(label: str, rows: list[Row], curve: Array) -> Regions:
+def name_pieces(label: str, rows: list[DivisionRow], curve: Array) -> Regions:
     """Pieces with their names and what the division reckons of each.
 
     Parameters
     ----------
     label : str
         Of the whole face.
-    rows : list of Row
+    rows : list of DivisionRow
     curve : (m, 2) array
         As in `Regions`.
     """
@@ -161,7 +161,7 @@ class Divider:
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
         The face, its surroundings and the price of an axis.
     cells : (int, int)
         Cells of the lattice along u and v.
@@ -170,7 +170,7 @@ class Divider:
     progress : Progress
     """
 
-    def __init__(self, job: Task, cells: tuple[int, int] = (16, 16), most: int = MOST,
+    def __init__(self, job: FaceProblem, cells: tuple[int, int] = (16, 16), most: int = MOST,
                  progress: Progress = NO_PROGRESS) -> None:
         self.job, self.most, self.progress = job, most, progress
         self.lattice = Lattice(job.worth.face, cells)
@@ -211,37 +211,37 @@ class Divider:
         return np.concatenate([self.used(self.best), prices.axes[order[np.isfinite(whole[order])]]])
 
     @_of_its_face
-    def priced(self, axes: Array) -> Prices:
+    def priced(self, axes: Array) -> CostGrid:
         """Prices of axes on the lattice.
 
         Parameters
         ----------
         axes : (k, 3) array
         """
-        return priced(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress)
+        return compute_cost_grid(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress)
 
     @_of_its_face
-    def solved(self, prices: Prices, piece_cost: float = 0.0) -> Solution:
+    def solved(self, prices: CostGrid, piece_cost: float = 0.0) -> Solution:
         """The cheapest divisions with some axes.
 
         Parameters
         ----------
-        prices : Prices
+        prices : CostGrid
         piece_cost : float
             What each sub-surface costs besides, mm or s.
         """
         found = offers(prices.rates, self._on_the_face(prices.lines), self._pitch, self._ends, prices.extra)
         cost = np.where(self._narrow | self._torn, np.inf, found.cost + piece_cost)
         empty = (self._filled < _NOTHING) & proper(*self.lattice.cells)
-        return Solution(prices, found, Division(cost, empty, self.most))
+        return Solution(prices, found, CheapestDivisions(cost, empty, self.most))
 
     @_of_its_face
-    def costs(self, prices: Prices, box: Corners) -> Array:
+    def costs(self, prices: CostGrid, box: Corners) -> Array:
         """What a rectangle costs with each axis and its better feed, (k,) mm or s; inf where an axis may not be used.
 
         Parameters
         ----------
-        prices : Prices
+        prices : CostGrid
         box : (int, int, int, int)
         """
         return self._each(prices, self._on_the_face(prices.lines), box, self._ends, prices.extra).min(axis=1)
@@ -262,7 +262,7 @@ class Divider:
         costs = self._each(one, self._on_the_face(lines), box, self._strip + LINK, extra)
         return float(costs[0, found.offers.feed[box]])
 
-    def _each(self, prices: Prices, gaps: tuple[Array, Array], box: Corners, ends: float, extra: Array) -> Array:
+    def _each(self, prices: CostGrid, gaps: tuple[Array, Array], box: Corners, ends: float, extra: Array) -> Array:
         u0, u1, v0, v1 = box
         rates = prices.rates[:, :, u0:u1 + 1, v0:v1 + 1]
         inside = gaps[0][:, u0:u1, v0:v1 + 1], gaps[1][:, u0:u1 + 1, v0:v1]
@@ -299,8 +299,9 @@ class Divider:
         boxes : list of (int, int, int, int)
         """
         face = self.job.worth.face
-        rows = [Row(face.trimmed(loops), self, found, box) for box in boxes for loops in self.lattice.rectangle(box)]
-        return named_pieces(face.label, rows, np.stack([found.known, found.division.curve[found.known]], axis=1))
+        rows = [DivisionRow(face.trimmed(loops), self, found, box) for box in boxes
+                for loops in self.lattice.rectangle(box)]
+        return name_pieces(face.label, rows, np.stack([found.known, found.division.curve[found.known]], axis=1))
 
     def _first_axes(self) -> Array:
         normals = self.lattice.normals[self.lattice.material]

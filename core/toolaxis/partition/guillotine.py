@@ -19,7 +19,7 @@ _NONE = 1e-6
 _CHUNK = 32
 
 
-class Offers(NamedTuple):
+class BestCosts(NamedTuple):
     """The cheapest axis and feed of every rectangle, each array indexed by first and last line along u, then along v.
 
     cost : of what the gaps are in, mm or s; inf where no axis serves;  axis, feed : indices of the cheapest.
@@ -31,7 +31,7 @@ class Offers(NamedTuple):
 
 
 def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0,
-           extra: Array | None = None) -> Offers:
+           extra: Array | None = None) -> BestCosts:
     """The cheapest axis and feed of every rectangle of a lattice.
 
     A rectangle's passes run from side to side, each as far from the next as the narrowest place on it allows: with
@@ -72,7 +72,7 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
             cost[better] = least[better]
             axis[better], feed[better] = best[better] + first, number
     cost[~proper(nu, nv)] = np.inf
-    return Offers(cost, axis, feed)
+    return BestCosts(cost, axis, feed)
 
 
 def _boxes(cells: Array) -> Array:
@@ -94,7 +94,7 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
     both = []
     for along, step in ((0, 1), (1, 0)):
         most = rates[:, along].max(axis=1 + along)
-        row = _ended(gaps[along].sum(axis=1 + along), ends)
+        row = _rectangle_ends(gaps[along].sum(axis=1 + along), ends)
         middle = (most[:, 1:] * row[:, 1:] + most[:, :-1] * row[:, :-1]) / 2
         cost = (middle * pitch[step]).sum(axis=1) + row.mean(axis=1) / 2
         cost += 0.0 if extra is None else extra.sum(axis=(1, 2))
@@ -118,10 +118,10 @@ def proper(nu: int, nv: int) -> NDArray[np.bool_]:
 def _rows(gaps: Array, ends: float) -> Array:
     """What passes over all ranges along cost, (1 or k, first, last, step); 0 off the face."""
     total = np.concatenate([np.zeros((len(gaps), 1, gaps.shape[2])), np.cumsum(gaps, axis=1)], axis=1)
-    return _ended(total[:, None] - total[:, :, None], ends)
+    return _rectangle_ends(total[:, None] - total[:, :, None], ends)
 
 
-def _ended(rows: Array, ends: float) -> Array:
+def _rectangle_ends(rows: Array, ends: float) -> Array:
     return np.asarray(np.where(rows > 1e-9, rows + ends, 0.0))
 
 
@@ -149,7 +149,7 @@ def _between(total: Array) -> Array:
     return np.asarray(total[..., None, :] - total[..., :, None])
 
 
-class Division:
+class CheapestDivisions:
     """The cheapest divisions of every rectangle into 1, 2, … rectangles.
 
     Parameters

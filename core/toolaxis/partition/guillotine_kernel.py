@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import toolaxis.numeric.jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def least_costs(least: Array) -> None:
     (_least_costs if _compiled.available else least_costs_numpy)(least)
 
 
-@compiled
+@jit
 def _least_costs(least: Array) -> None:
     nu, nv = least.shape[0] - 1, least.shape[2] - 1
     for w in range(1, nu + 1):
@@ -40,7 +40,7 @@ def _least_costs(least: Array) -> None:
                         _merge(best, least[u, u + w, v, v + c], least[u, u + w, v + c, v + h])
 
 
-@compiled
+@jit
 def _merge(best: Array, one: Array, other: Array) -> None:
     """The least of what is known and of all shares of pieces between two sides, in place, (most + 1,) each."""
     most = len(best)

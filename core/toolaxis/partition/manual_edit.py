@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.clipping import clipped, grouped
-from toolaxis.numeric.polygon_boolean import divided, united
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
+from toolaxis.numeric.polygon_boolean import divide_polygon, unite_polygons
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ _NUDGE = 1e-6
 _TRIES = 4
 
 
-def merged(pieces: Sequence[Face]) -> Loops:
+def merge_sub_surfaces(pieces: Sequence[Face]) -> Loops:
     """The border of several sub-surfaces of one face as one.
 
     Parameters
@@ -41,8 +41,8 @@ def merged(pieces: Sequence[Face]) -> Loops:
         raise InvalidInput("sub-surfaces that are put together have to be two or more of one face: choose them so")
     left, loops = list(pieces[1:]), pieces[0].outline
     while left:
-        found = [(k, united(loops, piece.outline)) for k, piece in enumerate(left)]
-        near = next(((k, both) for k, both in found if len(grouped(both)) == 1), None)
+        found = [(k, unite_polygons(loops, piece.outline)) for k, piece in enumerate(left)]
+        near = next(((k, both) for k, both in found if len(outer_with_holes(both)) == 1), None)
         if near is None:
             names = ", ".join(piece.label for piece in left)
             raise InvalidInput(f"sub-surface {pieces[0].label} does not touch {names} along a line: choose neighbours")
@@ -82,7 +82,8 @@ def halves(piece: Face, parameter: str = "", at: float | None = None) -> tuple[L
     if not low < value < high:
         raise InvalidInput(f"{'uv'[axis]} = {value:g} does not cross sub-surface {piece.label}: it lies between "
                            f"{low:g} and {high:g}")
-    return tuple(group for above in (False, True) for group in grouped(clipped(piece.outline, axis, value, above)))
+    return tuple(group for above in (False, True) for group in outer_with_holes(clip_half_plane(piece.outline, axis,
+                                                                                                value, above)))
 
 
 def cut_along(piece: Face, line: ArrayLike) -> tuple[Loops, ...]:
@@ -112,10 +113,10 @@ def cut_along(piece: Face, line: ArrayLike) -> tuple[Loops, ...]:
     chord = ends[1] - ends[0]
     side = 8 * np.array([-chord[1], chord[0]]) / np.linalg.norm(chord)
     ring = low + size * np.array([ends[0], *unit, ends[1], ends[1] + side, ends[0] + side])
-    both = _divided(piece.outline, ring, size)
+    both = _divide_by_ring(piece.outline, ring, size)
     if not all(both):
         raise InvalidInput(f"the line does not cross sub-surface {piece.label}: draw it from border to border")
-    return tuple(group for loops in both for group in grouped(loops))
+    return tuple(group for loops in both for group in outer_with_holes(loops))
 
 
 def cut_out(pieces: Sequence[Face], ring: ArrayLike) -> tuple[Loops, list[tuple[Loops, ...]]]:
@@ -142,10 +143,10 @@ def cut_out(pieces: Sequence[Face], ring: ArrayLike) -> tuple[Loops, list[tuple[
     within: Loops = ()
     stay: list[tuple[Loops, ...]] = []
     for piece in pieces:
-        own, rest = _divided(piece.outline, rows, size)
-        within = own if not within else united(within, own) if own else within
-        stay.append(tuple(grouped(rest)))
-    if not within or len(grouped(within)) != 1:
+        own, rest = _divide_by_ring(piece.outline, rows, size)
+        within = own if not within else unite_polygons(within, own) if own else within
+        stay.append(tuple(outer_with_holes(rest)))
+    if not within or len(outer_with_holes(within)) != 1:
         what = "nothing of the face lies" if not within else "several pieces that do not hang together lie"
         raise InvalidInput(f"{what} in the closed line: draw another one on the face")
     return within, stay
@@ -161,11 +162,11 @@ def _drawn(line: ArrayLike, least: int) -> Array:
     return rows
 
 
-def _divided(loops: Loops, ring: Array, size: Array) -> tuple[Loops, Loops]:
+def _divide_by_ring(loops: Loops, ring: Array, size: Array) -> tuple[Loops, Loops]:
     """Inside and outside of a ring; it is moved a little where rounding would decide."""
     for k in range(_TRIES):
         try:
-            return divided(loops, (ring + _NUDGE * k * size * np.array([1.0, 0.7]),))
+            return divide_polygon(loops, (ring + _NUDGE * k * size * np.array([1.0, 0.7]),))
         except InvalidInput:
             if k + 1 == _TRIES:
                 raise

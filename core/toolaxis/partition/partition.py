@@ -12,8 +12,8 @@ from toolaxis.partition.bosses import distances
 from toolaxis.partition.face_division import INDEX_COST, MOST, Divider, Regions
 from toolaxis.partition.ring_division import Distance, candidates, slivers
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.fixed_axis import Task, task
-from toolaxis.search.machine_limits import combined
+from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import ToleranceLike
@@ -79,20 +79,20 @@ def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str 
             raise InvalidInput("the part has no sculptured face: name faces, planes and cylinders among them")
     pieces: list[Face] = []
     for face in chosen:
-        job = task(face, tool, scallop, combined(machine, None), obstacles, part=whole, tolerance=tolerance,
+        job = task(face, tool, scallop, intersect_limits(machine, None), obstacles, part=whole, tolerance=tolerance,
                    allowance=allowance)
         standing = distances(face, job.worth.tool, whole, obstacles)
         pieces += regions(job, count, index_cost, progress.within(f"face {face.label}"), standing).faces
     return tuple(pieces)
 
 
-def regions(job: Task, count: int | str | None = None, index_cost: float | None = None,
+def regions(job: FaceProblem, count: int | str | None = None, index_cost: float | None = None,
             progress: Progress = NO_PROGRESS, bosses: Sequence[Distance] = ()) -> Regions:
     """Divide one face.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
         From `toolaxis.search.fixed_axis.task`; with the objective "time" the division goes by time, else by length.
     count, progress
         As for `partition`.
@@ -109,7 +109,7 @@ def regions(job: Task, count: int | str | None = None, index_cost: float | None 
     Cancelled
         When the user asked to stop.
     """
-    number = checked_count(count)
+    number = check_count(count)
     divider = Divider(job, most=MOST if number is None else number, progress=progress)
     known = divider.best.known
     label = job.worth.face.label
@@ -140,7 +140,7 @@ def _why_not(divider: Divider, number: int) -> str:
            "longer stick-out or fewer obstacles"
 
 
-def checked_count(count: int | str | None, what: str = "sub-surfaces") -> int | None:
+def check_count(count: int | str | None, what: str = "sub-surfaces") -> int | None:
     """A number of sub-surfaces or orientations, or None where the program is to choose.
 
     Parameters

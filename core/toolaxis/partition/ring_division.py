@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.clipping import grouped
+from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divided
-from toolaxis.partition.cost_grid import Prices
-from toolaxis.partition.face_division import Divider, Regions, Row, Solution, named_pieces
+from toolaxis.numeric.polygon_boolean import divide_polygon
+from toolaxis.partition.cost_grid import CostGrid
+from toolaxis.partition.face_division import Divider, DivisionRow, Regions, Solution, name_pieces
 from toolaxis.partition.guillotine import Corners
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.search.direction_grid import ring
@@ -35,7 +35,7 @@ _TRIES = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Around:
+class RingDivision:
     """One division by distance: parts of the face, each divided further by iso-parametric cuts where that pays.
 
     Attributes
@@ -44,18 +44,18 @@ class Around:
         Outer distance of the rings, mm; inf where the whole face is divided by the nearest boss.
     parts : tuple of Divider
         One a part, on the lattice of the whole face.
-    prices : Prices
+    prices : CostGrid
         Of the whole face.
     """
 
     radius: float
     parts: tuple[Divider, ...]
-    prices: Prices
+    prices: CostGrid
 
     @cached_property
     def solutions(self) -> tuple[Solution, ...]:
         """The cheapest divisions of each part."""
-        return tuple(part.solved(_masked(self.prices, part.lattice)) for part in self.parts)
+        return tuple(part.solved(_mask_costs(self.prices, part.lattice)) for part in self.parts)
 
     @cached_property
     def shares(self) -> Array:
@@ -86,7 +86,7 @@ class Around:
             count -= mine
         return found[::-1]
 
-    def closer(self, whole: Divider, count: int) -> "Around":
+    def closer(self, whole: Divider, count: int) -> "RingDivision":
         """The same with axes around those that serve.
 
         Parameters
@@ -101,7 +101,7 @@ class Around:
             places = {int(one.offers.axis[box]) for one, boxes in zip(best.solutions, best.boxes(count), strict=True)
                       for box in boxes}
             near = np.concatenate([ring(best.prices.axes[k], float(angle)) for k in sorted(places)])
-            best = Around(self.radius, self.parts, best.prices.joined(whole.priced(near)))
+            best = RingDivision(self.radius, self.parts, best.prices.joined(whole.priced(near)))
         return best
 
     def regions(self, count: int) -> Regions:
@@ -111,15 +111,15 @@ class Around:
         ----------
         count : int
         """
-        rows = [Row(part.job.worth.face.trimmed(loops), part, one, box)
+        rows = [DivisionRow(part.job.worth.face.trimmed(loops), part, one, box)
                 for part, one, boxes in zip(self.parts, self.solutions, self.boxes(count), strict=True)
                 for box in boxes for loops in part.lattice.rectangle(box)]
         known = np.flatnonzero(np.isfinite(self.curve))
-        told = named_pieces(self.parts[0].job.worth.face.label, rows, np.stack([known, self.curve[known]], axis=1))
+        told = name_pieces(self.parts[0].job.worth.face.label, rows, np.stack([known, self.curve[known]], axis=1))
         return replace(told, radius=self.radius)
 
 
-def candidates(whole: Divider, bosses: Sequence[Distance]) -> tuple[Around, ...]:
+def candidates(whole: Divider, bosses: Sequence[Distance]) -> tuple[RingDivision, ...]:
     """Divisions of a face by the distance to its bosses.
 
     Parameters
@@ -131,7 +131,7 @@ def candidates(whole: Divider, bosses: Sequence[Distance]) -> tuple[Around, ...]
 
     Returns
     -------
-    tuple of Around
+    tuple of RingDivision
         Rings of a few radii, and, where there are several bosses, the whole face by the nearest; none where that leaves
         slivers.
 
@@ -147,15 +147,15 @@ def candidates(whole: Divider, bosses: Sequence[Distance]) -> tuple[Around, ...]
     found = []
     for radius in [*(2 * tool.radius * share for share in RINGS), *([np.inf] if len(bosses) > 1 else [])]:
         try:
-            parts = parted(face, bosses, radius)
+            parts = divide_in_rings(face, bosses, radius)
         except InvalidInput:  # this radius leaves borders that cannot be told apart: others may not
             continue
         if len(parts) > 1 and len(parts) <= whole.most and not any(_thin(part, tool.radius) for part in parts):
-            found.append(Around(radius, tuple(_on_lattice(whole, part) for part in parts), prices))
+            found.append(RingDivision(radius, tuple(_on_lattice(whole, part) for part in parts), prices))
     return tuple(found)
 
 
-def parted(face: Face, bosses: Sequence[Distance], radius: float) -> tuple[Face, ...]:
+def divide_in_rings(face: Face, bosses: Sequence[Distance], radius: float) -> tuple[Face, ...]:
     """A face parted into rings around bosses and the rest.
 
     Parameters
@@ -186,7 +186,7 @@ def parted(face: Face, bosses: Sequence[Distance], radius: float) -> tuple[Face,
         own, near = _split(face, near, lambda uv, k=k, boss=boss: np.min(  # type: ignore[misc]
             [other(uv) for other in bosses[k + 1:]], axis=0) - boss(uv))
         loops.append(own)
-    return tuple(face.trimmed(one) for part in (*loops, near, rest) for one in grouped(part))
+    return tuple(face.trimmed(one) for part in (*loops, near, rest) for one in outer_with_holes(part))
 
 
 def _split(face: Face, loops: Loops, function: Distance) -> tuple[Loops, Loops]:
@@ -200,7 +200,7 @@ def _split(face: Face, loops: Loops, function: Distance) -> tuple[Loops, Loops]:
         nodes = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
         line = contours(function(nodes.reshape(-1, 2)).reshape(_GRID, _GRID), (lines[0], lines[1]), function)
         try:
-            return divided(loops, line)
+            return divide_polygon(loops, line)
         except InvalidInput:
             continue
     raise InvalidInput(f"face {face.label} cannot be divided by the distance to its bosses: borders coincide")
@@ -220,7 +220,7 @@ def _on_lattice(whole: Divider, part: Face) -> Divider:
     return own
 
 
-def _masked(prices: Prices, lattice: Lattice) -> Prices:
+def _mask_costs(prices: CostGrid, lattice: Lattice) -> CostGrid:
     """Prices of the whole face on a part of it."""
     whole = prices.whole
     share = np.divide(lattice.areas, whole, out=np.zeros_like(whole), where=whole > 0)

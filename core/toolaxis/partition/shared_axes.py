@@ -9,7 +9,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
 from toolaxis.errors import InvalidInput
-from toolaxis.partition.cost_grid import Prices
+from toolaxis.partition.cost_grid import CostGrid
 from toolaxis.partition.face_division import MOST, Divider, Regions, Solution
 from toolaxis.partition.guillotine import Corners
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -23,7 +23,7 @@ _ROUNDS = 6
 _SECONDS, _IMPOSSIBLE = 30.0, 2
 
 
-class Choice(NamedTuple):
+class AxisAssignment(NamedTuple):
     """Which axis serves which sub-surface.
 
     axis : (s,) index of the axis of each sub-surface;  cost : of all, index costs included;  bound : no choice costs
@@ -35,7 +35,7 @@ class Choice(NamedTuple):
     bound: float
 
 
-def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) -> Choice:
+def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) -> AxisAssignment:
     """The cheapest choice of axes for sub-surfaces, with few different ones.
 
     Parameters
@@ -49,7 +49,7 @@ def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) ->
 
     Returns
     -------
-    Choice
+    AxisAssignment
         Exact unless 30 s were not enough; then the bound tells how far it may be off.
 
     Raises
@@ -91,7 +91,7 @@ def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) ->
     known = float(table.min(axis=1).sum() + index_cost)  # each with its cheapest axis, and one axis at least
     if found.mip_dual_bound is not None and np.isfinite(found.mip_dual_bound):
         known = max(known, float(found.mip_dual_bound))
-    return Choice(chosen, cost, min(cost, known))
+    return AxisAssignment(chosen, cost, min(cost, known))
 
 
 def _greedy(table: Array, most: int | None) -> Index | None:
@@ -109,7 +109,7 @@ def _greedy(table: Array, most: int | None) -> Index | None:
     return chosen if np.isfinite(served).all() else None
 
 
-class Shared(NamedTuple):
+class SharedDivision(NamedTuple):
     """Sub-surfaces of several faces that share a few axes.
 
     regions : one Regions a face;  length : reckoned length of all, mm;  orientations : different axes;  seconds :
@@ -132,19 +132,19 @@ class Shared(NamedTuple):
         return sum(len(one) for one in self.regions)
 
 
-class Trade(NamedTuple):
+class TradeOff(NamedTuple):
     """Reckoned length, or time, against the number of different axes.
 
     options : one Shared for each number of axes for which more of them cost less;  knee : index of the one from which
     on further axes gain little.
     """
 
-    options: tuple[Shared, ...]
+    options: tuple[SharedDivision, ...]
     knee: int
 
 
-def shared(dividers: Sequence[Divider], most: int, index_cost: float | None = None,
-           progress: Progress = NO_PROGRESS) -> Shared:
+def divide_with_shared_axes(dividers: Sequence[Divider], most: int, index_cost: float | None = None,
+                            progress: Progress = NO_PROGRESS) -> SharedDivision:
     """Divide faces so that at most so many axes serve all sub-surfaces in the least cutting length or time.
 
     Parameters
@@ -172,7 +172,7 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float | None = No
     Cuts are iso-parametric.  Rings around bosses, which `regions` tries too, are left out: on the example with one boss
     they would take 3 % less with one axis and 1 to 2 % less with two to four, for more pieces (`benchmarks/bosses.py`).
     """
-    prices = _priced(dividers)
+    prices = _costs_on_all_faces(dividers)
     each = dividers[0].index_cost if index_cost is None else index_cost
     best: _Try | None = None
     seen: list[Boxes] = []
@@ -181,15 +181,16 @@ def shared(dividers: Sequence[Divider], most: int, index_cost: float | None = No
         boxes = [_division(divider, count) for divider in dividers]
         if boxes not in seen:
             seen.append(boxes)
-            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), most, each))
+            best = _cheaper(best, _alternate_axes_and_pieces(list(zip(dividers, prices, boxes, strict=True)), most,
+                                                             each))
     if best is None:
         raise InvalidInput(f"no division was found that {most} {'axis' if most == 1 else 'axes'} can machine: allow "
                            "more orientations, or take a smaller tool")
-    return _told(dividers, best)
+    return _describe_division(dividers, best)
 
 
-def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO_PROGRESS) -> Trade:
-    """Cutting length, or time, against the number of different axes, each as `shared` with no cost of an axis.
+def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO_PROGRESS) -> TradeOff:
+    """Cutting length, or time, against the number of axes, each as `divide_with_shared_axes` with no cost of an axis.
 
     Parameters
     ----------
@@ -211,23 +212,24 @@ def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO
     For each number from three starts: the divisions into as many and into twice as many sub-surfaces, and what was best
     with one axis less.  The knee is the option that lies farthest below the line from the first to the last one.
     """
-    prices = _priced(dividers)
-    options: list[Shared] = []
+    prices = _costs_on_all_faces(dividers)
+    options: list[SharedDivision] = []
     best: _Try | None = None
     for count in range(1, most + 1):
         progress.report("orientations against length", count - 1, most)
         before = best
         starts = [[_division(divider, pieces) for divider in dividers] for pieces in (count, 2 * count)]
         for boxes in starts if best is None else [*starts, best.boxes]:
-            best = _cheaper(best, _settled(list(zip(dividers, prices, boxes, strict=True)), count, 0.0))
+            best = _cheaper(best, _alternate_axes_and_pieces(list(zip(dividers, prices, boxes, strict=True)), count,
+                                                             0.0))
         if best is None:
             continue
         if before is best:
             break
-        options.append(_told(dividers, best))
+        options.append(_describe_division(dividers, best))
     if not options:
         raise InvalidInput(f"no division was found that {most} axes can machine: take a smaller tool")
-    return Trade(tuple(options), knee([one.orientations for one in options], [one.cost for one in options]))
+    return TradeOff(tuple(options), knee([one.orientations for one in options], [one.cost for one in options]))
 
 
 def knee(count: ArrayLike, length: ArrayLike) -> int:
@@ -244,18 +246,18 @@ def knee(count: ArrayLike, length: ArrayLike) -> int:
     return int(np.argmax((y[0] - y) / (y[0] - y[-1]) - (x - x[0]) / (x[-1] - x[0])))
 
 
-def _priced(dividers: Sequence[Divider]) -> list[Prices]:
+def _costs_on_all_faces(dividers: Sequence[Divider]) -> list[CostGrid]:
     """Prices of all faces' candidates on every face."""
     pool = np.unique(np.concatenate([divider.candidates() for divider in dividers]), axis=0)
     return [divider.priced(pool) for divider in dividers]
 
 
-def _told(dividers: Sequence[Divider], best: "_Try") -> Shared:
+def _describe_division(dividers: Sequence[Divider], best: "_Try") -> SharedDivision:
     regions = tuple(divider.named(found, boxes)
                     for divider, found, boxes in zip(dividers, best.solutions, best.boxes, strict=True))
     used = np.unique(np.concatenate([one.axes for one in regions]), axis=0)
     times = [sum(one.seconds) for one in regions if one.seconds]
-    return Shared(regions, sum(sum(one.lengths) for one in regions), len(used), sum(times) if times else None)
+    return SharedDivision(regions, sum(sum(one.lengths) for one in regions), len(used), sum(times) if times else None)
 
 
 class _Try(NamedTuple):
@@ -277,7 +279,8 @@ def _division(divider: Divider, count: int) -> list[Corners]:
     return divider.best.pieces(int(known[np.argmin(np.abs(known - count))])) if len(known) else []
 
 
-def _settled(faces: list[tuple[Divider, Prices, list[Corners]]], most: int, index_cost: float) -> _Try | None:
+def _alternate_axes_and_pieces(faces: list[tuple[Divider, CostGrid, list[Corners]]], most: int,
+                               index_cost: float) -> _Try | None:
     """Axes for pieces and pieces for axes in turn, until the cost falls no more; None where a face is not divided."""
     best: _Try | None = None
     if not all(boxes for _, _, boxes in faces):

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
@@ -93,7 +93,7 @@ class Lattice:
         for i in range(self.cells[0]):
             column = self._clipped(self.face.outline, 0, i, i + 1)
             for j in range(self.cells[1]):
-                pieces = grouped(self._clipped(column, 1, j, j + 1))
+                pieces = outer_with_holes(self._clipped(column, 1, j, j + 1))
                 found[i, j] = sum(2 * abs(signed_area(piece[0])) - sum(abs(signed_area(loop)) for loop in piece)
                                   for piece in pieces)
         return found / size
@@ -130,9 +130,9 @@ class Lattice:
         """The part of loops between two lines."""
         line = self.lines[axis]
         if first > 0:
-            loops = clipped(loops, axis, float(line[first]), True)
+            loops = clip_half_plane(loops, axis, float(line[first]), True)
         if last < len(line) - 1:
-            loops = clipped(loops, axis, float(line[last]), False)
+            loops = clip_half_plane(loops, axis, float(line[last]), False)
         return loops
 
     def rectangle(self, corners: tuple[int, int, int, int]) -> tuple[tuple[Array, ...], ...]:
@@ -149,7 +149,7 @@ class Lattice:
             One tuple a piece, its border first; a rectangle may hold several pieces, or none.
         """
         column = self._clipped(self.face.outline, 0, *corners[:2])
-        return tuple(grouped(self._clipped(column, 1, *corners[2:])))
+        return tuple(outer_with_holes(self._clipped(column, 1, *corners[2:])))
 
 
 def _even(values: Array, net: Array, count: int) -> Array:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.path.chord_tolerance import follow, rises
-from toolaxis.path.links import Linking, Stroke, link
+from toolaxis.path.links import CuttingMove, Linking, link
 from toolaxis.path.parametrization import Chart, Cut, tip_points
 from toolaxis.path.pass_layout import Layout
 
@@ -69,13 +69,13 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     contact, tip, normal = tip_points(chart, cut, along, steps)
     tip = tip - rises(chart, cut, steps, piece, along)[:, None] * normal
     bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
-    strokes = [Stroke(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
+    strokes = [CuttingMove(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
     return link(_ordered(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))
 
 
-def _ordered(strokes: list[Stroke], layout: Layout, direction: str) -> list[list[Stroke]]:
+def _ordered(strokes: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
     climb = climbing(layout.chart, layout.cut)
-    passes: list[list[Stroke]] = []
+    passes: list[list[CuttingMove]] = []
     for i in np.unique(layout.owner):
         members = [strokes[j] for j in np.flatnonzero(layout.owner == i)]
         sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
@@ -83,8 +83,8 @@ def _ordered(strokes: list[Stroke], layout: Layout, direction: str) -> list[list
     return passes
 
 
-def _back(stroke: Stroke) -> Stroke:
-    return Stroke(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1])
+def _back(stroke: CuttingMove) -> CuttingMove:
+    return CuttingMove(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1])
 
 
 def _crossing(layout: Layout, box: ArrayLike | None, above: float = 5.0) -> float:

@@ -10,7 +10,7 @@ from toolaxis.contact.strip.second_order import compliance, contact_forms, scree
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.parametrization import IsoChart, rows
 from toolaxis.path.pass_count import panels
@@ -39,7 +39,7 @@ class Estimates(NamedTuple):
     length: Array
 
 
-class _Rows(NamedTuple):
+class _SampledPasses(NamedTuple):
     """Passes that stand for all others with one feed: geometry of their points, once for all axes.
 
     Points at the ends of passes belong to places of their own on the border, numbered after the sample points.
@@ -78,7 +78,7 @@ class Estimator:
     scallop: float
     allowance: float
     samples: Samples
-    rows: tuple[_Rows, _Rows]
+    rows: tuple[_SampledPasses, _SampledPasses]
     ends: tuple[Array, Array]
     leans: Array
 
@@ -145,7 +145,7 @@ class Estimator:
         section = np.where(within, rate[:, None, :], 0.0).max(axis=2)  # Eq. (5)
         return np.asarray(section @ np.diff(edges))  # Eq. (4), added up
 
-    def _sums(self, table: _Rows, axes: Array, ratio: Array) -> tuple[Array, Array]:
+    def _sums(self, table: _SampledPasses, axes: Array, ratio: Array) -> tuple[Array, Array]:
         passes, length = np.empty(len(axes)), np.empty(len(axes))
         kernel = _sum_rows if _compiled.available else sum_rows_numpy
         kernel(table, np.ascontiguousarray(axes), np.ascontiguousarray(ratio), self.leans,
@@ -220,7 +220,7 @@ def estimate(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str 
     return float(passes[0]) if np.ndim(axis) == 1 else passes
 
 
-def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_Rows, Array]:
+def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_SampledPasses, Array]:
     """Rows of points, and the parameters of the chosen ends of passes."""
     chart = IsoChart(face, feed)
     a0, a1, s0, s1 = chart.bounds
@@ -239,7 +239,7 @@ def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_Rows, Array]:
         apart = ((place[ends, None] - place[chosen]) ** 2).sum(axis=2)
         owner[ends] = len(samples) + apart.argmin(axis=1)
     geometry = contact_forms(face, uv, feed, True), np.ascontiguousarray(face.evaluate(uv).point)
-    return _Rows(*geometry, start, joined, weight, owner), uv[chosen]
+    return _SampledPasses(*geometry, start, joined, weight, owner), uv[chosen]
 
 
 def _gauss(edges: Array) -> tuple[Array, Array]:
@@ -253,7 +253,7 @@ def _gauss(edges: Array) -> tuple[Array, Array]:
     return np.concatenate(steps), np.concatenate(weights)
 
 
-@compiled
+@jit
 def _tip(form: Array, point: Array, cutter: Array, axis: Array, out: Array) -> None:
     """Tool tip, less the constant shift along the axis."""
     nt = form[6] * axis[0] + form[7] * axis[1] + form[8] * axis[2]
@@ -263,7 +263,7 @@ def _tip(form: Array, point: Array, cutter: Array, axis: Array, out: Array) -> N
         out[c] = point[c] + cutter[5] * form[6 + c] + pull * (form[6 + c] - nt * axis[c])
 
 
-@compiled
+@jit
 def _square(form: Array, axis: Array, cutter: Array, leans: Array) -> float:
     """Square of the strip width in the step parameter over 8 h: second-order, corrected for the lean."""
     rest, _, free = compliance((form[9], form[10], form[11]), form[:9].reshape((3, 3)), cutter, axis)
@@ -275,8 +275,8 @@ def _square(form: Array, axis: Array, cutter: Array, leans: Array) -> float:
     return float(rest * ratio * ratio)
 
 
-@compiled
-def _sum_rows(table: _Rows, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float], passes: Array,
+@jit
+def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float], passes: Array,
               length: Array) -> None:
     """Passes and length of each axis: sums over rows of weight over the narrowest strip."""
     forms, points, start, joined, weight, owner = table
@@ -306,7 +306,8 @@ def _sum_rows(table: _Rows, axes: Array, ratio: Array, leans: Array, sizes: tupl
         length[i] = path
 
 
-def sum_rows_numpy(table: _Rows, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float], passes: Array,
+def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float],
+                   passes: Array,
                    length: Array) -> None:
     """The plain twin of the summing kernel, written on whole arrays.
 

@@ -21,7 +21,7 @@ ROOFS, LIFTS = (0.0, 0.25, 0.5, 1.0), (1.0, 3.0, 8.0, 20.0, 45.0, 90.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Stroke:
+class CuttingMove:
     """One cutting motion without interruption, in the order of cutting.
 
     Attributes
@@ -75,7 +75,7 @@ class Linking:
                                    + (" and zero or more" if name != "height" else ""))
 
 
-def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
+def link(passes: list[list[CuttingMove]], axis: Array, linking: Linking) -> ToolPath:
     """Join strokes by retracts along the axis.
 
     Each stroke is entered and left on a ramp at 45 degrees between feed and axis, and by a short move along the axis;
@@ -116,8 +116,8 @@ def link(passes: list[list[Stroke]], axis: Array, linking: Linking) -> ToolPath:
     kinds: list[NDArray[np.int8]] = []
     for k, stroke in enumerate(strokes):
         kind = kinds_of(2 + len(entries[k][1:]), len(stroke.tip), 1 + len(exits[k]))
-        before = np.concatenate([_lifted(entries[k][:1], axis, heights[k]), entries[k]])[2 * stays[k]:]
-        after = np.concatenate([exits[k], _lifted(exits[k][-1:], axis, heights[k + 1])])
+        before = np.concatenate([_lift_link(entries[k][:1], axis, heights[k]), entries[k]])[2 * stays[k]:]
+        after = np.concatenate([exits[k], _lift_link(exits[k][-1:], axis, heights[k + 1])])
         if stays[k + 1]:
             after = np.concatenate([exits[k][:-1], over[k + 1:k + 2]])
         tips += [before, stroke.tip, after]
@@ -142,7 +142,7 @@ def _over(near: tuple[list[Array], list[Array]], axis: Array, linking: Linking) 
     return over
 
 
-def _heights(strokes: list[Stroke], ends: tuple[list[Array], list[Array], NDArray[np.bool_]], axis: Array,
+def _heights(strokes: list[CuttingMove], ends: tuple[list[Array], list[Array], NDArray[np.bool_]], axis: Array,
              linking: Linking) -> Array:
     """Heights along the axis at which the tip comes, crosses from stroke to stroke, and goes, (strokes + 1,) mm."""
     tops = [float((stroke.tip @ axis).max()) for stroke in strokes]
@@ -157,7 +157,7 @@ def _heights(strokes: list[Stroke], ends: tuple[list[Array], list[Array], NDArra
     return heights
 
 
-def _lifted(near: Array, axis: Array, height: float) -> Array:
+def _lift_link(near: Array, axis: Array, height: float) -> Array:
     return near + max(height - float(near[0] @ axis), 0.0) * axis
 
 
@@ -188,12 +188,12 @@ def _ramp(end: tuple[Array, Array], normal: Array, axis: Array, run_in: float) -
     return np.empty((0, 3)) if long < 1e-6 else (start + (run_in or ASIDE) * direction / long)[None]
 
 
-def entry_points(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+def entry_points(stroke: CuttingMove, axis: Array, linking: Linking) -> Array:
     """Points before the first cut point: above the ramp, at its top, (1 or 2, 3) mm.
 
     Parameters
     ----------
-    stroke : Stroke
+    stroke : CuttingMove
     axis : (3,) array
     linking : Linking
     """
@@ -202,12 +202,12 @@ def entry_points(stroke: Stroke, axis: Array, linking: Linking) -> Array:
     return np.concatenate([(low + linking.approach * axis)[None], ramp])
 
 
-def exit_points(stroke: Stroke, axis: Array, linking: Linking) -> Array:
+def exit_points(stroke: CuttingMove, axis: Array, linking: Linking) -> Array:
     """Points after the last cut point: the end of the ramp, above it, (1 or 2, 3) mm.
 
     Parameters
     ----------
-    stroke : Stroke
+    stroke : CuttingMove
     axis : (3,) array
     linking : Linking
     """

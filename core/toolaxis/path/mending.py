@@ -18,7 +18,7 @@ from toolaxis.path.parametrization import Chart, Cut, IsoChart, extents, tip_poi
 from toolaxis.path.pass_layout import Layout, Reach, sampling
 from toolaxis.path.rest_material import FACTOR, may_stay, undercut
 from toolaxis.path.step_over import Spacing
-from toolaxis.path.trim_intervals import Intervals, filtered
+from toolaxis.path.trim_intervals import Intervals, filter_intervals
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 
@@ -67,7 +67,7 @@ class _Passes(NamedTuple):
     owner: NDArray[np.intp]
 
 
-class Made(NamedTuple):
+class FurtherPasses(NamedTuple):
     """Passes, how they were traced, and the zones that they leave higher than the scallop limit.
 
     placed : Layout;  path : ToolPath;  zones : tuple of Zone, the largest first;  longer : float, cutting length over
@@ -90,8 +90,8 @@ class Made(NamedTuple):
         return undercut(self.zones)
 
 
-def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callable[[ToolPath], tuple[Zone, ...]],
-              reach: Reach | None = None) -> Made:
+def complete_passes(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callable[[ToolPath], tuple[Zone, ...]],
+                    reach: Reach | None = None) -> FurtherPasses:
     """Passes with as many further short ones as it takes to leave little on which the cutter may stand.
 
     Parameters
@@ -107,7 +107,7 @@ def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callab
 
     Returns
     -------
-    Made
+    FurtherPasses
         With the layout as it came where its passes leave little, or no further pass would help.
 
     Notes
@@ -118,26 +118,26 @@ def completed(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callab
     **Properties**: 1. it never leaves more than the layout did.
     """
     path = traced(placed)
-    made, plain = Made(placed, path, left(path)), path.length(Motion.CUT)
+    made, plain = FurtherPasses(placed, path, left(path)), path.length(Motion.CUT)
     for _ in range(_ROUNDS if len(placed.pieces) else 0):
-        further = mended(made.placed, made.zones, reach)
+        further = add_passes_over_zones(made.placed, made.zones, reach)
         if further is made.placed:
             break
         path = traced(further)
-        again = Made(further, path, left(path), path.length(Motion.CUT) / max(plain, np.finfo(float).tiny))
+        again = FurtherPasses(further, path, left(path), path.length(Motion.CUT) / max(plain, np.finfo(float).tiny))
         if again.left >= made.left:
             break
         made = again
     return made
 
 
-def mended(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) -> Layout:
+def add_passes_over_zones(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) -> Layout:
     """A layout with further passes over the largest zones, until what the others leave may stay.
 
     Parameters
     ----------
     placed, reach
-        As for `completed`.
+        As for `complete_passes`.
     zones : sequence of Zone
         What the passes leave, the largest first.
 
@@ -146,7 +146,7 @@ def mended(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) ->
     Layout
         The same one where there is nothing to be done.
     """
-    aims = [(zone.area, _aimed(placed, zone, reach)) for zone in zones[:_ZONES]]
+    aims = [(zone.area, _aim_at_zone(placed, zone, reach)) for zone in zones[:_ZONES]]
     rest = sum(area for area, aim in aims if aim is not None)
     enough = may_stay(zones, placed.chart.face.area)
     found: list[Array] = []
@@ -159,7 +159,7 @@ def mended(placed: Layout, zones: Sequence[Zone], reach: Reach | None = None) ->
     return _with(placed, found) if found else placed
 
 
-def _aimed(placed: Layout, zone: Zone, reach: Reach | None) -> _Aim | None:
+def _aim_at_zone(placed: Layout, zone: Zone, reach: Reach | None) -> _Aim | None:
     """What is to be cut of a zone; None of one that lies at walls."""
     chart, cut = placed.chart, placed.cut
     assert isinstance(chart, IsoChart)
@@ -179,7 +179,7 @@ def _over(placed: Layout, aim: _Aim, reach: Reach | None) -> list[Array]:
     # Numbers of a chart from those of the face: the order of u and v is its own inverse.
     along = chart.uv(aim.uv[:, 0], aim.uv[:, 1])[:, 0]
     run_out = _run_out(chart, cut, aim.uv)
-    tried = _tried(chart, cut, aim.zone.bounds, run_out, reach)
+    tried = _try_passes(chart, cut, aim.zone.bounds, run_out, reach)
     cuts = _cuts(chart, cut, tried, aim)
     found, left = [], np.ones(len(aim.area), dtype=bool)
     for _ in range(_PASSES):
@@ -213,8 +213,8 @@ def _run_out(chart: Chart, cut: Cut, uv: Array) -> float:
     return _RUN_OUT * float(good.max(initial=0.0))
 
 
-def _tried(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float], run_out: float,
-           reach: Reach | None) -> _Passes:
+def _try_passes(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float], run_out: float,
+                reach: Reach | None) -> _Passes:
     """Passes at steps in and beside a zone, over all of its length as far as the cutter may stand there."""
     a0, a1, s0, s1 = bounds
     along = np.linspace(a0, a1, 7)
@@ -227,8 +227,8 @@ def _tried(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float], ru
     found = Intervals(np.arange(count), np.full(count, low), np.full(count, high))
     if reach is not None:
         apart, exact = sampling(extents(chart)[0], chart.bounds[1] - chart.bounds[0], cut)
-        found = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])),
-                         min((high - low) / _ASKED, apart), exact)
+        found = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])),
+                                 min((high - low) / _ASKED, apart), exact)
     some = found.high - found.low > 1e-9 * (high - low)
     pieces = np.column_stack([found.low, found.high, steps[found.line]])[some]
     return _Passes(steps, pieces, found.line[some])

@@ -14,7 +14,7 @@ _ACROSS, _TRIED = 9, 65
 _SHARE = 2e-3
 
 
-def needed(chart: Chart, cut: Cut, end: Array, step: Array, forward: bool) -> Array:
+def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: bool) -> Array:
     """Along parameter that passes must go on past their ends, (n,), zero or more.
 
     With an axis that leans across the feed, the edges of a strip are cut from contacts well before or behind them:

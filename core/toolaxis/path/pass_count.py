@@ -105,7 +105,7 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     -------
     Count; inf where the axis leaves no strip somewhere.
     """
-    beyond = _Beyond(chart, cut)
+    beyond = _OutsideLoops(chart, cut)
     ends = _outermost(chart, cut, beyond)
     edges, done = panels(chart), np.zeros(2)
     if ends.step[0] < ends.step[1]:
@@ -147,7 +147,7 @@ def panels(chart: Chart) -> Array:
     return np.array([*keep, s1])
 
 
-def _integrals(chart: Chart, cut: Cut, beyond: "_Beyond", low: Array, high: Array) -> tuple[Array, Array]:
+def _integrals(chart: Chart, cut: Cut, beyond: "_OutsideLoops", low: Array, high: Array) -> tuple[Array, Array]:
     """Passes and length on each panel by 15 and by 7 points, (n, 2) each."""
     nodes = np.concatenate([-_NODES[:0:-1], _NODES])
     half = (high - low) / 2
@@ -188,7 +188,7 @@ def _spacing(chart: Chart, cut: Cut, found: _Rows) -> Array:
     return np.asarray(found.width + np.where(np.abs(change) < found.width / 2, change, 0.0))
 
 
-def _outermost(chart: Chart, cut: Cut, beyond: "_Beyond") -> _Rows:
+def _outermost(chart: Chart, cut: Cut, beyond: "_OutsideLoops") -> _Rows:
     """The first and the last pass: their strips end on the borders."""
     border = np.array(chart.bounds[2:])
     inwards = np.array([1.0, -1.0])
@@ -227,7 +227,7 @@ def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
     return np.asarray(np.where(away == np.abs(step - border), step, border + inwards * away))
 
 
-class _Beyond:
+class _OutsideLoops:
     """Places beyond the loops at which a pass still has to cut, for its strip reaches material.
 
     A pass runs on past a slanting border until its strip holds nothing any more.
@@ -255,7 +255,7 @@ class _Beyond:
                 np.append(line, row[extra]), np.append(guess, width[extra]))
 
 
-def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> _Rows:
+def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _Rows:
     """Least exact strip width over each pass, and the length of the tip's motion on it.
 
     Exact widths at some places scale the second-order ones between them; these tell where the least ones are, and
@@ -278,7 +278,8 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _Beyond, steps: Array) -> _Rows:
     inner = own < len(found.low)
     low, high = (np.where(inner, np.append(end, 0.0)[np.minimum(own, len(end))], place)
                  for end in (found.low, found.high))
-    width, place = _descended(chart, cut, steps, _Places(row, place, width, low, high), (a1 - a0) / _EXACT_GAPS)
+    width, place = _descend_to_narrowest(chart, cut, steps, _Places(row, place, width, low, high),
+                                         (a1 - a0) / _EXACT_GAPS)
     _, tip, _ = tip_points(chart, cut, along, step)
     gap = np.where(np.diff(points.interval) == 0, np.linalg.norm(np.diff(tip, axis=0), axis=1), 0.0)
     length = np.bincount(line[1:], weights=gap, minlength=len(steps))
@@ -295,7 +296,7 @@ class _Places(NamedTuple):
     high: Array
 
 
-def _descended(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: float) -> tuple[Array, Array]:
+def _descend_to_narrowest(chart: Chart, cut: Cut, steps: Array, known: _Places, apart: float) -> tuple[Array, Array]:
     """Least width of each row and where it is, from the best known place downhill in halved steps.
 
     0 and the first along parameter where a row has no place.

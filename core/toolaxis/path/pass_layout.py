@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.path.overrun import needed
+from toolaxis.path.overrun import overrun_length
 from toolaxis.path.parametrization import Chart, Cut, columns, extents
 from toolaxis.path.step_over import PITCH, Spacing, lines, space
-from toolaxis.path.trim_intervals import Intervals, filtered, joined, table
+from toolaxis.path.trim_intervals import Intervals, filter_intervals, merge_intervals, table
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
@@ -80,7 +80,7 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
         column = _reachable(chart, cut, across.along, column, reach)
     material = table(column, len(across.along))
     spacing = space(chart, cut, across, material, progress)
-    found = _extended(chart, cut, spacing.steps, _needed(chart, spacing, material))
+    found = _extend_pieces(chart, cut, spacing.steps, _stretches_on_material(chart, spacing, material))
     if reach is not None:
         found = _cut_out(chart, cut, spacing.steps, found, reach)
     pieces = np.column_stack([found.low, found.high, spacing.steps[found.line]])
@@ -92,7 +92,7 @@ def _overlaps(material: Array, low: Array, high: Array) -> Bools:
     return np.asarray(((material[..., 0] < high[..., None]) & (material[..., 1] > low[..., None])).any(axis=-1))
 
 
-def _needed(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
+def _stretches_on_material(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
     """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
     along = spacing.lines.along
     halves = np.array([spacing.lines.spread(h) for h in spacing.halves]).reshape(-1, len(along), 2)
@@ -114,7 +114,7 @@ def _needed(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
     return Intervals(ends[::2, 0].astype(np.intp), ends[::2, 1], ends[1::2, 1])
 
 
-def _extended(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
+def _extend_pieces(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
     """Run pieces out as far as the cutter reaches at scallop height, and join those that then meet."""
     a0, a1, s0, s1 = chart.bounds
     step = np.clip(steps[found.line], s0, s1)
@@ -123,28 +123,28 @@ def _extended(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Interva
     closed = chart.closed(step)
     before = np.where(closed & (found.low <= a0), 0.0, before)
     after = np.where(closed & (found.high >= a1), 0.0, after)
-    return joined(Intervals(found.line, found.low - before, found.high + after))
+    return merge_intervals(Intervals(found.line, found.low - before, found.high + after))
 
 
 def _run_out(chart: Chart, cut: Cut, place: tuple[Array, Array], side: int) -> Array:
     """How far pieces go on past places (along, step) on their lower (0) or upper (1) side."""
     reach = chart.run_outs(cut, *place)[:, side]
     reach = np.where(np.isfinite(reach) & (reach > 0), reach, 0.0)
-    return _RUN_OUT * np.maximum(reach, needed(chart, cut, *place, forward=side == 1))
+    return _RUN_OUT * np.maximum(reach, overrun_length(chart, cut, *place, forward=side == 1))
 
 
 def _reachable(chart: Chart, cut: Cut, along: Array, column: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the lines across the passes."""
     _, _, s0, s1 = chart.bounds
     how = sampling(extents(chart)[1], s1 - s0, cut)
-    return filtered(column, lambda line, place: reach(chart.uv(along[line], place)), *how)
+    return filter_intervals(column, lambda line, place: reach(chart.uv(along[line], place)), *how)
 
 
 def _cut_out(chart: Chart, cut: Cut, steps: Array, found: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the passes."""
     a0, a1, _, _ = chart.bounds
     how = sampling(extents(chart)[0], a1 - a0, cut)
-    kept = filtered(found, lambda line, place: reach(chart.uv(place, steps[line])), *how)
+    kept = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])), *how)
     long_ = kept.high - kept.low > 1e-9 * (a1 - a0)
     return Intervals(kept.line[long_], kept.low[long_], kept.high[long_])
 

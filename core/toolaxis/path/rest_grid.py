@@ -30,8 +30,8 @@ _SMALL = 2
 _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1], [0, 0.5]])
 
 
-def sampled(face: Face, function: Callable[[Array], Array], size: float,
-            whole: Callable[[Array, Array], Bools]) -> tuple[Lines, Array]:
+def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
+                whole: Callable[[Array, Array], Bools]) -> tuple[Lines, Array]:
     """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
 
     Parameters

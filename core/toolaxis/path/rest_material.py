@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.clipping import grouped
+from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divided, without
-from toolaxis.path.rest_grid import sampled
+from toolaxis.numeric.polygon_boolean import divide_polygon, without
+from toolaxis.path.rest_grid import sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -147,16 +147,16 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     progress.check()
     high = Excess(face, tool, path, allowance + FACTOR * scallop)
     deep = Excess(face, tool, path, allowance + DEEP * scallop)
-    lines, values = sampled(face, high, _size(face, tool, scallop), high.whole)
+    lines, values = sample_grid(face, high, _size(face, tool, scallop), high.whole)
     nodes = _above(lines, values)
     if not len(nodes):
         return ()
     progress.check()
     found = contours(values, lines, high, _HALVINGS)
     progress.check()
-    zones = [face.trimmed(loops) for loops in grouped(split(face.outline, found)[0])]
-    small, large = _parted([(zone, zone.area) for zone in zones],
-                           lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
+    zones = [face.trimmed(loops) for loops in outer_with_holes(split(face.outline, found)[0])]
+    small, large = _partition_by([(zone, zone.area) for zone in zones],
+                                 lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
     told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
     if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
         told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
@@ -185,7 +185,7 @@ def may_stay(zones: Sequence[Zone], area: float) -> float:
     return OVERLOOKED * max(0.0, area - sum(zone.area for zone in zones if zone.at_wall))
 
 
-def _parted(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T], list[T]]:
+def _partition_by(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T], list[T]]:
     """Those that pass a test, and the others."""
     passed = [test(one) for one in some]
     return ([one for one, good in zip(some, passed, strict=True) if good],
@@ -203,7 +203,7 @@ def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[A
     for attempt in range(_TRIES):
         shift = attempt * 3e-10 * size * np.array([1.0, 0.61803398875])
         try:
-            return divided(outline, tuple(loop + shift for loop in loops))
+            return divide_polygon(outline, tuple(loop + shift for loop in loops))
         except InvalidInput:
             continue
     raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own")
@@ -229,7 +229,7 @@ def also_machined(face: Face, zone: Zone, others: Sequence[Excess]) -> Zone:
     return replace(zone, elsewhere=float(zone.area * weight[free].sum() / max(weight.sum(), np.finfo(float).tiny)))
 
 
-def machined(face: Face, zones: tuple[Zone, ...]) -> tuple[Face, ...]:
+def machined_regions(face: Face, zones: tuple[Zone, ...]) -> tuple[Face, ...]:
     """A sub-surface without its zones, as pieces.
 
     Parameters
@@ -241,7 +241,7 @@ def machined(face: Face, zones: tuple[Zone, ...]) -> tuple[Face, ...]:
     loops: tuple[Array, ...] = face.outline
     for zone in zones:
         loops = without(loops, zone.loops)
-    return tuple(face.trimmed(one) for one in grouped(loops))
+    return tuple(face.trimmed(one) for one in outer_with_holes(loops))
 
 
 def _size(face: Face, tool: Tool, scallop: float) -> float:

@@ -99,7 +99,7 @@ def table(rows: Intervals, lines: int) -> Array:
     return out
 
 
-def joined(rows: Intervals) -> Intervals:
+def merge_intervals(rows: Intervals) -> Intervals:
     """Intervals of the same line that meet or overlap made one.
 
     Parameters
@@ -119,8 +119,8 @@ def joined(rows: Intervals) -> Intervals:
     return Intervals(whole[:, 0].astype(np.intp), whole[:, 1], whole[:, 2])
 
 
-def filtered(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]], spacing: float,
-             exact: float) -> Intervals:
+def filter_intervals(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]], spacing: float,
+                     exact: float) -> Intervals:
     """The parts of intervals where a test holds, their ends found by bisection.
 
     Parameters

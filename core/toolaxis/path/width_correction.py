@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.width import step_widths
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -81,14 +81,14 @@ def _table(kind: str, radius: float, corner_radius: float, half_angle: float, sc
     return table
 
 
-@compiled
+@jit
 def _place(lean: float) -> float:
     """Place in the table, 0 to 1, of the sine of the angle between axis and normal."""
     sine = min(lean, 1.0)
     return float(0.5 * (np.sqrt(sine) + 1.0 - np.sqrt(1.0 - sine * sine)))
 
 
-@compiled
+@jit
 def lean_ratio(table: Array, along: float, across: float) -> float:
     """Ratio from the table for an axis with these components along and across the feed, by bilinear interpolation."""
     square = along * along + across * across

@@ -13,7 +13,7 @@ class Baseline:
     Attributes
     ----------
     method : str
-        As in `toolaxis.plan.plan.Inputs`, or "plan" for the plan itself.
+        As in `toolaxis.plan.plan.PlanInputs`, or "plan" for the plan itself.
     tool : str
         Short form of the tool that it takes: a ball end for the method "ball".
     sub_surfaces, machined : int

@@ -57,7 +57,7 @@ class Gap:
 
 
 @dataclass(frozen=True, eq=False)
-class Room:
+class BladeClearance:
     """The least distance of one component of the tool to what stands around the planned blade.
 
     Attributes
@@ -99,7 +99,7 @@ class Blades:
         Number of an operation to the number of the one that it is a turned copy of.
     searched : tuple of int
         Operations on other blades than the first for which the proof refused the turned axis, searched anew.
-    room : tuple of Room
+    room : tuple of BladeClearance
     """
 
     point: Array
@@ -109,7 +109,7 @@ class Blades:
     gap: Gap
     copies: dict[int, int]
     searched: tuple[int, ...] = ()
-    room: tuple[Room, ...] = ()
+    room: tuple[BladeClearance, ...] = ()
 
     @cached_property
     def _owner(self) -> dict[int, tuple[int, str]]:

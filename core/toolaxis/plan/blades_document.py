@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from toolaxis.plan.blades import Blades, Gap, PlannedBlade, Room
+from toolaxis.plan.blades import BladeClearance, Blades, Gap, PlannedBlade
 
 Document = dict[str, Any]
 
@@ -51,4 +51,4 @@ def blades_from(document: Mapping[str, Any] | None, operations: int) -> Blades |
     return Blades(np.array(document["point"], dtype=float), np.array(document["axis"], dtype=float),
                   tuple(document["hub"]), blades, gap,
                   {pair["operation"]: pair["of"] for pair in document["copies"]}, tuple(document["searched"]),
-                  tuple(Room(**room) for room in document["clearances"])).checked(operations)
+                  tuple(BladeClearance(**room) for room in document["clearances"])).checked(operations)

@@ -16,7 +16,7 @@ from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
-from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.plan.timing import MachiningTime, Order
 from toolaxis.plan.zone import Zone
@@ -248,7 +248,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     given = dict(document["inputs"])
-    inputs = Inputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
+    inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
     operations = tuple(_operation_from(record, part, path)
                        for record, path in zip(document["operations"], paths, strict=True))
     return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),

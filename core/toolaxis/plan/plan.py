@@ -32,7 +32,7 @@ def _one_of(name: str, value: str, choices: tuple[str, ...]) -> None:
 
 
 @dataclass(frozen=True)
-class Inputs:
+class PlanInputs:
     """What the planner was asked for; lengths in mm.
 
     Attributes
@@ -168,7 +168,7 @@ class Plan:
     ----------
     part : Part
     tool : Tool
-    inputs : Inputs
+    inputs : PlanInputs
     operations : tuple of Operation
         One per sub-surface, in the order of the faces; by axis where sub-surfaces share axes; on a machine in the order
         that takes least time between them.
@@ -200,7 +200,7 @@ class Plan:
 
     part: Part
     tool: Tool
-    inputs: Inputs
+    inputs: PlanInputs
     operations: tuple[Operation, ...]
     obstacles: tuple[Part, ...]
     datum: Array

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 COLUMNS = 72
 
 
-def _wrapped(line: str) -> str:
+def _wrap_statement(line: str) -> str:
     """Continue a statement on the next line with `$` so that none is longer than 72 columns."""
     lines = []
     while len(line) > COLUMNS:
@@ -106,7 +106,7 @@ def locations_text(found: CutterLocations, name: str, tool: Tool | None = None) 
 def _whole(name: str, cutter: str, spindle: float, motions: Iterator[str]) -> str:
     turning = [f"SPINDL/RPM,{spindle:g},CLW"] if spindle > 0 else []
     lines = [f"PARTNO/{_plain(name)}", "UNITS/MM", "MULTAX/ON", *filter(None, [cutter]), "LOADTL/1", *turning, *motions]
-    return "\n".join([*map(_wrapped, lines), *(["SPINDL/OFF"] if turning else []), "FINI", ""])
+    return "\n".join([*map(_wrap_statement, lines), *(["SPINDL/OFF"] if turning else []), "FINI", ""])
 
 
 def _motions(path: ToolPath, rates: Array, from_above: bool) -> Iterator[str]:

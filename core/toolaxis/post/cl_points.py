@@ -50,8 +50,9 @@ class CutterLocations:
         return ToolPath(self.tip, self.tip, self.axis, self.axis, self.kind, self.breaks)
 
 
-def gathered(rows: list[Array], kinds: list[int], rates: list[float], starts: list[int], *, told: bool, spindle: float,
-             source: str) -> CutterLocations:
+def gather_locations(rows: list[Array], kinds: list[int], rates: list[float], starts: list[int], *, told: bool,
+                     spindle: float,
+                     source: str) -> CutterLocations:
     """Cutter locations from what was read point by point.
 
     Parameters

@@ -9,18 +9,18 @@ from numpy.typing import ArrayLike
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.post.indexed_positions import Station
+from toolaxis.plan.plan import Plan, PlanInputs
+from toolaxis.post.indexed_positions import IndexedPosition
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Setting:
+class ProgramContext:
     """What every block of a program may depend on besides motions.
 
     Attributes
     ----------
     mounting : Mounting
-    inputs : Inputs
+    inputs : PlanInputs
         Spindle speed and feed rates.
     name : str
         Of the program; letters, digits, points, dashes and underscores are kept.
@@ -31,7 +31,7 @@ class Setting:
     """
 
     mounting: Mounting
-    inputs: Inputs
+    inputs: PlanInputs
     name: str = "toolaxis"
     retract: float | None = None
     clamp: tuple[str, ...] = ()
@@ -44,19 +44,19 @@ class Setting:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program(Setting):
+class Program(ProgramContext):
     """All that a dialect needs to write a plan.
 
     Attributes
     ----------
     mounting, inputs, name, retract, clamp, unclamp
-        As for `Setting`.
+        As for `ProgramContext`.
     plan : Plan
-    stations : tuple of Station
+    stations : tuple of IndexedPosition
     """
 
     plan: Plan
-    stations: tuple[Station, ...] = ()
+    stations: tuple[IndexedPosition, ...] = ()
 
 
 @dataclass(frozen=True)

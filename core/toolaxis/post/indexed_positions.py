@@ -25,7 +25,7 @@ _GOUGE_SHARE, _CLEARANCE_SHARE = 0.5, 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Station:
+class IndexedPosition:
     """One operation as a machine carries it out with its rotary axes standing still.
 
     Attributes
@@ -69,7 +69,7 @@ class Station:
 
 
 def stations(plan: Plan, mounting: Mounting, angle_digits: int,
-             chosen: Mapping[int, ArrayLike] | None = None) -> tuple[Station, ...]:
+             chosen: Mapping[int, ArrayLike] | None = None) -> tuple[IndexedPosition, ...]:
     """The stations of all operations of a plan that have an axis, in their order.
 
     The solution of each is the one with the least turn from the one before.
@@ -90,15 +90,15 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
         When an axis is out of reach or held too far from where the passes were made for, a path leaves the travel, or
         an operation has no fixed axis.
     """
-    found: list[Station] = []
+    found: list[IndexedPosition] = []
     known: list[Array] = []
     stand = np.zeros(len(mounting.machine.rotary))
     for op in plan.operations:
         if op.path is None or op.frame is None:
             continue
         given = (chosen or {}).get(op.number)
-        rows = _solutions(op, mounting) if given is None else _given(op, given, mounting)
-        rows = _close(_written(rows, mounting.machine, angle_digits), op, plan, mounting)
+        rows = _solutions(op, mounting) if given is None else _given_angles(op, given, mounting)
+        rows = _close(_round_angles(rows, mounting.machine, angle_digits), op, plan, mounting)
         stand = rows[0] if given is not None else nearest_turn(mounting.machine, rows, stand)
         number = next((k for k, one in enumerate(known) if _same(one, stand)), len(known))
         known += [stand] if number == len(known) else []
@@ -108,7 +108,7 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
     return tuple(found)
 
 
-def turned_table(machine: Machine, angles: Array) -> Array:
+def axes_on_turned_table(machine: Machine, angles: Array) -> Array:
     """The machine's axes as the turned table sees them, as columns, (3, 3).
 
     Parameters
@@ -123,12 +123,12 @@ def turned_table(machine: Machine, angles: Array) -> Array:
     return matrix
 
 
-def in_plane(station: Station, mounting: Mounting, matrix: Array, datum: Array) -> Station:
+def in_plane(station: IndexedPosition, mounting: Mounting, matrix: Array, datum: Array) -> IndexedPosition:
     """A station with its path in another plane.
 
     Parameters
     ----------
-    station : Station
+    station : IndexedPosition
     mounting : Mounting
     matrix : (3, 3) array
         The plane's axes as columns in the work coordinate system's directions.
@@ -141,7 +141,7 @@ def in_plane(station: Station, mounting: Mounting, matrix: Array, datum: Array) 
     return replace(station, matrix=matrix, tips=(path.cl - datum) @ turn.T @ matrix)
 
 
-def _fixed(op: Operation) -> Array:
+def _fixed_axis_of(op: Operation) -> Array:
     """The axis of an operation, which must not turn."""
     assert op.path is not None
     axis = np.asarray(unit(op.path.axis.mean(axis=0)))
@@ -152,9 +152,9 @@ def _fixed(op: Operation) -> Array:
     return axis
 
 
-def _given(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
+def _given_angles(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
     """Rotary angles that are already chosen, (1, m) rad."""
-    _fixed(op)
+    _fixed_axis_of(op)
     row, rotary = np.asarray(angles, dtype=float), mounting.machine.rotary
     if row.shape != (len(rotary),) or not np.isfinite(row).all():
         raise InvalidInput(f"{op.name}: rotary angles are {row.tolist()}: {len(rotary)} finite ones are needed")
@@ -169,7 +169,7 @@ def _given(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
 def _solutions(op: Operation, mounting: Mounting) -> Array:
     """Rotary angles in the machine's steps at which an operation can be carried out, (s, m) rad."""
     assert op.path is not None
-    axis = _fixed(op)
+    axis = _fixed_axis_of(op)
     rows = mounting.solutions(axis)
     if not len(rows):
         why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
@@ -180,7 +180,7 @@ def _solutions(op: Operation, mounting: Mounting) -> Array:
     return rows
 
 
-def _written(rows: Array, machine: Machine, digits: int) -> Array:
+def _round_angles(rows: Array, machine: Machine, digits: int) -> Array:
     """Angles as a program writes them, rad; those of an axis without steps are rounded to the digits."""
     shown = np.round(np.degrees(rows), digits)
     for i, axis in enumerate(machine.rotary):
@@ -212,7 +212,7 @@ def _same(a: Array, b: Array) -> bool:
     return bool((np.abs(np.mod(a - b + np.pi, 2 * np.pi) - np.pi) < FIXED).all())
 
 
-def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> Station:
+def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> IndexedPosition:
     assert op.path is not None and op.frame is not None
     machine = mounting.machine
     turn = placement(mounting.table_from_part)[:3, :3]
@@ -222,8 +222,9 @@ def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> S
     matrix = np.stack([x, np.cross(z, x), z], axis=1)
     both = rotary_angles(machine, op.path.axis[:1], near=angles, table_from_part=mounting.table_from_part)
     apart = np.abs(both.joints[0] - angles).max(axis=1, initial=0.0) > 2e-2
-    spindle = turned_table(machine, angles).T @ z
+    spindle = axes_on_turned_table(machine, angles).T @ z
     tilt = float(angle_between(spindle, np.array([0.0, 0.0, 1.0])))
     lean = float(np.max(angle_between(op.path.axis, mounting.axis_at(angles))))
-    return Station(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl, op.path.rapid,
-                   number, lean, tilt if tilt > FIXED else 0.0)
+    return IndexedPosition(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl,
+                           op.path.rapid,
+                           number, lean, tilt if tilt > FIXED else 0.0)

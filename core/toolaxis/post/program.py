@@ -17,9 +17,9 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.plan.plan import Inputs, Plan
-from toolaxis.post.context import Options, Program, Setting
-from toolaxis.post.indexed_positions import Station, in_plane, stations, turned_table
+from toolaxis.plan.plan import Plan, PlanInputs
+from toolaxis.post.context import Options, Program, ProgramContext
+from toolaxis.post.indexed_positions import IndexedPosition, axes_on_turned_table, in_plane, stations
 from toolaxis.post.plane_angles import matrix_from_turns, turns_from_matrix
 
 Array = NDArray[np.float64]
@@ -83,26 +83,26 @@ class Dialect(ABC):
     notes: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Blocks of the safe start: modes, plane off, retract, tool, spindle."""
 
     @abstractmethod
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks from a retracted tool to the plane of a station."""
 
     @abstractmethod
-    def leave(self, program: Program, station: Station) -> Lines:
+    def leave(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks that cancel the plane and retract."""
 
     @abstractmethod
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Blocks of the end."""
 
     def comment(self, text: str) -> str:
         """A block that is a comment."""
         return f"({_plain(text)})"
 
-    def approach(self, program: Program, station: Station) -> Lines:
+    def approach(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks to the first tip: across, then down; in one straight block where the spindle is tilted."""
         point, length = station.tips[0], self.tool_length()
         if not station.tilt:
@@ -115,13 +115,13 @@ class Dialect(ABC):
         """The word that turns tool length compensation on in the approach."""
         return "G43 H1"
 
-    def straight_rapid(self, program: Setting, point: Array) -> str:
+    def straight_rapid(self, program: ProgramContext, point: Array) -> str:
         """A rapid motion along a straight line, at rapid rate by G1 where G0 may bend it."""
         if self.straight:
             return f"G0 {self.point(point)}"
         return f"G1 {self.point(point)} F{program.inputs.rapid:.0f}."
 
-    def rapid(self, program: Program, station: Station, point: Array) -> str:
+    def rapid(self, program: Program, station: IndexedPosition, point: Array) -> str:
         """A rapid motion in the plane."""
         return self.straight_rapid(program, point) if station.tilt else f"G0 {self.point(point)}"
 
@@ -133,7 +133,7 @@ class Dialect(ABC):
         """The coordinates of a tip."""
         return " ".join(f"{name}{number(value, self.digits)}" for name, value in zip(_AXES, point, strict=True))
 
-    def rotary(self, program: Program, station: Station) -> str:
+    def rotary(self, program: Program, station: IndexedPosition) -> str:
         """The rotary words of a station."""
         return " ".join(self.words(program.machine, station.angles))
 
@@ -147,13 +147,13 @@ class Dialect(ABC):
             made.append(f"{axis.name}{number(turned, self.angle_digits)}")
         return made
 
-    def index(self, program: Program, station: Station) -> Lines:
+    def index(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks that turn the rotary axes, let go before and held after."""
         if not len(station.angles):
             return []
         return [*program.unclamp, f"G0 {self.rotary(program, station)}", *program.clamp]
 
-    def euler(self, station: Station) -> tuple[str, str, str]:
+    def euler(self, station: IndexedPosition) -> tuple[str, str, str]:
         """The plane's three angles as they are written."""
         a, b, c = (number(value, self.angle_digits) for value in station.written)
         return a, b, c
@@ -162,18 +162,18 @@ class Dialect(ABC):
         """All blocks with what the control wants around them."""
         return lines
 
-    def placed(self, station: Station, mounting: Mounting, datum: Array) -> Station:
+    def placed(self, station: IndexedPosition, mounting: Mounting, datum: Array) -> IndexedPosition:
         """The station in the plane that this dialect's own words give, so that rounding them moves no tip.
 
         Parameters
         ----------
-        station : Station
+        station : IndexedPosition
         mounting : Mounting
         datum : (3,) array
             mm, part's frame.
         """
         if not self.turns:
-            return in_plane(station, mounting, turned_table(mounting.machine, station.angles), datum)
+            return in_plane(station, mounting, axes_on_turned_table(mounting.machine, station.angles), datum)
         angles = np.round(np.degrees(turns_from_matrix(self.turns, station.matrix)), self.angle_digits) + 0.0
         made = in_plane(station, mounting, matrix_from_turns(self.turns, np.radians(angles).tolist()), datum)
         return replace(made, written=tuple(angles.tolist()))
@@ -268,13 +268,13 @@ def bare_program(plan: Plan, mounting: Mounting, dialect: Dialect, options: Opti
     return Program(plan=plan, **_setting(plan.inputs, mounting, dialect, options, name))
 
 
-def setting_of(inputs: Inputs, mounting: Mounting, dialect: Dialect, options: Options | None = None,
-               name: str = "toolaxis") -> Setting:
+def setting_of(inputs: PlanInputs, mounting: Mounting, dialect: Dialect, options: Options | None = None,
+               name: str = "toolaxis") -> ProgramContext:
     """What a program says besides its motions, without a plan.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : PlanInputs
     mounting, dialect, options, name
         As for `program_of`.
 
@@ -283,10 +283,10 @@ def setting_of(inputs: Inputs, mounting: Mounting, dialect: Dialect, options: Op
     InvalidInput
         When the machine's axes are not X, Y, Z with the spindle along Z.
     """
-    return Setting(**_setting(inputs, mounting, dialect, options, name))
+    return ProgramContext(**_setting(inputs, mounting, dialect, options, name))
 
 
-def _setting(inputs: Inputs, mounting: Mounting, dialect: Dialect, options: Options | None,
+def _setting(inputs: PlanInputs, mounting: Mounting, dialect: Dialect, options: Options | None,
              name: str) -> dict[str, Any]:
     _check_frame(mounting.machine)
     chosen = Options() if options is None else options
@@ -330,7 +330,7 @@ def program_text(program: Program, dialect: Dialect) -> str:
     return "\n".join([*dialect.framed([*lines, *dialect.end(program)]), ""])
 
 
-def _path(program: Program, station: Station, dialect: Dialect) -> Iterator[str]:
+def _path(program: Program, station: IndexedPosition, dialect: Dialect) -> Iterator[str]:
     """Blocks from the second tip on, with a feed rate where it does not hold any more.
 
     Links that are not rapid go straight at the rapid rate: what they keep clear of was checked along the line.

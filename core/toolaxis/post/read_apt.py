@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.post.cl_points import CutterLocations, gathered
+from toolaxis.post.cl_points import CutterLocations, gather_locations
 
 Array = NDArray[np.float64]
 
@@ -245,5 +245,5 @@ def read_apt(text: str) -> CutterLocations:
     if not reading.ended:
         raise InvalidInput(f"CL file ends without FINI after {len(reading.rows)} points, at line {number}: it was cut "
                            "short")
-    return gathered(reading.rows, reading.kinds, reading.rates, reading.starts, told=reading.told,
-                    spindle=reading.first_spindle, source="CL file")
+    return gather_locations(reading.rows, reading.kinds, reading.rates, reading.starts, told=reading.told,
+                            spindle=reading.first_spindle, source="CL file")

@@ -16,7 +16,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import forward, linear_coordinates, placement, tool_axes
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import unit
-from toolaxis.post.cl_points import CutterLocations, gathered
+from toolaxis.post.cl_points import CutterLocations, gather_locations
 
 Array = NDArray[np.float64]
 
@@ -242,5 +242,6 @@ def read_nc(text: str, machine: Machine, offset: ArrayLike | None = None, tool_l
     if not (control.ended or ended):
         raise InvalidInput(f"NC program ends at line {number} without M2, M30 or END PGM, after {len(control.rows)} "
                            "points: it was cut short")
-    return gathered(control.rows, control.kinds, control.rates, [], told=bool(control.names), spindle=control.spindle,
-                    source="NC program")
+    return gather_locations(control.rows, control.kinds, control.rates, [], told=bool(control.names),
+                            spindle=control.spindle,
+                            source="NC program")

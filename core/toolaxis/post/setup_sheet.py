@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from toolaxis.machine.kinematics import linear_coordinates, placement
 from toolaxis.plan.plan import Plan
-from toolaxis.post.context import Program, Setting
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.context import Program, ProgramContext
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, number
-from toolaxis.post.tcp_program import Course, TipControl, courses
+from toolaxis.post.tcp_program import TcpPath, TipControl, courses
 
 Array = NDArray[np.float64]
 
@@ -72,14 +72,14 @@ def moving_sheet_text(program: Program, control: TipControl, file: str, verdict:
     return "\n\n".join(parts)
 
 
-def course_sheet_text(program: Setting, control: TipControl, course: Course, file: str) -> str:
+def course_sheet_text(program: ProgramContext, control: TipControl, course: TcpPath, file: str) -> str:
     """The setup sheet of a program made of CL data.
 
     Parameters
     ----------
-    program : Setting
+    program : ProgramContext
     control : TipControl
-    course : Course
+    course : TcpPath
     file : str
         Name of the program's file.
 
@@ -179,14 +179,14 @@ def _orientations(program: Program, dialect: Dialect) -> str:
                    "datum in the machine"], rows)
 
 
-def _plane(dialect: Dialect, station: Station) -> str:
+def _plane(dialect: Dialect, station: IndexedPosition) -> str:
     if not station.written:
         return "-"
     return ", ".join(f"{name} {number(angle, dialect.angle_digits)}"
                      for name, angle in zip(dialect.turns, station.written, strict=True))
 
 
-def _origin(program: Program, station: Station) -> str:
+def _origin(program: Program, station: IndexedPosition) -> str:
     """Linear coordinates with the spindle's gauge point at the datum."""
     where = program.mounting.table_from_part
     if where is None or station.tilt:
@@ -207,14 +207,14 @@ def _operations(program: Program, dialect: Dialect) -> str:
                    "gouge at most", "min"], rows)
 
 
-def gouge_of(program: Program, dialect: Dialect, station: Station) -> float:
+def gouge_of(program: Program, dialect: Dialect, station: IndexedPosition) -> float:
     """Upper bound of the gouge of an operation with the digits and the angles that were written, mm.
 
     Parameters
     ----------
     program : Program
     dialect : Dialect
-    station : Station
+    station : IndexedPosition
 
     Returns
     -------

@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feed.continuous_ik import Following, following
+from toolaxis.feed.continuous_ik import AxisTrajectory, following
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.post.context import Options, Setting
+from toolaxis.post.context import Options, ProgramContext
 from toolaxis.post.program import Dialect, Lines, number, setting_of
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ _WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class TcpPath:
     """One path as tool centre point control carries it out.
 
     Attributes
@@ -41,7 +41,7 @@ class Course:
     path : ToolPath
     rates : (n,) array
         Feed rate on the way to each point of the path, mm/min; infinite where rapid.
-    along : Following
+    along : AxisTrajectory
         Rotary axes at all points, those put between the path's own included.
     tips, axes : (n, 3) array
         In the work coordinate system, tips from the datum, mm.
@@ -50,7 +50,7 @@ class Course:
     name: str
     path: ToolPath
     rates: Array
-    along: Following
+    along: AxisTrajectory
     tips: Array
     axes: Array
 
@@ -78,31 +78,31 @@ class TipControl(ABC):
     least_axes: ClassVar[int] = 2
 
     @abstractmethod
-    def begin(self, program: Setting, course: Course) -> Lines:
+    def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Blocks from a retracted tool to tool centre point control with the first axis."""
 
     @abstractmethod
-    def leave(self, program: Setting, course: Course) -> Lines:
+    def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Blocks that end it and retract."""
 
     @abstractmethod
-    def orientation(self, program: Setting, course: Course, k: int) -> str:
+    def orientation(self, program: ProgramContext, course: TcpPath, k: int) -> str:
         """The words that turn the axis to that of a point."""
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Blocks of the safe start."""
         return self.dialect.start(program)
 
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Blocks of the end."""
         return self.dialect.end(program)
 
-    def block(self, program: Setting, course: Course, k: int, rate: float | None) -> str:
+    def block(self, program: ProgramContext, course: TcpPath, k: int, rate: float | None) -> str:
         """The motion to a point, at a feed rate where it does not hold any more."""
         word, *rate_word = self.dialect.feed(course.tips[k], rate).rsplit(" F", 1)
         return " ".join([word, self.orientation(program, course, k), *(f"F{text}" for text in rate_word)])
 
-    def check(self, program: Setting) -> None:
+    def check(self, program: ProgramContext) -> None:
         """Refuse what the control cannot do.
 
         Raises
@@ -125,7 +125,7 @@ def moves(plan: Plan) -> bool:
     return any(op.orientation.lead is not None for op in plan.operations if op.path is not None)
 
 
-def courses(plan: Plan, mounting: Mounting) -> tuple[Course, ...]:
+def courses(plan: Plan, mounting: Mounting) -> tuple[TcpPath, ...]:
     """All operations of a plan that have a path, the rotary axes going on from one to the next.
 
     Parameters
@@ -138,7 +138,7 @@ def courses(plan: Plan, mounting: Mounting) -> tuple[Course, ...]:
     InvalidInput
         When the machine cannot follow a path, or there is none.
     """
-    found, stand = list[Course](), np.zeros(len(mounting.machine.rotary))
+    found, stand = list[TcpPath](), np.zeros(len(mounting.machine.rotary))
     for op in plan.operations:
         if op.path is not None:
             rates = np.where(op.path.kind == Motion.LINK, np.inf, plan.inputs.feedrate)
@@ -150,7 +150,7 @@ def courses(plan: Plan, mounting: Mounting) -> tuple[Course, ...]:
 
 
 def course_of(name: str, path: ToolPath, rates: Array, mounting: Mounting, datum: ArrayLike = (0.0, 0.0, 0.0),
-              near: ArrayLike = ()) -> Course:
+              near: ArrayLike = ()) -> TcpPath:
     """A path followed by a machine.
 
     Parameters
@@ -176,7 +176,7 @@ def course_of(name: str, path: ToolPath, rates: Array, mounting: Mounting, datum
                           near=near, travel=mounting.judges_travel)
     except InvalidInput as reason:
         raise InvalidInput(f"{name}: {reason}") from None
-    return Course(name, path, rates, along, (along.tips - np.asarray(datum)) @ turn.T, along.axes @ turn.T)
+    return TcpPath(name, path, rates, along, (along.tips - np.asarray(datum)) @ turn.T, along.axes @ turn.T)
 
 
 def moving_text(plan: Plan, mounting: Mounting, control: TipControl, options: Options | None = None,
@@ -208,15 +208,15 @@ def moving_text(plan: Plan, mounting: Mounting, control: TipControl, options: Op
     return courses_text(program, control, courses(plan, mounting))
 
 
-def courses_text(program: Setting, control: TipControl, found: Sequence[Course]) -> str:
+def courses_text(program: ProgramContext, control: TipControl, found: Sequence[TcpPath]) -> str:
     """The text of a program that carries out courses one after the other.
 
     Parameters
     ----------
-    program : Setting
+    program : ProgramContext
         That the control was asked about.
     control : TipControl
-    found : sequence of Course
+    found : sequence of TcpPath
     """
     lines = control.start(program)
     for course in found:
@@ -226,7 +226,7 @@ def courses_text(program: Setting, control: TipControl, found: Sequence[Course])
     return "\n".join([*control.dialect.framed([*lines, *control.end(program)]), ""])
 
 
-def _motions(program: Setting, course: Course, control: TipControl) -> Lines:
+def _motions(program: ProgramContext, course: TcpPath, control: TipControl) -> Lines:
     path, lines = course.path, list[str]()
     starts, begun, passes, held = set(path.breaks[1:-1].tolist()), 0, 1, -1.0
     rates = np.where(np.isfinite(course.rates), course.rates, program.inputs.rapid).tolist()
@@ -241,13 +241,13 @@ def _motions(program: Setting, course: Course, control: TipControl) -> Lines:
     return lines
 
 
-def rotary_words(program: Setting, course: Course, k: int, digits: int, rolls_over: bool) -> Lines:
+def rotary_words(program: ProgramContext, course: TcpPath, k: int, digits: int, rolls_over: bool) -> Lines:
     """Rotary angles of a point as words; from 0 to below 360 degrees for axes without end that roll over.
 
     Parameters
     ----------
-    program : Setting
-    course : Course
+    program : ProgramContext
+    course : TcpPath
     k : int
     digits : int
     rolls_over : bool

@@ -27,7 +27,7 @@ def blades_lines(plan: Plan) -> list[str]:
     here, there = (_numbers(place, 2) for place in blades.gap.places)
     lines.append(f"neighbouring blades come within {blades.gap.distance:.3f} mm of each other, fillets apart, "
                  f"at {here} and {there}")
-    return [*lines, *_rooms(blades), *_left(plan, blades)]
+    return [*lines, *_rooms(blades), *_left_on_blades(plan, blades)]
 
 
 def in_words(count: int) -> str:
@@ -56,7 +56,7 @@ def _rooms(blades: Blades) -> list[str]:
     return lines
 
 
-def _left(plan: Plan, blades: Blades) -> list[str]:
+def _left_on_blades(plan: Plan, blades: Blades) -> list[str]:
     """What stays for clean-up on every blade."""
     lines = []
     shares = [(round(one.left, 1), round(one.area, 1)) for one in blades.blades]

@@ -10,7 +10,7 @@ from rich.table import Table
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Option, Plan, outcome_of
+from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, outcome_of
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -130,7 +130,7 @@ def _clean_up(op: Operation) -> str:
     return number(100 * op.orientation.unreached, 1) if op.done or op.left else "-"
 
 
-def _links(op: Operation, inputs: Inputs) -> list[str]:
+def _links(op: Operation, inputs: PlanInputs) -> list[str]:
     if not op.done:
         return ["-", "-"]
     return [number(op.orientation.length + op.travel, 1), clock(op.seconds(inputs.feedrate, inputs.rapid))]
@@ -161,7 +161,7 @@ def batch_table(records: Sequence[Mapping[str, Any]]) -> Table:
     Parameters
     ----------
     records : sequence of mappings
-        Of `toolaxis.batch.summary.Row`.
+        Of `toolaxis.batch.summary.JobRow`.
     """
     rows = []
     for one in records:

@@ -6,14 +6,14 @@ import numpy as np
 
 from toolaxis.feasibility.violations import BACK, LIMITS, WANDERS
 from toolaxis.search.direction_grid import ring
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 
 _MOST_EVALUATIONS = 1400
 #: Seven discs of this share of a disc's radius, one in the middle, cover it on the sphere too (tested).
 _SHRINK = 0.52
 
 
-def hunt(ledger: Ledger, first: int, radius: float) -> bool:
+def hunt(ledger: AxisTable, first: int, radius: float) -> bool:
     """Divide the hemisphere where no axis was free, dropping what limits and normals forbid for certain.
 
     Limits and angles to normals change no faster than the axis turns: a disc of axes is dropped when its middle misses
@@ -21,7 +21,7 @@ def hunt(ledger: Ledger, first: int, radius: float) -> bool:
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
         Holds axes that were looked at.
     first : int
         Row from which on its axes cover the hemisphere.

@@ -11,7 +11,7 @@ from toolaxis.path.estimate import Estimates, Estimator
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_count import measure
 from toolaxis.path.sampling import Samples
-from toolaxis.search.time_estimate import Pace
+from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -27,7 +27,7 @@ CLEAN_UP = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Worth:
+class MachiningCost:
     """The price of machining a face with a tool.
 
     Attributes
@@ -40,7 +40,7 @@ class Worth:
         Stock left on the face, mm.
     objective : str
         "length", "passes" or "time": what is to be least.
-    pace : Pace, optional
+    pace : TimeEstimate, optional
         How fast the machine goes; needed for the objective "time".
     feed : "u" or "v", optional
         The only feed that may be chosen, where one is asked for.
@@ -56,7 +56,7 @@ class Worth:
     scallop: float
     allowance: float = 0.0
     objective: str = "length"
-    pace: Pace | None = None
+    pace: TimeEstimate | None = None
     feed: str | None = None
 
     def __post_init__(self) -> None:
@@ -67,7 +67,7 @@ class Worth:
         Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance)
 
     @property
-    def timed(self) -> Pace | None:
+    def timed(self) -> TimeEstimate | None:
         """The pace where the least time is asked for; None for other objectives."""
         return self.pace if self.objective == "time" else None
 

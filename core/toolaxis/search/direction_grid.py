@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.rounding import signed
+from toolaxis.numeric.rounding import canonical_sign
 from toolaxis.numeric.vectors import perpendicular, unit
 
 Array = NDArray[np.float64]
@@ -84,7 +84,7 @@ def own_frame(normals: Array, middle: Array) -> Array:
     alike = values[2] <= 1e-12 * len(normals)
     if alike or values[2] - values[1] <= _EVEN * values[2] or np.linalg.norm(x) < 0.5:
         x = perpendicular(middle)[0]
-    x = signed(unit(x))
+    x = canonical_sign(unit(x))
     cubes = (flat @ x) ** 3
     if not alike and cubes.sum() < -_EVEN * np.abs(cubes).sum():
         x = -x

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.refined_check import Closer
-from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, Verdicts, Witness
+from toolaxis.feasibility.refined_check import RefinedCheck
+from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, ScreeningResult, Violation
 from toolaxis.machine.limits import AxisLimits
-from toolaxis.numeric.rounding import settled, settled_prices
+from toolaxis.numeric.rounding import round_costs, round_significant
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import FEEDS, Worth
+from toolaxis.search.cost import FEEDS, MachiningCost
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]
@@ -24,13 +24,13 @@ _AXIS = 2000
 
 
 @dataclass
-class Ledger:
+class AxisTable:
     """Axes in the order in which they were looked at; grows with every call of `look`.
 
     Attributes
     ----------
     feasibility : Feasibility
-    worth : Worth
+    worth : MachiningCost
     progress : Progress
     starts : (k, 3) array
         Axes that are worth a look before others.
@@ -55,7 +55,7 @@ class Ledger:
     """
 
     feasibility: Feasibility
-    worth: Worth
+    worth: MachiningCost
     progress: Progress = NO_PROGRESS
     starts: Array = field(default_factory=lambda: np.empty((0, 3)))
     axes: Array = field(default_factory=lambda: np.empty((0, 3)))
@@ -69,7 +69,7 @@ class Ledger:
     closer: int = 0
     excluded: int = 0
     proven: bool = False
-    closed: list[tuple[Array, float, Witness]] = field(default_factory=list)
+    closed: list[tuple[Array, float, Violation]] = field(default_factory=list)
 
     @property
     def evaluations(self) -> int:
@@ -95,7 +95,7 @@ class Ledger:
         out = np.isin(reason, (LIMITS, BACK))
         self.excluded += int(out.sum())
         priceless = np.full((int(out.sum()), 2), np.inf)
-        self._enter(axes[out], Verdicts(reason[out], amount[out], np.zeros(len(priceless))), (priceless,) * 3)
+        self._enter(axes[out], ScreeningResult(reason[out], amount[out], np.zeros(len(priceless))), (priceless,) * 3)
         self.look(axes[~out])
 
     def look(self, axes: Array) -> slice:
@@ -130,7 +130,7 @@ class Ledger:
         self.progress.offer(lambda: (self.worth.face, self.map()))
         return slice(first, len(self.axes))
 
-    def close(self, axis: Array, angle: float, found: Witness) -> None:
+    def close(self, axis: Array, angle: float, found: Violation) -> None:
         """Forbid all axes near one, those still to come too.
 
         Parameters
@@ -138,26 +138,26 @@ class Ledger:
         axis : (3,) array
         angle : float
             rad
-        found : Witness
+        found : Violation
             Why.
         """
         self.closed.append((axis, angle, found))
         self._shut(0, axis, angle, found)
 
-    def _shut(self, first: int, axis: Array, angle: float, found: Witness) -> None:
+    def _shut(self, first: int, axis: Array, angle: float, found: Violation) -> None:
         near = (angle_between(self.axes[first:], axis) <= angle) & (self.reason[first:] == FREE)
         for row in np.flatnonzero(near):
             self.forbid(first + int(row), found.reason, found.amount)
 
-    def _enter(self, axes: Array, verdict: Verdicts, prices: tuple[Array, Array, Array]) -> None:
+    def _enter(self, axes: Array, verdict: ScreeningResult, prices: tuple[Array, Array, Array]) -> None:
         passes, length, values = prices
         self.axes = np.concatenate([self.axes, axes])
         self.reason = np.concatenate([self.reason, verdict.reason])
-        self.amount = np.concatenate([self.amount, settled(verdict.amount)])
+        self.amount = np.concatenate([self.amount, round_significant(verdict.amount)])
         self.unreached = np.concatenate([self.unreached, verdict.unreached])
         self.passes = np.concatenate([self.passes, passes])
         self.length = np.concatenate([self.length, length])
-        self.values = np.concatenate([self.values, settled_prices(values)])
+        self.values = np.concatenate([self.values, round_costs(values)])
 
     @property
     def price(self) -> Array:
@@ -190,12 +190,12 @@ class Ledger:
             if depth > limit:
                 self.forbid(int(row), GOUGE, depth - limit)
 
-    def heed(self, found: Closer) -> None:
+    def heed(self, found: RefinedCheck) -> None:
         """Learn from a closer look: its contacts are watched, and what it found is held against all free axes.
 
         Parameters
         ----------
-        found : Closer
+        found : RefinedCheck
         """
         if len(found.points):
             self.learn(found.points)
@@ -231,7 +231,7 @@ class Ledger:
         self.counts += 1
         passes, length = self.worth.counted(axis, FEEDS[feed])
         value = self.worth.value(axis, feed, passes, length)
-        return float(settled_prices(value * self.worth.charge(length, unreached))), passes, length
+        return float(round_costs(value * self.worth.charge(length, unreached))), passes, length
 
     def map(self) -> AxisMap:
         """The axes as the result carries them."""

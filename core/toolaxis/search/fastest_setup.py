@@ -19,11 +19,11 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.search.kinematic_setup import (
     Domain,
+    PassSegment,
     Setup,
-    Stretch,
-    allowed_angles,
+    are_angles_allowed,
     common_feed,
-    reached,
+    reach_along_feed,
     rotary_grid,
     setup,
 )
@@ -40,14 +40,14 @@ _CURVE = 6
 _BATCH = 4096
 
 
-def cutting_seconds(mounting: Mounting, passes: Sequence[Stretch], rotary: ArrayLike, feeds: Feeds) -> Array:
+def cutting_seconds(mounting: Mounting, passes: Sequence[PassSegment], rotary: ArrayLike, feeds: Feeds) -> Array:
     """Time that passes take at rotary angles, from rest to rest each, (k,) s.
 
     Parameters
     ----------
     mounting : Mounting
         With velocity, acceleration and jerk of the linear axes.
-    passes : sequence of Stretch
+    passes : sequence of PassSegment
         Those of fewer than six points are followed with exact stops, others as smooth curves.
     rotary : (k, m) array_like
         rad
@@ -77,14 +77,14 @@ def cutting_seconds(mounting: Mounting, passes: Sequence[Stretch], rotary: Array
     return seconds
 
 
-def fastest(mounting: Mounting, passes: Sequence[Stretch], feeds: Feeds,
+def fastest(mounting: Mounting, passes: Sequence[PassSegment], feeds: Feeds,
             domain: Domain | None = None) -> tuple[Setup, float]:
     """The set-up in which passes take least time, and that time, s; infinite where none is allowed.
 
     Parameters
     ----------
     mounting : Mounting
-    passes : sequence of Stretch
+    passes : sequence of PassSegment
     feeds : Feeds
     domain : Domain, optional
         What lead and tilt may be; free as for a ball end unless given.
@@ -104,7 +104,7 @@ def fastest(mounting: Mounting, passes: Sequence[Stretch], feeds: Feeds,
     for step in _STEPS:
         grids = [rotary_grid(mounting, step, middle) for middle in best] or [rotary_grid(mounting, step)]
         rows = np.concatenate([best, *grids])
-        rows = rows[allowed_angles(mounting, rows, passes, held)]
+        rows = rows[are_angles_allowed(mounting, rows, passes, held)]
         if not len(rows):
             break
         times = cutting_seconds(mounting, few, rows, feeds)
@@ -116,7 +116,7 @@ def fastest(mounting: Mounting, passes: Sequence[Stretch], feeds: Feeds,
         return Setup(feed, np.empty(0), 0.0, "infeasible"), np.inf
     times = cutting_seconds(mounting, passes, rows, feeds)
     chosen = rows[np.lexsort((np.abs(rows).sum(axis=1), np.round(times / times.min(), 6)))[0]]
-    reach = float(reached(mounting, Level.JERK, feed, chosen[None])[0])
+    reach = float(reach_along_feed(mounting, Level.JERK, feed, chosen[None])[0])
     return Setup(feed, chosen, reach, "allowed"), float(times.min())
 
 

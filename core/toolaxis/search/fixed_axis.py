@@ -12,8 +12,8 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, Group, Obstacles, grouped
-from toolaxis.feasibility.violations import BACK, CUTTER, Witness
+from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, CheckSurfaces, Obstacles, group_surroundings
+from toolaxis.feasibility.violations import BACK, CUTTER, Violation
 from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import MachineLike
@@ -21,19 +21,28 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.iso_parametric import layout
 from toolaxis.path.links import Linking
-from toolaxis.path.mending import Made, completed
+from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout
 from toolaxis.path.rest_material import left_over, may_stay
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import FEEDS, Worth
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.hemisphere import repaired, search, so_far
+from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
-from toolaxis.search.link_heights import OVER, Crossing, height_over
-from toolaxis.search.local_search import Candidate
-from toolaxis.search.machine_limits import REFUSED, at_face, better_of, combined, held, make_room, mounting_of, stopped
+from toolaxis.search.link_heights import OVER, LinkClearance, height_over
+from toolaxis.search.local_search import CountedAxis
+from toolaxis.search.machine_limits import (
+    REFUSED,
+    at_face,
+    better_of,
+    intersect_limits,
+    machine_violation,
+    make_room,
+    mounting_of,
+    snap_to_increments,
+)
 from toolaxis.search.messages import (
     Refusal,
     direction,
@@ -45,7 +54,7 @@ from toolaxis.search.messages import (
     tally,
     why_none,
 )
-from toolaxis.search.path_check import Proof, prove
+from toolaxis.search.path_check import PathCheck, prove
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
 from toolaxis.search.time_estimate import pace_of
@@ -71,15 +80,15 @@ _LONGER = 1.02
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class FaceProblem:
     """One face to be machined, and everything that decides about an axis for it.
 
     Attributes
     ----------
     feasibility : Feasibility
         With the distances that the search keeps: a little more than required.
-    worth : Worth
-    groups : tuple of Group
+    worth : MachiningCost
+    groups : tuple of CheckSurfaces
         The same surroundings with the required distances, for the proof.
     chord : float
         How far straight motions may leave passes, mm.
@@ -89,8 +98,8 @@ class Task:
     """
 
     feasibility: Feasibility
-    worth: Worth
-    groups: tuple[Group, ...]
+    worth: MachiningCost
+    groups: tuple[CheckSurfaces, ...]
     chord: float
     progress: Progress = NO_PROGRESS
     direction: str = "zigzag"
@@ -140,13 +149,13 @@ class Task:
         walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
                     for group in self.groups)
         over = height_over(self.worth.scallop)
-        crossing = Crossing(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
+        crossing = LinkClearance(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
         return trace(placed, self.chord, self.direction,
                      linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
                                      beside=crossing.beside))
 
     def made(self, axis: Array, feed: str) -> ToolPath:
-        """The very passes, links and ramps included, that `finished` proves.
+        """The very passes, links and ramps included, that `check_candidate` proves.
 
         Parameters
         ----------
@@ -155,7 +164,7 @@ class Task:
         """
         return self.completed(self.laid(axis, feed)).path
 
-    def completed(self, placed: Layout) -> Made:
+    def completed(self, placed: Layout) -> FurtherPasses:
         """Passes with the further ones that it takes to leave little on which the cutter may stand.
 
         Parameters
@@ -163,7 +172,7 @@ class Task:
         placed : Layout
         """
         axis = placed.cut.axis
-        return completed(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+        return complete_passes(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
 
     def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
@@ -181,7 +190,7 @@ class Task:
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
-         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> Task:
+         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
@@ -198,15 +207,17 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     """
     given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
-    worth = Worth(face, tool, scallop, allowance, objective, pace)
+    worth = MachiningCost(face, tool, scallop, allowance, objective, pace)
     chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
-    strict, groups = (grouped(face, replace(limit, gouge=allowance - least_distance(tool, limit.gouge, allowance)),
-                              allowance, part=part, skin=skin, surroundings=surroundings,
-                              obstacles=obstacles) for limit in (kept, given))
+    strict, groups = (group_surroundings(face, replace(limit,
+                                                       gouge=allowance - least_distance(tool, limit.gouge, allowance)),
+                                         allowance, part=part, skin=skin, surroundings=surroundings,
+                                         obstacles=obstacles) for limit in (kept, given))
     reach = at_face(limits, face, tool)
-    return Task(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress, direction)
+    return FaceProblem(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress,
+                       direction)
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
@@ -272,26 +283,27 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     """
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
-    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+    job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
+               skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
                progress=progress)
-    return searched(job, method, starts)[0]
+    return find_axis(job, method, starts)[0]
 
 
-def searched(job: Task, method: str = "sphere",
-             starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
+def find_axis(job: FaceProblem, method: str = "sphere",
+              starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
     """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     method : str
         One of `METHODS`.
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others.
     """
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
-    ledger = Ledger(job.feasibility, job.worth, job.progress, first)
+    ledger = AxisTable(job.feasibility, job.worth, job.progress, first)
     result: tuple[Orientation, ToolPath | None] | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
@@ -300,7 +312,7 @@ def searched(job: Task, method: str = "sphere",
         result = _settled(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
             return result
-        ledger = Ledger(ledger.feasibility, job.worth, job.progress, first)
+        ledger = AxisTable(ledger.feasibility, job.worth, job.progress, first)
         return better_of(result, _settled(job, ledger, method))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
@@ -312,19 +324,19 @@ def searched(job: Task, method: str = "sphere",
                            evaluations=ledger.evaluations, map=ledger.map()), None
 
 
-def _settled(job: Task, ledger: Ledger, method: str) -> tuple[Orientation, ToolPath | None]:
+def _settled(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
     if method in RULES:
-        return settled(job, ledger, METHODS[method](ledger), 1)
+        return first_proven(job, ledger, METHODS[method](ledger), 1)
     try:
         with up_to(_SEARCHED):
             found = METHODS[method](ledger)
     except OutOfWork as reason:
-        result, path = _first_accepted(job, ledger, held(ledger, so_far(ledger)))
+        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)))
         if result.axis is not None:
             return _ended((result, path))
         return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
-    return settled(job, ledger, found)
+    return first_proven(job, ledger, found)
 
 
 def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
@@ -334,15 +346,15 @@ def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, Too
     return (result if known else replace(result, reasons=(*result.reasons, words))), path
 
 
-def settled(job: Task, ledger: Ledger, found: list[Candidate],
-            attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
+                 attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
     """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
     ----------
-    job : Task
-    ledger : Ledger
-    found : list of Candidate
+    job : FaceProblem
+    ledger : AxisTable
+    found : list of CountedAxis
         The best of each lobe, best first.
     attempts : int
         How often each is tried, repaired between; 1 to take them as they are.
@@ -352,13 +364,13 @@ def settled(job: Task, ledger: Ledger, found: list[Candidate],
     OutOfWork
         When the work that was allowed is done, and none was accepted.
     """
-    found = held(ledger, found)
+    found = snap_to_increments(ledger, found)
     with suppress(OutOfWork), up_to(_ORDERED):
         found = least_made(job.worth, found, job.made)
     return _first_accepted(job, ledger, found, attempts)
 
 
-def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate],
+def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
                     attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
     """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
@@ -382,23 +394,23 @@ def _first_accepted(job: Task, ledger: Ledger, found: list[Candidate],
                        evaluations=ledger.evaluations), None
 
 
-def _sound(job: Task, one: Candidate) -> bool:
+def _sound(job: FaceProblem, one: CountedAxis) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-class Finished(NamedTuple):
+class CheckedCandidate(NamedTuple):
     """What became of a candidate.
 
-    one : Candidate
+    one : CountedAxis
     orientation : Orientation
-    proof : Proof, refused too where passes leave more on which the cutter may stand than may stay
+    proof : PathCheck, refused too where passes leave more on which the cutter may stand than may stay
     path : ToolPath or None, the very passes that were proven; None where none can be laid
     longer : float, cutting length over that without further passes
     """
 
-    one: Candidate
+    one: CountedAxis
     orientation: Orientation
-    proof: Proof
+    proof: PathCheck
     path: ToolPath | None
     longer: float = 1.0
 
@@ -408,81 +420,81 @@ class Finished(NamedTuple):
         return self.one.value * self.longer
 
 
-def _other_feed(job: Task, ledger: Ledger, done: Finished) -> Finished | None:
+def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> CheckedCandidate | None:
     """The same axis with the other feed, where that takes less after further passes; None where it does not."""
     one, feed = done.one, 1 - done.one.feed
     if done.longer <= _LONGER or job.worth.feed is not None:
         return None
-    other = Candidate(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
+    other = CountedAxis(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
     if not other.value < done.value:
         return None
-    again = finished(job, other)
+    again = check_candidate(job, other)
     return again if again.proof.witness is None and again.value < done.value else None
 
 
-def _accepted(job: Task, ledger: Ledger, one: Candidate, refused: list[Refusal],
-              attempts: int) -> Finished | None:
+def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],
+              attempts: int) -> CheckedCandidate | None:
     """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
-    candidate: Candidate | None = one
+    candidate: CountedAxis | None = one
     for attempt in range(attempts):
         if candidate is None:
             return None
         witness = ledger.feasibility.witness(candidate.axis)
         if witness is None:
-            done = finished(job, candidate)
+            done = check_candidate(job, candidate)
             if done.proof.witness is None:
                 return done
             witness = done.proof.witness
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
-        candidate = repaired(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
+        candidate = next_in_lobe(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
     return None
 
 
-def finished(job: Task, one: Candidate) -> Finished:
+def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     """Passes made and proven for one candidate.
 
     Parameters
     ----------
-    job : Task
-    one : Candidate
+    job : FaceProblem
+    one : CountedAxis
     """
     feed = FEEDS[one.feed]
     try:
         placed = job.laid(one.axis, feed)
     except InvalidInput as reason:  # a place between the counted ones leaves no strip
-        return Finished(one, Orientation(None, feed), Proof(Witness(BACK, 0.0, words=str(reason))), None)
+        return CheckedCandidate(one, Orientation(None, feed), PathCheck(Violation(BACK, 0.0, words=str(reason))), None)
     if not len(placed.pieces):
-        why = Witness(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
-        return Finished(one, Orientation(None, feed), Proof(why), None)
+        why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
+        return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
     made = job.completed(placed)
     proof = _proven(job, made.path)
     if proof.witness is not None and made.placed is not placed:  # further passes are no reason to refuse an axis
         path = job.traced(placed)
-        made = Made(placed, path, job.left_by(path))
+        made = FurtherPasses(placed, path, job.left_by(path))
         proof = _proven(job, path)
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
-        proof = Proof(Witness(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
+        proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
     unreached = min((made.left - made.undercut) / area, 1.0)
     length = path.length(Motion.CUT)
     width = area * (1 - unreached) / length if length > 0 else 0.0
     words = left_reasons(made.zones, job.worth.face)
     found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
                         "feasible", words, unreached=unreached)
-    return Finished(one, found, proof, path, made.longer)
+    return CheckedCandidate(one, found, proof, path, made.longer)
 
 
-def _proven(job: Task, path: ToolPath) -> Proof:
+def _proven(job: FaceProblem, path: ToolPath) -> PathCheck:
     """The proof of a path, after a look at whether its machine reaches all of it."""
-    beyond = stopped(job.feasibility, path, job.groups)
+    beyond = machine_violation(job.feasibility, path, job.groups)
     if beyond:
-        return Proof(beyond)
+        return PathCheck(beyond)
     return prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
 
 
-def _other(job: Task, one: Candidate) -> Orientation:
+def _other(job: FaceProblem, one: CountedAxis) -> Orientation:
     """The best axis of another lobe; its passes were not made."""
     return Orientation(one.axis, FEEDS[one.feed], 0, one.passes, one.length,
                        job.worth.face.area / one.length, outcome="feasible", unreached=one.unreached)
@@ -516,16 +528,17 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
     """
     if feed not in (None, *FEEDS):
         raise InvalidInput(f"feed is {feed!r}: it must be 'u' or 'v'")
-    job = task(face, tool, scallop, combined(machine, limits), obstacles, objective=objective, part=part, skin=skin,
+    job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
+               skin=skin,
                surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
     t = unit(as_rows(axis, 3, "axis")[0])
-    ledger = Ledger(job.feasibility, job.worth, progress)
+    ledger = AxisTable(job.feasibility, job.worth, progress)
     feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]
     try:
         witness = job.feasibility.witness(t)
         if witness is None:
-            best = min((Candidate(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
-            done = finished(job, best)
+            best = min((CountedAxis(t, k, *ledger.count(t, k, 0.0), 0.0) for k in feeds), key=lambda c: c.value)
+            done = check_candidate(job, best)
             if done.proof.witness is None:
                 return replace(done.orientation, evaluations=1 + len(feeds))
             witness = done.proof.witness

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.numeric.rounding import signed
+from toolaxis.numeric.rounding import canonical_sign
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def flank_axes(feasibility: Feasibility) -> Array:
     """
     normals, mean = feasibility.normals.samples, feasibility.normals.mean
     size, directions = np.linalg.eigh(normals.T @ normals / len(normals))
-    along = signed(directions[:, 0])
+    along = canonical_sign(directions[:, 0])
     out = mean - (mean @ along) * along
     if size[1] - size[0] < _APART or not (normals @ out > 0).all():
         return np.empty((0, 3))

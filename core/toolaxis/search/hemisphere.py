@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.feasibility.normal_cone import NormalField
-from toolaxis.feasibility.violations import BACK, FREE, Witness
-from toolaxis.numeric.rounding import settled
+from toolaxis.feasibility.violations import BACK, FREE, Violation
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.search.branch_and_bound import hunt
 from toolaxis.search.direction_grid import COVER, own_frame, ring, spiral
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.flank_axes import flank_axes
-from toolaxis.search.local_search import Candidate, counted, polish, proven, sound
+from toolaxis.search.local_search import CountedAxis, count_row, polish, proven, sound
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -47,17 +47,17 @@ _REPELLED = radians(0.15)
 _SHARES = 0.25
 
 
-def search(ledger: Ledger) -> list[Candidate]:
+def search(ledger: AxisTable) -> list[CountedAxis]:
     """Search the hemisphere of axes that see the face.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
         Empty; holds everything that was looked at afterwards.
 
     Returns
     -------
-    list of Candidate, the best axis of each lobe, best first; empty when no free axis was found.
+    list of CountedAxis, the best axis of each lobe, best first; empty when no free axis was found.
 
     Raises
     ------
@@ -81,14 +81,14 @@ def search(ledger: Ledger) -> list[Candidate]:
     return []
 
 
-def _refined(ledger: Ledger) -> list[Candidate]:
+def _refined(ledger: AxisTable) -> list[CountedAxis]:
     """The best of each lobe from rings around the promising axes; none where a closer look refuses all of them."""
     spacing, most = SPACING, max(_NARROWEST, (len(ledger.axes) - ledger.excluded) // _SHARE)
     for width in np.minimum(_BEAM, most):
         probe(ledger, width // 2)
         refine(ledger, spacing, width)
         spacing /= 2
-    return polished(ledger, spacing)
+    return local_optima(ledger, spacing)
 
 
 def frame_of(field: NormalField) -> Array:
@@ -101,43 +101,43 @@ def frame_of(field: NormalField) -> Array:
     return own_frame(field.samples, field.cap.centre if field.cap.centre.any() else field.mean)
 
 
-def indifferent(ledger: Ledger) -> bool:
+def indifferent(ledger: AxisTable) -> bool:
     """Whether all free axes cost the same: those of a ball end, where none of them leaves anything at walls.
 
     In time they differ.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     if ledger.worth.objective == "time":
         return False
     return ledger.feasibility.tool.flat_radius == 0 and not ledger.unreached[ledger.reason == FREE].any()
 
 
-def ties(ledger: Ledger) -> list[Candidate]:
+def ties(ledger: AxisTable) -> list[CountedAxis]:
     """Free axes of equal price, by clearance and then by the angle to the mean normal; a dozen at most.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     free = np.flatnonzero(np.isfinite(ledger.price))
-    away = settled(angle_between(ledger.axes[free], ledger.feasibility.normals.mean))
+    away = round_significant(angle_between(ledger.axes[free], ledger.feasibility.normals.mean))
     free = free[np.argsort(away, kind="stable")][:48]
     room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
     order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
     best = ledger.values[order[0]].argmin()
     value, passes, length = ledger.count(ledger.axes[order[0]], int(best), float(ledger.unreached[order[0]]))
-    return [Candidate(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
+    return [CountedAxis(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
 
 
-def probe(ledger: Ledger, most: int) -> None:
+def probe(ledger: AxisTable, most: int) -> None:
     """Look closer at the best axes, so that screening learns where the skin is gouged between its points.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     most : int
         Number of axes to be found sound.
     """
@@ -154,12 +154,12 @@ def probe(ledger: Ledger, most: int) -> None:
             most -= 1
 
 
-def refine(ledger: Ledger, spacing: float, width: int) -> None:
+def refine(ledger: AxisTable, spacing: float, width: int) -> None:
     """Lay rings of half the spacing around the most promising axes.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     spacing : float
         Of the axes so far, rad.
     width : int
@@ -183,7 +183,7 @@ def refine(ledger: Ledger, spacing: float, width: int) -> None:
         ledger.look(around[new])
 
 
-def _next_to(ledger: Ledger, border: Index, free: Index, spacing: float) -> Array:
+def _next_to(ledger: AxisTable, border: Index, free: Index, spacing: float) -> Array:
     """Price of the best free axis near each forbidden one, (k,)."""
     near = angle_between(ledger.axes[border][:, None], ledger.axes[free][None]) <= 1.4 * spacing
     return np.asarray(np.where(near, ledger.price[free], np.inf).min(axis=1))
@@ -200,12 +200,12 @@ def _spread(axes: Array, order: Index, apart: float, most: int) -> list[int]:
     return chosen
 
 
-def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
+def local_optima(ledger: AxisTable, spacing: float) -> list[CountedAxis]:
     """The best axis of each lobe by exact count, best first.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     spacing : float
         First step, rad.
     """
@@ -218,19 +218,19 @@ def polished(ledger: Ledger, spacing: float) -> list[Candidate]:
         if start is not None:
             starts.append(start)
     starts.sort(key=lambda c: c.value)
-    done: list[Candidate] = []
+    done: list[CountedAxis] = []
     for k, start in enumerate(starts):
         hopeless = start.value > starts[0].value * (1 + _HOPELESS) or k >= _POLISHED
         done.append(start if hopeless else polish(ledger, start, spacing))
-    return ranked(ledger, distinct(sorted(done, key=lambda c: c.value)))
+    return rank_candidates(ledger, distinct(sorted(done, key=lambda c: c.value)))
 
 
-def so_far(ledger: Ledger) -> list[Candidate]:
+def so_far(ledger: AxisTable) -> list[CountedAxis]:
     """The best axis of each lobe among those that were looked at, best first, by their screened prices.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
         Of a search that was ended.
     """
     price, feed = ledger.price, ledger.values.argmin(axis=1)
@@ -239,30 +239,31 @@ def so_far(ledger: Ledger) -> list[Candidate]:
     if not rows:
         return []
     whole = ledger.worth.screen(ledger.axes[rows])  # nothing charged for what stays
-    return [Candidate(ledger.axes[i], int(feed[i]), float(price[i]), float(whole.passes[k, feed[i]]),
-                      float(whole.length[k, feed[i]]), float(ledger.unreached[i])) for k, i in enumerate(rows)]
+    return [CountedAxis(ledger.axes[i], int(feed[i]), float(price[i]), float(whole.passes[k, feed[i]]),
+                        float(whole.length[k, feed[i]]), float(ledger.unreached[i])) for k, i in enumerate(rows)]
 
 
-def ranked(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
+def rank_candidates(ledger: AxisTable, found: list[CountedAxis]) -> list[CountedAxis]:
     """Candidates with ties at the top decided: the larger clearance first, then the smaller angle to the mean normal.
 
     Parameters
     ----------
-    ledger : Ledger
-    found : list of Candidate
+    ledger : AxisTable
+    found : list of CountedAxis
         By value.
     """
     tied = [one for one in found if one.value <= found[0].value * (1 + TIE)]
     if len(tied) < 2:
         return found
     mean, judged = ledger.feasibility.normals.mean, ledger.feasibility
-    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES), float(settled(angle_between(c.axis, mean)))))
+    tied.sort(key=lambda c: (-round(judged.room(c.axis) / _SHARES),
+                             float(round_significant(angle_between(c.axis, mean)))))
     return tied + found[len(tied):]
 
 
-def distinct(found: list[Candidate]) -> list[Candidate]:
+def distinct(found: list[CountedAxis]) -> list[CountedAxis]:
     """Candidates of different lobes: those that ended within half the lobes' distance of a better one are dropped."""
-    kept: list[Candidate] = []
+    kept: list[CountedAxis] = []
     for one in found:
         if all(float(angle_between(one.axis, other.axis)) > APART / 2 for other in kept):
             kept.append(one)
@@ -287,29 +288,29 @@ def lobes(axes: Array, price: Array, order: Index) -> list[int]:
     return chosen
 
 
-def _first_proven(ledger: Ledger, top: Array, order: Index) -> Candidate | None:
+def _first_proven(ledger: AxisTable, top: Array, order: Index) -> CountedAxis | None:
     """The best axis of a lobe that the proof form accepts, counted; None when a dozen are refused."""
     near = [i for i in order if float(angle_between(ledger.axes[i], top)) <= APART][:12]
     for i in near:
         if ledger.reason[i] == FREE and sound(ledger, int(i)) and proven(ledger, int(i)):
-            return counted(ledger, int(i))
+            return count_row(ledger, int(i))
     return None
 
 
-def repaired(ledger: Ledger, refused: Candidate, found: Witness, attempt: int = 0) -> Candidate | None:
+def next_in_lobe(ledger: AxisTable, refused: CountedAxis, found: Violation, attempt: int = 0) -> CountedAxis | None:
     """Another axis of the same lobe after the proof of the passes refused one.
 
     Parameters
     ----------
-    ledger : Ledger
-    refused : Candidate
-    found : Witness
+    ledger : AxisTable
+    refused : CountedAxis
+    found : Violation
     attempt : int
         How often this lobe was repaired before: its neighbourhood that is left alone grows fourfold each time.
 
     Returns
     -------
-    Candidate, or None when the lobe holds no other free axis.
+    CountedAxis, or None when the lobe holds no other free axis.
     """
     ledger.close(refused.axis, _REPELLED * 4**attempt, found)
     price = ledger.price

@@ -5,11 +5,11 @@ from math import degrees
 import numpy as np
 
 from toolaxis.contact.clearance.branch_and_bound import BUDGET
-from toolaxis.contact.clearance.queries import bounded, motions
+from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.interference import FINE
 from toolaxis.feasibility.surroundings import SKIN
-from toolaxis.search.messages import place, told_apart
+from toolaxis.search.messages import format_apart, place
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -34,7 +34,7 @@ def spread_too_wide(feasibility: Feasibility) -> str:
         return ""
     rim = feasibility.face.evaluate(feasibility.normals.kept[cap.rim]).point
     if cap.centre.any():
-        angle, limit = told_apart(degrees(cap.radius), degrees(most), 1)
+        angle, limit = format_apart(degrees(cap.radius), degrees(most), 1)
         size = f"up to {angle} deg to all sides of their middle"
     else:
         size, limit = "over more than a hemisphere", f"{degrees(most):.1f}"
@@ -84,11 +84,11 @@ def corner_too_large(feasibility: Feasibility) -> str:
     slack = max(face.tolerance for face in skin.faces) + 2 * FINE
     only = np.full((len(skin.faces), 3), -np.inf)
     only[[face.number == feasibility.face.number for face in skin.faces]] = 0.0
-    found = bounded(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE, only)
+    found = lower_bounds(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE, only)
     depth = np.where(found.looked > BUDGET, 0.0, -found.lower[:, 0] - slack)
     i = int(np.argmax(depth))
     if depth[i] <= limit:
         return ""
-    deep, allowed = told_apart(float(depth[i]), limit, 3)
+    deep, allowed = format_apart(float(depth[i]), limit, 3)
     return (f"the corner radius {radius:g} mm gouges face {feasibility.face.label} by {deep} mm at "
             f"{place(some.point[i])} with every axis; {allowed} mm is allowed: use a smaller corner radius")

@@ -33,7 +33,7 @@ _LOOKED = 64
 _FREE = np.radians(np.arange(-180, 180, 5.0))
 
 
-class Stretch(NamedTuple):
+class PassSegment(NamedTuple):
     """One pass.
 
     Attributes
@@ -57,7 +57,7 @@ class Stretch(NamedTuple):
         return np.concatenate([ways, ways[-1:]])
 
 
-def stretches(path: ToolPath) -> tuple[Stretch, ...]:
+def stretches(path: ToolPath) -> tuple[PassSegment, ...]:
     """The cuts of a tool path, pass by pass.
 
     Parameters
@@ -75,7 +75,7 @@ def stretches(path: ToolPath) -> tuple[Stretch, ...]:
         rows = np.union1d(cuts - 1, cuts)
         moving = np.concatenate([[True], np.linalg.norm(np.diff(path.cl[rows], axis=0), axis=1) > 0])[:len(rows)]
         if moving.sum() > 1:
-            found.append(Stretch(path.cl[rows[moving]], path.normal[rows[moving]]))
+            found.append(PassSegment(path.cl[rows[moving]], path.normal[rows[moving]]))
     if not found:
         raise InvalidInput("the path cuts nothing: there is no feed direction to set a machine up for")
     return tuple(found)
@@ -111,14 +111,14 @@ class Domain:
                 raise InvalidInput(f"{name} range is {low} to {high} rad: it must lie inside -pi/2 to pi/2, and not be "
                                    "reversed")
 
-    def holds(self, axes: ArrayLike, passes: Sequence[Stretch]) -> Bools:
+    def holds(self, axes: ArrayLike, passes: Sequence[PassSegment]) -> Bools:
         """Whether tool axes stay admissible along all passes, (k,).
 
         Parameters
         ----------
         axes : (k, 3) array_like
             Unit vectors in the part's frame.
-        passes : sequence of Stretch
+        passes : sequence of PassSegment
         """
         rows = as_rows(axes, 3, "axis")
         good = np.ones(len(rows), dtype=bool)
@@ -178,12 +178,12 @@ def mean_feed(tips: ArrayLike) -> Array:
     return np.asarray(unit(whole))
 
 
-def common_feed(passes: Sequence[Stretch]) -> Array:
+def common_feed(passes: Sequence[PassSegment]) -> Array:
     """The mean feed direction of several passes, weighted by length, (3,); there and back count as one direction.
 
     Parameters
     ----------
-    passes : sequence of Stretch
+    passes : sequence of PassSegment
         The first one tells the sense.
 
     Notes
@@ -195,7 +195,7 @@ def common_feed(passes: Sequence[Stretch]) -> Array:
     return np.asarray(unit((senses * np.array([one.length for one in passes])) @ feeds))
 
 
-def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None = None, level: Level = Level.JERK,
+def setup(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | None = None, level: Level = Level.JERK,
           stand: ArrayLike | None = None) -> Setup:
     """The set-up in which the axes do most along the mean feed direction of passes.
 
@@ -203,7 +203,7 @@ def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None =
     ----------
     mounting : Mounting
         The machine with the part on its table.
-    passes : sequence of Stretch
+    passes : sequence of PassSegment
         One pass, those of a sub-surface, or all.
     domain : Domain, optional
         What lead and tilt may be; free as for a ball end unless given.
@@ -225,7 +225,7 @@ def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None =
     """
     feed, allowed = common_feed(passes), Domain() if domain is None else domain
     rows = _alignments(mounting, level, feed)
-    rows = rows[allowed_angles(mounting, rows, passes, allowed)]
+    rows = rows[are_angles_allowed(mounting, rows, passes, allowed)]
     outcome = "aligned"
     if not len(rows):
         rows, outcome = _searched(mounting, level, feed, passes, allowed), "allowed"
@@ -234,10 +234,10 @@ def setup(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None =
     chosen = rows[np.argmin(np.round(np.abs(rows).sum(axis=1), 9))]
     if stand is not None:
         chosen = nearest_turn(mounting.machine, rows, stand)
-    return Setup(feed, chosen, float(reached(mounting, level, feed, chosen[None])[0]), outcome)
+    return Setup(feed, chosen, float(reach_along_feed(mounting, level, feed, chosen[None])[0]), outcome)
 
 
-def setups_by_pass(mounting: Mounting, passes: Sequence[Stretch], domain: Domain | None = None,
+def setups_by_pass(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | None = None,
                    level: Level = Level.JERK) -> tuple[Setup, ...]:
     """The best set-up of each pass, the nearest to that of the pass before.
 
@@ -270,7 +270,7 @@ def _turned_inside(mounting: Mounting, rows: Array) -> Array:
     return np.column_stack([axis.within(rows[:, i])[0] for i, axis in enumerate(mounting.machine.rotary)])
 
 
-def allowed_angles(mounting: Mounting, rows: Array, passes: Sequence[Stretch], domain: Domain) -> Bools:
+def are_angles_allowed(mounting: Mounting, rows: Array, passes: Sequence[PassSegment], domain: Domain) -> Bools:
     """Which rotary angles are inside ranges and domain, (k,).
 
     Parameters
@@ -278,7 +278,7 @@ def allowed_angles(mounting: Mounting, rows: Array, passes: Sequence[Stretch], d
     mounting : Mounting
     rows : (k, m) array
         rad
-    passes : sequence of Stretch
+    passes : sequence of PassSegment
     domain : Domain
     """
     if not len(rows):
@@ -291,7 +291,7 @@ def allowed_angles(mounting: Mounting, rows: Array, passes: Sequence[Stretch], d
     return good
 
 
-def reached(mounting: Mounting, level: Level, feed: Array, rows: Array) -> Array:
+def reach_along_feed(mounting: Mounting, level: Level, feed: Array, rows: Array) -> Array:
     """What the axes do along a feed direction at rotary angles, (k,) mm and s.
 
     Parameters
@@ -327,15 +327,15 @@ def rotary_grid(mounting: Mounting, step: float, middle: Array | None = None) ->
     return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))
 
 
-def _searched(mounting: Mounting, level: Level, feed: Array, passes: Sequence[Stretch], domain: Domain) -> Array:
+def _searched(mounting: Mounting, level: Level, feed: Array, passes: Sequence[PassSegment], domain: Domain) -> Array:
     """The best allowed angles from grids that grow finer, (1, m); none where no grid holds any."""
     best: Array | None = None
     for step in _STEPS:
         rows = rotary_grid(mounting, step, best)
         rows = rows if best is None else np.concatenate([best[None], rows])
-        rows = rows[allowed_angles(mounting, rows, passes, domain)]
+        rows = rows[are_angles_allowed(mounting, rows, passes, domain)]
         if not len(rows):
             return np.empty((0, len(mounting.machine.rotary)))
-        best = rows[int(np.argmax(reached(mounting, level, feed, rows)))]
+        best = rows[int(np.argmax(reach_along_feed(mounting, level, feed, rows)))]
     assert best is not None
     return best[None]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import judged
-from toolaxis.feasibility.surroundings import OTHER, Group
+from toolaxis.contact.clearance.queries import keeps_limits
+from toolaxis.feasibility.surroundings import OTHER, CheckSurfaces
 from toolaxis.path.links import BESIDE, LIFTS, ROOFS
 from toolaxis.tools.tool import Tool
 
@@ -30,13 +30,13 @@ def height_over(scallop: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
+class LinkClearance:
     """The surroundings of links with one axis.
 
     Attributes
     ----------
     tool : Tool
-    groups : tuple of Group
+    groups : tuple of CheckSurfaces
         With the distances to keep.
     axis : (3,) array
     top : float
@@ -48,7 +48,7 @@ class Crossing:
     """
 
     tool: Tool
-    groups: tuple[Group, ...]
+    groups: tuple[CheckSurfaces, ...]
     axis: Array
     top: float
     allowance: float = 0.0
@@ -111,5 +111,5 @@ class Crossing:
                 required[0] = self.allowance + self.over
             table = np.tile(required, (len(group.faces), 1))
             some = np.flatnonzero(free)
-            free[some] = judged(group.cells, self.tool, moves[some], table).blocked < 0
+            free[some] = keeps_limits(group.cells, self.tool, moves[some], table).blocked < 0
         return free

@@ -6,12 +6,12 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.feasibility.check_points import Contacts
+from toolaxis.feasibility.check_points import CheckPoints
 from toolaxis.feasibility.refined_check import closer
 from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.search.direction_grid import ring
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _NEAR, _STIFF = 2.5, 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class CountedAxis:
     """An axis with its exact value.
 
     Attributes
@@ -52,29 +52,29 @@ class Candidate:
     unreached: float
 
 
-def sound(ledger: Ledger, row: int) -> bool:
+def sound(ledger: AxisTable, row: int) -> bool:
     """Whether an axis stands the closer look at the screening contacts; where it does not, the ledger learns.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     row : int
     """
     return _stands(ledger, row, ledger.feasibility.sparse)
 
 
-def proven(ledger: Ledger, row: int) -> bool:
+def proven(ledger: AxisTable, row: int) -> bool:
     """Whether the proof form accepts an axis; where it does not, the ledger learns and its contacts are watched.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     row : int
     """
     return _stands(ledger, row, ledger.feasibility.dense)
 
 
-def _stands(ledger: Ledger, row: int, contacts: Contacts) -> bool:
+def _stands(ledger: AxisTable, row: int, contacts: CheckPoints) -> bool:
     ledger.closer += 1
     found = closer(ledger.feasibility, ledger.axes[row], contacts)
     if found.reason != FREE:
@@ -83,12 +83,12 @@ def _stands(ledger: Ledger, row: int, contacts: Contacts) -> bool:
     return found.reason == FREE
 
 
-def counted(ledger: Ledger, row: int, feed: int | None = None) -> Candidate:
+def count_row(ledger: AxisTable, row: int, feed: int | None = None) -> CountedAxis:
     """Exact value of a row, in the better feed; both are counted when screening cannot tell.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     row : int
     feed : int, optional
         The one that is known to be better.
@@ -98,19 +98,19 @@ def counted(ledger: Ledger, row: int, feed: int | None = None) -> Candidate:
     feeds = [int(values.argmin()) if feed is None else feed]
     if feed is None and values.max() < 1.04 * values.min():
         feeds = [0, 1]
-    return min((Candidate(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
+    return min((CountedAxis(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
                key=lambda c: c.value)
 
 
 @dataclass
-class _Walk:
+class _LocalSearch:
     """A walk from axis to axis.
 
     best : the best axis so far;  known : axes that were counted, with exact over screening value.
     """
 
-    ledger: Ledger
-    best: Candidate
+    ledger: AxisTable
+    best: CountedAxis
     known: list[tuple[Array, float]]
 
     def hopes(self, rows: slice, step: float) -> Array:
@@ -144,7 +144,7 @@ class _Walk:
         for row, promise in zip((rows.start + order)[:_TRIED], hope[order], strict=False):
             if ledger.reason[row] != FREE or not promise < 1 + _DOUBT * step:
                 return False
-            found = counted(ledger, int(row), best.feed)
+            found = count_row(ledger, int(row), best.feed)
             screened = float(ledger.values[row, best.feed])
             ratio = found.value / screened if np.isfinite(screened) else self.known[-1][1]
             if found.value < best.value * (1 - _WORTHWHILE) and proven(ledger, int(row)):
@@ -156,7 +156,7 @@ class _Walk:
         return False
 
 
-def polish(ledger: Ledger, start: Candidate, step: float, finest: float = _FINEST) -> Candidate:
+def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = _FINEST) -> CountedAxis:
     """Walk to a local optimum by exact counts.
 
     Rings, turned from one to the next, go around the best axis; where no axis of a ring counts better, the lowest
@@ -165,15 +165,15 @@ def polish(ledger: Ledger, start: Candidate, step: float, finest: float = _FINES
 
     Parameters
     ----------
-    ledger : Ledger
-    start : Candidate
+    ledger : AxisTable
+    start : CountedAxis
         An axis that the proof form accepts.
     step : float
         First radius of the rings, rad.
     finest : float
         Last one, rad.
     """
-    walk, turn = _Walk(ledger, start, [(start.axis, _ratio(ledger, start))]), 0.0
+    walk, turn = _LocalSearch(ledger, start, [(start.axis, _ratio(ledger, start))]), 0.0
     while step >= finest:
         turn += 2.399963
         rows = ledger.look(ring(walk.best.axis, step, turn, _RING))
@@ -215,7 +215,7 @@ def _lowest(middle: Array, axes: Array, hope: Array, step: float) -> Array | Non
     return None if gain < _WORTHWHILE else unit(middle + np.tan(step) * (move[0] * x + move[1] * y))
 
 
-def _ratio(ledger: Ledger, one: Candidate) -> float:
+def _ratio(ledger: AxisTable, one: CountedAxis) -> float:
     """Exact value of a candidate over its screening value; 1 where screening knows none."""
     found = ledger.worth.screen(one.axis[None])
     charge = ledger.worth.charge(float(found.length[0].min()), one.unreached)

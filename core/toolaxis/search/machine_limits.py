@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.collision.machine_collision import Surroundings, free_solutions
+from toolaxis.collision.machine_collision import MachineSurroundings, free_solutions
 from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import Group
-from toolaxis.feasibility.violations import FREE, LIMITS, Witness
+from toolaxis.feasibility.surroundings import CheckSurfaces
+from toolaxis.feasibility.violations import FREE, LIMITS, Violation
 from toolaxis.machine.limits import ROUNDING, AllOf, AxisLimits
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.local_search import Candidate, counted
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.local_search import CountedAxis, count_row
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -26,7 +26,7 @@ REFUSED = "refused "
 _PLACES = 8
 
 
-def combined(machine: MachineLike | None, limits: AxisLimits | str | None) -> AxisLimits | None:
+def intersect_limits(machine: MachineLike | None, limits: AxisLimits | str | None) -> AxisLimits | None:
     """Limits from a machine and from further limits.
 
     Parameters
@@ -89,7 +89,7 @@ def while_moving(limits: AxisLimits | None) -> AxisLimits | None:
     return replace(limits, reached=np.empty((0, 3))) if isinstance(limits, Mounting) else limits
 
 
-def held_axis(limits: AxisLimits | None, axis: Array) -> Array:
+def nearest_held_axis(limits: AxisLimits | None, axis: Array) -> Array:
     """The axis nearest to one that the machine among limits holds in its steps; itself where there is none.
 
     Parameters
@@ -103,30 +103,30 @@ def held_axis(limits: AxisLimits | None, axis: Array) -> Array:
     return near[0] if len(near) else axis
 
 
-def held(ledger: Ledger, found: list[Candidate]) -> list[Candidate]:
+def snap_to_increments(ledger: AxisTable, found: list[CountedAxis]) -> list[CountedAxis]:
     """Candidates at axes that the machine can hold in its steps, best first; as they are where there is no machine.
 
     Parameters
     ----------
-    ledger : Ledger
-    found : list of Candidate
+    ledger : AxisTable
+    found : list of CountedAxis
         Best first.
     """
     mounting = mounting_of(ledger.feasibility.limits)
     if mounting is None:
         return found
-    kept: list[Candidate] = []
+    kept: list[CountedAxis] = []
     for one in found:
         axes = mounting.on_steps(one.axis)
         if len(axes) == 1:
             kept.append(replace(one, axis=axes[0]))
         elif len(axes):
             rows = ledger.look(axes)
-            kept += [counted(ledger, row) for row in range(rows.start, rows.stop) if ledger.reason[row] == FREE]
+            kept += [count_row(ledger, row) for row in range(rows.start, rows.stop) if ledger.reason[row] == FREE]
     return sorted(kept, key=lambda candidate: candidate.value)
 
 
-def stopped(feasibility: Feasibility, path: ToolPath, groups: tuple[Group, ...]) -> Witness | None:
+def machine_violation(feasibility: Feasibility, path: ToolPath, groups: tuple[CheckSurfaces, ...]) -> Violation | None:
     """Why the machine cannot carry out passes, links included, as the place that decides against the axis.
 
     Parameters
@@ -134,13 +134,13 @@ def stopped(feasibility: Feasibility, path: ToolPath, groups: tuple[Group, ...])
     feasibility : Feasibility
     path : ToolPath
         With one axis.
-    groups : tuple of Group
+    groups : tuple of CheckSurfaces
         What stands around.
     """
     return out_of_travel(feasibility.limits, path) or meets_itself(feasibility, path, groups)
 
 
-def meets_itself(feasibility: Feasibility, path: ToolPath, groups: tuple[Group, ...]) -> Witness | None:
+def meets_itself(feasibility: Feasibility, path: ToolPath, groups: tuple[CheckSurfaces, ...]) -> Violation | None:
     """What of the machine meets part, tool or itself in every solution, as the place that decides against the axis.
 
     Parameters
@@ -148,26 +148,26 @@ def meets_itself(feasibility: Feasibility, path: ToolPath, groups: tuple[Group, 
     feasibility : Feasibility
     path : ToolPath
         With one axis, inside the travel.
-    groups : tuple of Group
+    groups : tuple of CheckSurfaces
         What stands around.
     """
     mounting = mounting_of(feasibility.limits)
-    around = Surroundings(feasibility.tool, tuple(group.cells for group in groups),
-                          feasibility.tolerance.holder_clearance)
+    around = MachineSurroundings(feasibility.tool, tuple(group.cells for group in groups),
+                                 feasibility.tolerance.holder_clearance)
     if mounting is None or not len(path.cl) or not mounting.judges_bodies:
         return None
     rows, why, distance = free_solutions(mounting, path.cl, path.axis[0], around)
-    return None if len(rows) else Witness(LIMITS, ROUNDING, distance=distance, words=why)
+    return None if len(rows) else Violation(LIMITS, ROUNDING, distance=distance, words=why)
 
 
-def make_room(ledger: Ledger, axis: Array, found: Witness) -> None:
+def make_room(ledger: AxisTable, axis: Array, found: Violation) -> None:
     """Forbid axes with too little room for the machine, where that is why passes were refused; see `with_room`.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     axis : (3,) array
-    found : Witness
+    found : Violation
     """
     feasibility = ledger.feasibility
     narrower = with_room(feasibility.limits, axis, found, feasibility.tolerance.holder_clearance)
@@ -193,7 +193,7 @@ def better_of(one: tuple[Orientation, ToolPath | None],
     return replace(again, reasons=(*again.reasons, *refused), evaluations=count), other_path
 
 
-def with_room(limits: AxisLimits | None, axis: Array, found: Witness, required: float) -> AxisLimits | None:
+def with_room(limits: AxisLimits | None, axis: Array, found: Violation, required: float) -> AxisLimits | None:
     """Limits after passes with an axis brought bodies of the machine too close: as much more room at the points of the
     face as the passes have less of it than those; None where that is not why they were refused.
 
@@ -201,7 +201,7 @@ def with_room(limits: AxisLimits | None, axis: Array, found: Witness, required: 
     ----------
     limits : AxisLimits or None
     axis : (3,) array
-    found : Witness
+    found : Violation
     required : float
         mm
     """
@@ -220,7 +220,7 @@ def with_room(limits: AxisLimits | None, axis: Array, found: Witness, required: 
     return replace(limits, room=max(limits.room, required + min(there - found.distance, 2 * abs(limits.slack))))
 
 
-def out_of_travel(limits: AxisLimits | None, path: ToolPath) -> Witness | None:
+def out_of_travel(limits: AxisLimits | None, path: ToolPath) -> Violation | None:
     """Which linear axis leaves its travel on passes, links included, as the place that decides against the axis.
 
     Parameters
@@ -233,4 +233,4 @@ def out_of_travel(limits: AxisLimits | None, path: ToolPath) -> Witness | None:
     if mounting is None or not len(path.cl):
         return None
     words = mounting.out_of_travel(path.cl, path.axis[0])
-    return Witness(LIMITS, ROUNDING, words=f"{words} on the passes and their links") if words else None
+    return Violation(LIMITS, ROUNDING, words=f"{words} on the passes and their links") if words else None

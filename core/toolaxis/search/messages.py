@@ -12,12 +12,12 @@ from toolaxis.contact.clearance.gouge import depth_from_distance
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, TOUCHING
-from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Witness
-from toolaxis.numeric.rounding import settled
+from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, LIMITS, WANDERS, Violation
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between, dot
 from toolaxis.plan.orientation import REASONS
 from toolaxis.plan.zone import Zone
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.seams import GREATEST
@@ -100,7 +100,7 @@ def amount(value: float) -> str:
     return f"{value:.2f}" if value >= 0.095 or value == 0 else f"{value:.2g}" if value >= 1e-4 else "0.0001"
 
 
-def told_apart(value: float, limit: float, digits: int) -> tuple[str, str]:
+def format_apart(value: float, limit: float, digits: int) -> tuple[str, str]:
     """A value and the limit that it misses, with as many decimals as it takes to tell them apart.
 
     Parameters
@@ -116,12 +116,12 @@ def told_apart(value: float, limit: float, digits: int) -> tuple[str, str]:
     return pair
 
 
-def sentence(found: Witness, feasibility: Feasibility) -> str:
+def sentence(found: Violation, feasibility: Feasibility) -> str:
     """What one witness says.
 
     Parameters
     ----------
-    found : Witness
+    found : Violation
     feasibility : Feasibility
     """
     if found.words:
@@ -135,24 +135,24 @@ def sentence(found: Witness, feasibility: Feasibility) -> str:
     return _collision(found, feasibility)
 
 
-def _at(found: Witness) -> str:
+def _at(found: Violation) -> str:
     """Where it happens; nothing where that is not known."""
     return f" at {place(found.point)}" if np.isfinite(found.point).all() else ""
 
 
-def _angle(found: Witness, feasibility: Feasibility) -> str:
+def _angle(found: Violation, feasibility: Feasibility) -> str:
     """An axis that leans too far from a normal, or too little."""
     of = f"a normal of face {feasibility.face.label}{_at(found)}"
     if found.reason == BACK:
         most = degrees(feasibility.greatest_angle)
-        angle, limit = told_apart(most + degrees(abs(found.amount)), most, 2)
+        angle, limit = format_apart(most + degrees(abs(found.amount)), most, 2)
         return f"the axis is {angle} deg from {of}, and the cutter reaches {limit} deg at most"
     least = degrees(feasibility.least_angle)
-    angle, limit = told_apart(max(least - degrees(abs(found.amount)), 0.0), least, 2)
+    angle, limit = format_apart(max(least - degrees(abs(found.amount)), 0.0), least, 2)
     return f"the axis is only {angle} deg from {of}: a flat bottom needs a lead of {limit} deg"
 
 
-def _gouge(found: Witness, feasibility: Feasibility) -> str:
+def _gouge(found: Violation, feasibility: Feasibility) -> str:
     """A cutter that goes too deep into the skin."""
     which, allowed = found.label or feasibility.face.label, feasibility.tolerance.gouge
     tool, stock = feasibility.tool, feasibility.allowance
@@ -160,14 +160,14 @@ def _gouge(found: Witness, feasibility: Feasibility) -> str:
     depth = float(depth_from_distance(tool, np.asarray(found.distance), stock))
     if not np.isfinite(depth):
         return f"the cutter gouges face {which} by more than the allowed {allowed:g} mm{_at(found)}"
-    deep, limit = told_apart(depth, allowed, 3)
+    deep, limit = format_apart(depth, allowed, 3)
     if depth > allowed:
         return f"the cutter gouges face {which} by {deep} mm{below}{_at(found)}; {limit} mm is allowed"
     return (f"the cutter comes too close to the allowed gouge of {allowed:g} mm on face {which}{_at(found)}: it goes "
             f"{deep} mm deep{below}, and the rest is needed between the points of a pass")
 
 
-def _collision(found: Witness, feasibility: Feasibility) -> str:
+def _collision(found: Violation, feasibility: Feasibility) -> str:
     """A component that is too near to a face."""
     name, needed = _COMPONENTS[found.reason - CUTTER], _needed(feasibility.tolerance)[found.reason - CUTTER]
     which = f"face {found.label}" if found.label else "what stands around"
@@ -176,7 +176,7 @@ def _collision(found: Witness, feasibility: Feasibility) -> str:
         return f"the {name} comes too near to {which}{_at(found)}: {needed:g} mm is required"
     if behind:
         allowed = feasibility.tolerance.gouge
-        deep, limit = told_apart(max(-found.distance, 0.0), allowed, 3)
+        deep, limit = format_apart(max(-found.distance, 0.0), allowed, 3)
         if -found.distance > allowed:
             return (f"the cutter gouges {which} behind an edge by {deep} mm{_at(found)}; {limit} mm is allowed"
                     f"{_proud(found, behind[0], feasibility)}")
@@ -185,7 +185,7 @@ def _collision(found: Witness, feasibility: Feasibility) -> str:
     if found.distance < 0:
         return f"the {name} collides with {which} by {amount(-found.distance)} mm{_at(found)}"
     if found.distance <= needed + MARGIN:
-        near, _ = told_apart(found.distance, needed + MARGIN, 2)
+        near, _ = format_apart(found.distance, needed + MARGIN, 2)
         return (f"the {name} comes within {near} mm of {which}{_at(found)}; {needed:g} mm is required, and {MARGIN:g} "
                 "mm more to be sure")
     return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
@@ -196,7 +196,7 @@ def _needed(tolerance: Tolerance) -> tuple[float, float, float]:
     return tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance
 
 
-def _behind_edges(found: Witness, feasibility: Feasibility) -> list[Face]:
+def _behind_edges(found: Violation, feasibility: Feasibility) -> list[Face]:
     """The face that a witness names where it meets the machined skin at a convex edge; none where it does not."""
     return [face for group in feasibility.groups if group.role == TOUCHING for face in group.faces
             if face.label == found.label]
@@ -213,7 +213,7 @@ def nothing_to_cut(face: Face) -> str:
             "passes; divide the face (--regions), or use a smaller cutter")
 
 
-def _proud(found: Witness, behind: Face, feasibility: Feasibility) -> str:
+def _proud(found: Violation, behind: Face, feasibility: Feasibility) -> str:
     """Where the cutter meets a face behind a convex edge because that face stands out over the machined one."""
     own = feasibility.face
     border = behind.evaluate(around(behind, _BORDER)).point
@@ -227,12 +227,12 @@ def _proud(found: Witness, behind: Face, feasibility: Feasibility) -> str:
             "machining tolerance")
 
 
-def tally(ledger: Ledger) -> str:
+def tally(ledger: AxisTable) -> str:
     """How many axes were tested, and for what they were refused.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     counts = np.bincount(ledger.reason, minlength=len(REASONS))
     parts = [f"{counts[k]} {COUNTED[k]}" for k in range(1, len(REASONS)) if counts[k]]
@@ -259,7 +259,7 @@ def main_first(refused: Sequence[Refusal]) -> list[str]:
     return [one.words for one in sorted(refused, key=lambda one: (-count[one.reason], one.reason, one.amount))]
 
 
-def decisive(ledger: Ledger) -> IntArray:
+def decisive(ledger: AxisTable) -> IntArray:
     """Rows of the forbidden axes with what stops most of those that get farthest, the nearest miss first.
 
     Limits and normals exclude most of the sphere for any face: what they leave decides, if they leave anything; then
@@ -267,23 +267,23 @@ def decisive(ledger: Ledger) -> IntArray:
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     for early in (GOUGE, WANDERS, BACK, LIMITS):
         rows = np.flatnonzero(ledger.reason >= early)
         if len(rows):
             kind = np.bincount(ledger.reason[rows]).argmax()
             rows = rows[ledger.reason[rows] == kind]
-            return np.asarray(rows[np.argsort(settled(ledger.amount[rows]), kind="stable")])
+            return np.asarray(rows[np.argsort(round_significant(ledger.amount[rows]), kind="stable")])
     return np.empty(0, dtype=np.intp)
 
 
-def why_none(ledger: Ledger) -> str:
+def why_none(ledger: AxisTable) -> str:
     """What stops most axes, with the one that comes closest.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     rows = decisive(ledger)
     if not len(rows):
@@ -291,7 +291,7 @@ def why_none(ledger: Ledger) -> str:
     code, axis = int(ledger.reason[rows[0]]), ledger.axes[rows[0]]
     found = _stopping(ledger, axis, code)
     if found is None:
-        found = Witness(code, float(ledger.amount[rows[0]]))
+        found = Violation(code, float(ledger.amount[rows[0]]))
     stage = min(code, GOUGE)
     passed = int((ledger.reason >= stage).sum())
     count = f"all {passed}" if passed == len(rows) else f"{len(rows)} of the {passed}"
@@ -299,7 +299,7 @@ def why_none(ledger: Ledger) -> str:
             f"{sentence(found, ledger.feasibility)}")
 
 
-def _stopping(ledger: Ledger, axis: Array, code: int) -> Witness | None:
+def _stopping(ledger: AxisTable, axis: Array, code: int) -> Violation | None:
     """What stops an axis, of the kind that the ledger knows; None where it can no more be told."""
     feasibility = ledger.feasibility
     known = [found for middle, angle, found in ledger.closed if angle_between(axis, middle) <= angle]

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.clearance.gouge import depth_from_distance
-from toolaxis.contact.clearance.queries import bounded, judged, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, segment_motions
 from toolaxis.feasibility.interference import COARSE, FINE
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
-from toolaxis.numeric.rounding import settled
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
+from toolaxis.feasibility.violations import CUTTER, GOUGE, Violation
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.tool import Tool
 
@@ -26,12 +26,12 @@ _FAR = 50.0
 
 
 @dataclass(frozen=True, eq=False)
-class Proof:
+class PathCheck:
     """What is known of a path.
 
     Attributes
     ----------
-    witness : Witness or None
+    witness : Violation or None
         The first motion that breaks a limit; None when every motion keeps them all.
     gouge : float
         Upper bound of the depth below the skin and below the faces behind its convex edges, mm.
@@ -39,13 +39,13 @@ class Proof:
         Lower bound per component that is known, mm; the cutter's is to what it does not machine or touch harmlessly.
     """
 
-    witness: Witness | None
+    witness: Violation | None
     gouge: float = 0.0
     clearance: dict[str, float] = field(default_factory=dict)
 
 
-def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: float = 0.0, *, most: float = 20.0,
-          progress: Progress = NO_PROGRESS) -> Proof:
+def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *, most: float = 20.0,
+          progress: Progress = NO_PROGRESS) -> PathCheck:
     """Judge every motion of a path with one fixed axis.
 
     Measuring ends with what is known where a motion needs too many cells, and may then fall short of what deciding has
@@ -55,8 +55,8 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
     ----------
     path : ToolPath
     tool : Tool
-    groups : tuple of Group
-        From `toolaxis.feasibility.surroundings.grouped`, with the distances to keep.
+    groups : tuple of CheckSurfaces
+        From `toolaxis.feasibility.surroundings.group_surroundings`, with the distances to keep.
     allowance : float
         Stock left on the skin, mm.
     most : float
@@ -65,7 +65,7 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
 
     Returns
     -------
-    Proof
+    PathCheck
 
     Raises
     ------
@@ -77,7 +77,7 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
         progress.report("proof", number, 2 * len(groups))
         found = _broken(tool, group, moves)
         if found is not None:
-            return Proof(found)
+            return PathCheck(found)
     gouge = 0.0
     clearance: dict[str, float] = {}
     known = {"cutter", *tool.outlines}
@@ -89,46 +89,46 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: floa
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
             clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
-    return Proof(None, gouge, clearance)
+    return PathCheck(None, gouge, clearance)
 
 
-def greatest_depth(tool: Tool, group: Group, moves: Array, allowance: float) -> float:
+def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: float) -> float:
     """Upper bound of the depth below a group of which motions are proven to keep their distance, mm.
 
     Parameters
     ----------
     tool : Tool
-    group : Group
+    group : CheckSurfaces
     moves : (n, 3, 3) array
         Motions, as `segment_motions` gives them.
     allowance : float
         Stock left on the group, mm.
     """
-    nearest = bounded(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
+    nearest = lower_bounds(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
     return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
 
 
-def _only(group: Group, components: tuple[int, ...]) -> Array:
+def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
     """Required table that asks for some components only, (faces, 3)."""
     row = np.full(3, -np.inf)
     row[list(components)] = 0.0
     return np.tile(row, (len(group.faces), 1))
 
 
-def _broken(tool: Tool, group: Group, moves: Array) -> Witness | None:
+def _broken(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation | None:
     """The worst motion that is not proven to keep its distances from a group, or None."""
-    blocked = judged(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
+    blocked = keeps_limits(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
     rows = np.flatnonzero(blocked >= 0)
     return worst_motion(tool, group, moves[rows], group.required, group.required) if len(rows) else None
 
 
-def worst_motion(tool: Tool, group: Group, moves: Array, required: Array, cutoff: Array) -> Witness:
+def worst_motion(tool: Tool, group: CheckSurfaces, moves: Array, required: Array, cutoff: Array) -> Violation:
     """The worst of motions that were not proven to keep their distances from a group.
 
     Parameters
     ----------
     tool : Tool
-    group : Group
+    group : CheckSurfaces
     moves : (n, 3, 3) array
         At least one.
     required : (3,) array
@@ -144,26 +144,28 @@ def worst_motion(tool: Tool, group: Group, moves: Array, required: Array, cutoff
     fine = FINE if group.role != OTHER else COARSE
     asked = np.array([name == "cutter" or name in tool.outlines for name in COMPONENTS]) & ~np.isneginf(required)
     table = np.tile(np.where(asked, 0.0, -np.inf), (len(group.faces), 1))
-    found = bounded(group.cells, tool, moves, cutoff + 2 * fine, fine, table)
+    found = lower_bounds(group.cells, tool, moves, cutoff + 2 * fine, fine, table)
     amount = np.where(asked, required - found.lower, -np.inf)
-    i, c = (int(k) for k in np.unravel_index(int(np.argmax(settled(amount))), amount.shape))
+    i, c = (int(k) for k in np.unravel_index(int(np.argmax(round_significant(amount))), amount.shape))
     if found.face[i, c] < 0:
-        found, i = bounded(group.cells, tool, moves[[i]], _FAR, fine, table), 0
+        found, i = lower_bounds(group.cells, tool, moves[[i]], _FAR, fine, table), 0
     k = int(found.face[i, c])
     missed = max(float(required[c] - found.lower[i, c]), 0.0)
     code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
     if k < 0:
-        return Witness(code, missed)
-    return Witness(code, missed, group.faces[k].label, found.point[i, c], distance=float(found.lower[i, c]))
+        return Violation(code, missed)
+    return Violation(code, missed, group.faces[k].label, found.point[i, c], distance=float(found.lower[i, c]))
 
 
-def _least(tool: Tool, group: Group, moves: Array, components: tuple[int, ...], most: float) -> dict[int, float]:
+def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float) -> dict[int,
+                                                                                                             float]:
     """Least distance of components to a group over all motions; the bound found so far cuts the search short."""
     if not components:
         return {}
     asked, best = _only(group, components), np.full(3, most + _ROUGH)
-    order = np.argsort(settled(moves[:, 0] @ moves[0, 2]), kind="stable")
+    order = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
     for first in range(0, len(order), _BATCH):
-        least = bounded(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH, asked).lower.min(axis=0)
+        least = lower_bounds(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH,
+                             asked).lower.min(axis=0)
         best = np.where(least < best - _ROUGH, least, best)
     return {c: float(best[c]) - _ROUGH for c in components}

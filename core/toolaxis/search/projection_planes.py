@@ -10,7 +10,7 @@ from toolaxis.numeric.vectors import perpendicular, unit
 Array = NDArray[np.float64]
 
 
-class Plane(NamedTuple):
+class ProjectionPlane(NamedTuple):
     """A projection plane: unit vectors x and y span it, z is normal to it; right-handed, (3,) each."""
 
     x: Array
@@ -18,7 +18,7 @@ class Plane(NamedTuple):
     z: Array
 
 
-def initial_plane(normals: ArrayLike, directions: ArrayLike) -> Plane:
+def initial_plane(normals: ArrayLike, directions: ArrayLike) -> ProjectionPlane:
     """The plane of the mean normal (y) and the mean direction of least curvature (x).
 
     Directions have no sign, so their mean is the eigenvector of the sum of their dyads.
@@ -51,15 +51,15 @@ def initial_plane(normals: ArrayLike, directions: ArrayLike) -> Plane:
         x = perpendicular(y)[0]
     else:
         x = unit(vectors[:, 2] - (vectors[:, 2] @ y) * y)
-    return Plane(x, y, np.cross(x, y))
+    return ProjectionPlane(x, y, np.cross(x, y))
 
 
-def turned(plane: Plane, phi: float) -> Plane:
+def turn_plane(plane: ProjectionPlane, phi: float) -> ProjectionPlane:
     """The plane turned about its y.
 
     Parameters
     ----------
-    plane : Plane
+    plane : ProjectionPlane
     phi : float
         Roll angle, rad.
 
@@ -68,15 +68,15 @@ def turned(plane: Plane, phi: float) -> Plane:
     **Source**: [zhu2016] Eq. (7).
     """
     x = plane.x * np.cos(phi) - plane.z * np.sin(phi)
-    return Plane(x, plane.y, np.cross(x, plane.y))
+    return ProjectionPlane(x, plane.y, np.cross(x, plane.y))
 
 
-def projected_angles(plane: Plane, normals: ArrayLike) -> Array:
+def project_angles(plane: ProjectionPlane, normals: ArrayLike) -> Array:
     """Angle of each normal, projected on the plane, from x towards y, (n,) rad in (-pi, pi].
 
     Parameters
     ----------
-    plane : Plane
+    plane : ProjectionPlane
     normals : (n, 3) array_like
 
     Notes
@@ -87,12 +87,12 @@ def projected_angles(plane: Plane, normals: ArrayLike) -> Array:
     return np.asarray(np.arctan2(rows @ plane.y, rows @ plane.x))
 
 
-def axis_at(plane: Plane, gamma: ArrayLike) -> Array:
+def axis_at(plane: ProjectionPlane, gamma: ArrayLike) -> Array:
     """Tool axes in a plane, (n, 3), or (3,) for one angle.
 
     Parameters
     ----------
-    plane : Plane
+    plane : ProjectionPlane
     gamma : float or (n,) array_like
         Inclination from x towards y, rad.
 
@@ -104,12 +104,12 @@ def axis_at(plane: Plane, gamma: ArrayLike) -> Array:
     return np.asarray(np.cos(angle) * plane.x + np.sin(angle) * plane.y)
 
 
-def sector(plane: Plane, normals: ArrayLike) -> tuple[float, float]:
+def sector(plane: ProjectionPlane, normals: ArrayLike) -> tuple[float, float]:
     """The quasi-feasible sector of a plane: range of inclinations in front of all projected normals.
 
     Parameters
     ----------
-    plane : Plane
+    plane : ProjectionPlane
     normals : (n, 3) array_like
 
     Returns
@@ -124,5 +124,5 @@ def sector(plane: Plane, normals: ArrayLike) -> tuple[float, float]:
     **Properties**: 1. at high the axis meets the foremost projected normal; 2. at low it is at right angles to the
     hindmost one.
     """
-    alpha = projected_angles(plane, normals)
+    alpha = project_angles(plane, normals)
     return float(alpha.max()) - np.pi / 2, float(alpha.min())

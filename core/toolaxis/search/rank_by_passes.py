@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.fixed_axis_time import machining_time
-from toolaxis.search.cost import FEEDS, Worth
-from toolaxis.search.local_search import Candidate
+from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.local_search import CountedAxis
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,8 @@ _TIMED, _MADE = 4, 6
 _TIE = 0.001
 
 
-def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str], ToolPath]) -> list[Candidate]:
+def least_made(worth: MachiningCost, found: list[CountedAxis],
+               made: Callable[[Array, str], ToolPath]) -> list[CountedAxis]:
     """Candidates with those first that may be the best one, in the order of what their passes take when made.
 
     For the objective "time" these are the ones of nearly the least estimate.  For others, where the best of few passes
@@ -32,8 +33,8 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
 
     Parameters
     ----------
-    worth : Worth
-    found : list of Candidate
+    worth : MachiningCost
+    found : list of CountedAxis
         Best first.
     made : callable
         Lays the passes of an axis and a feed.
@@ -41,7 +42,7 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
     timed = worth.pace is not None
     if len(found) < 2 or (not timed and found[0].passes > _FEW):
         return found
-    few: list[Candidate] = []
+    few: list[CountedAxis] = []
     values: list[float] = []
     fair = [one for one in found if timed or one.unreached <= found[0].unreached]
     for one in fair[:_TIMED if timed else _MADE]:
@@ -54,13 +55,13 @@ def least_made(worth: Worth, found: list[Candidate], made: Callable[[Array, str]
     return [few[k] for k in order] + [one for one in found if all(one is not other for other in few)]
 
 
-def _left(worth: Worth, one: Candidate) -> float:
+def _left(worth: MachiningCost, one: CountedAxis) -> float:
     """What is charged for what stays; passes made leave it out already."""
     charge = worth.charge(one.length, one.unreached)
     return one.value / charge * (charge - (1 - one.unreached))
 
 
-def _taken(worth: Worth, one: Candidate, made: Callable[[Array, str], ToolPath]) -> float:
+def _taken(worth: MachiningCost, one: CountedAxis, made: Callable[[Array, str], ToolPath]) -> float:
     """Time, cutting length or number of the passes made; inf for what cannot be made, refused with its reason later."""
     try:
         path, pace = made(one.axis, FEEDS[one.feed]), worth.pace

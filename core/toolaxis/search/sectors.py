@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.search.evaluated_axes import Ledger
+from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.hemisphere import distinct
-from toolaxis.search.local_search import Candidate, counted, sound
-from toolaxis.search.projection_planes import Plane, axis_at, initial_plane, sector, turned
+from toolaxis.search.local_search import CountedAxis, count_row, sound
+from toolaxis.search.projection_planes import ProjectionPlane, axis_at, initial_plane, sector, turn_plane
 
 Array = NDArray[np.float64]
 
@@ -24,24 +24,24 @@ _GOLDEN = (sqrt(5.0) - 1) / 2
 _RANKED = 10
 
 
-def plane_of(ledger: Ledger) -> tuple[Plane, Array]:
+def plane_of(ledger: AxisTable) -> tuple[ProjectionPlane, Array]:
     """The initial projection plane of a search, and the normals of its sample points, (n, 3).
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     face, uv = ledger.worth.face, ledger.worth.samples.uv
     normals = face.normal(uv)
     return initial_plane(normals, face.curvature(uv).d2), normals
 
 
-def sectors(ledger: Ledger, roll: float = ROLL, step: float = STEP) -> list[Candidate]:
+def sectors(ledger: AxisTable, roll: float = ROLL, step: float = STEP) -> list[CountedAxis]:
     """The best axes of the quasi-feasible sectors, best first; those of the best planes that lie apart.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
         Receives everything that is looked at.
     roll, step : float
         Increments of the roll angle (over the full turn, as directions have two signs) and of the inclination, rad.
@@ -64,26 +64,26 @@ def sectors(ledger: Ledger, roll: float = ROLL, step: float = STEP) -> list[Cand
     count = max(1, round(2 * np.pi / roll))
     for k in range(count):
         ledger.progress.report("planes", k, count)
-        row = best_in_plane(ledger, turned(first, 2 * np.pi * k / count), normals, step)
+        row = best_in_plane(ledger, turn_plane(first, 2 * np.pi * k / count), normals, step)
         if row is not None:
             rows.append(row)
     rows.sort(key=lambda row: float(ledger.price[row]))
-    found: list[Candidate] = []
+    found: list[CountedAxis] = []
     for row in rows:
         if len(found) == _RANKED:
             break
         if all(angle_between(ledger.axes[row], other.axis) > radians(1) for other in found) and sound(ledger, row):
-            found.append(counted(ledger, row))
+            found.append(count_row(ledger, row))
     return distinct(sorted(found, key=lambda c: c.value))
 
 
-def best_in_plane(ledger: Ledger, plane: Plane, normals: Array, step: float = STEP) -> int | None:
+def best_in_plane(ledger: AxisTable, plane: ProjectionPlane, normals: Array, step: float = STEP) -> int | None:
     """Row of the best free axis of one plane's sector, or None.
 
     Parameters
     ----------
-    ledger : Ledger
-    plane : Plane
+    ledger : AxisTable
+    plane : ProjectionPlane
     normals : (n, 3) array
     step : float
         Increment of the inclination, rad.
@@ -138,12 +138,12 @@ def golden_section(function: Callable[[float], float], interval: tuple[float, fl
     return (low + high) / 2
 
 
-def roman_axis(ledger: Ledger, margin: float = radians(1.0)) -> Array:
+def roman_axis(ledger: AxisTable, margin: float = radians(1.0)) -> Array:
     """Roman's rule: in the one initial plane, just in front of the cone of projected normals.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     margin : float
         How far in front, rad.
 
@@ -158,43 +158,43 @@ def roman_axis(ledger: Ledger, margin: float = radians(1.0)) -> Array:
     """
     first, _ = plane_of(ledger)
     normals = ledger.feasibility.normals.samples
-    axes = [axis_at(plane, sector(plane, normals)[1] - margin) for plane in (first, turned(first, np.pi))]
+    axes = [axis_at(plane, sector(plane, normals)[1] - margin) for plane in (first, turn_plane(first, np.pi))]
     rows = ledger.look(np.stack(axes))
     free = ledger.reason[rows] == FREE
     value = np.where(free | ~free.any(), ledger.values[rows].min(axis=1), np.inf)
     return np.asarray(axes[int(np.argmin(value))])
 
 
-def mean_normal(ledger: Ledger) -> Array:
+def mean_normal(ledger: AxisTable) -> Array:
     """The mean normal as an axis, (3,): what a shop does without thinking; it may be forbidden.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     return ledger.feasibility.normals.mean
 
 
-def by_roman(ledger: Ledger) -> list[Candidate]:
+def by_roman(ledger: AxisTable) -> list[CountedAxis]:
     """Roman's rule as a search of its own: its axis with its value, or nothing where that axis is forbidden.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     return _alone(ledger, roman_axis(ledger))
 
 
-def by_mean_normal(ledger: Ledger) -> list[Candidate]:
+def by_mean_normal(ledger: AxisTable) -> list[CountedAxis]:
     """The mean normal as a search of its own: with its value, or nothing where that axis is forbidden.
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : AxisTable
     """
     return _alone(ledger, mean_normal(ledger))
 
 
-def _alone(ledger: Ledger, axis: Array) -> list[Candidate]:
+def _alone(ledger: AxisTable, axis: Array) -> list[CountedAxis]:
     row = ledger.look(axis[None]).start
-    return [counted(ledger, row)] if ledger.reason[row] == FREE else []
+    return [count_row(ledger, row)] if ledger.reason[row] == FREE else []

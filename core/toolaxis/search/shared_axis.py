@@ -12,9 +12,9 @@ from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.direction_grid import own_frame, ring, spiral
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.fixed_axis import Task
-from toolaxis.search.local_search import counted
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.local_search import count_row
 
 Array = NDArray[np.float64]
 
@@ -28,12 +28,12 @@ _WALKED, STEPS, _MOST_STEPS = 2, tuple(radians(angle) for angle in (1.2, 0.6, 0.
 _TRIED, _WORTHWHILE = 2, 1e-4
 
 
-class Pool:
+class SharedAxisSearch:
     """Axes that were looked at for several sub-surfaces, and what all of these cost with each.
 
     Parameters
     ----------
-    tasks : sequence of Task
+    tasks : sequence of FaceProblem
         At least one.
     progress : Progress
 
@@ -44,7 +44,7 @@ class Pool:
         Sum of the sub-surfaces' screening values in their better feeds; inf where one of them forbids the axis.
     """
 
-    def __init__(self, tasks: Sequence[Task], progress: Progress = NO_PROGRESS) -> None:
+    def __init__(self, tasks: Sequence[FaceProblem], progress: Progress = NO_PROGRESS) -> None:
         self.tasks, self.progress = tuple(tasks), progress
         self.axes, self.price = np.empty((0, 3)), np.empty(0)
         self._known: set[int] = set()
@@ -67,7 +67,7 @@ class Pool:
         for task in self.tasks:
             free = np.flatnonzero(np.isfinite(total))
             if len(free):
-                ledger = Ledger(task.feasibility, task.worth, self.progress)
+                ledger = AxisTable(task.feasibility, task.worth, self.progress)
                 with _of(task):
                     ledger.look(axes[free])
                 total[free] += ledger.price
@@ -116,30 +116,30 @@ class Pool:
         total = 0.0
         for task in self.tasks:
             self.progress.check()
-            ledger = Ledger(task.feasibility, task.worth, self.progress)
+            ledger = AxisTable(task.feasibility, task.worth, self.progress)
             with _of(task):
                 ledger.look(axis[None])
-                total += counted(ledger, 0).value
+                total += count_row(ledger, 0).value
         return total
 
 
-def _of(task: Task) -> AbstractContextManager[None]:
+def _of(task: FaceProblem) -> AbstractContextManager[None]:
     """Exceptions that leave the block tell which face they are about."""
     return about(task.worth.face.label)
 
 
-def _refuses(task: Task, axis: Array) -> bool:
+def _refuses(task: FaceProblem, axis: Array) -> bool:
     """Whether a closer look of one sub-surface forbids an axis."""
     with _of(task):
         return task.feasibility.witness(axis) is not None
 
 
-def together(tasks: Sequence[Task], progress: Progress = NO_PROGRESS) -> Array:
+def together(tasks: Sequence[FaceProblem], progress: Progress = NO_PROGRESS) -> Array:
     """Axes that serve all sub-surfaces, the cheapest first, before the passes are proven.
 
     Parameters
     ----------
-    tasks : sequence of Task
+    tasks : sequence of FaceProblem
         One a sub-surface, at least one.
     progress : Progress
 
@@ -164,7 +164,7 @@ def together(tasks: Sequence[Task], progress: Progress = NO_PROGRESS) -> Array:
     middle = normals.mean(axis=0)
     size = float(np.linalg.norm(middle))
     frame = own_frame(normals, unit(middle) if size > 1e-6 else normals[0])
-    pool = Pool(tasks, progress)
+    pool = SharedAxisSearch(tasks, progress)
     pool.look(np.concatenate([frame[2:], spiral(frame, SPACING, pi / 2 if size > 0.3 else pi)]))
     for angle in RINGS:
         near = pool.best(_BEAM, angle)
@@ -175,7 +175,7 @@ def together(tasks: Sequence[Task], progress: Progress = NO_PROGRESS) -> Array:
     return np.array([axis for _, axis in walked]).reshape(-1, 3)
 
 
-def _walked(pool: Pool, axis: Array, value: float) -> tuple[float, tuple[float, ...]]:
+def _walked(pool: SharedAxisSearch, axis: Array, value: float) -> tuple[float, tuple[float, ...]]:
     """The best axis on a walk from one by exact values, and its value: the better one on a ring, or a smaller ring."""
     for angle in STEPS:
         for _ in range(_MOST_STEPS):

@@ -54,7 +54,7 @@ class _Line(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Pace:
+class TimeEstimate:
     """A machine's speed on a face.
 
     Attributes
@@ -217,7 +217,7 @@ class Pace:
         return np.asarray(length / self.speeds(axes) + passes * self.ends)
 
 
-def pace_of(face: Face, tool: Tool, mounting: Mounting | None, feeds: Feeds | None) -> Pace:
+def pace_of(face: Face, tool: Tool, mounting: Mounting | None, feeds: Feeds | None) -> TimeEstimate:
     """The pace of a machine on a face.
 
     Parameters
@@ -232,14 +232,14 @@ def pace_of(face: Face, tool: Tool, mounting: Mounting | None, feeds: Feeds | No
     InvalidInput
         When there is no machine, it does not state all limits, or no feed is given.
     """
-    known = known_machine(mounting)
+    known = require_machine_limits(mounting)
     if feeds is None:
         raise InvalidInput("objective 'time' needs feeds: give toolaxis.feed.fixed_axis_time.Feeds with the programmed "
                            "feed")
-    return Pace(face, tool, known, feeds)
+    return TimeEstimate(face, tool, known, feeds)
 
 
-def known_machine(mounting: Mounting | None) -> Mounting:
+def require_machine_limits(mounting: Mounting | None) -> Mounting:
     """A machine that states all that times need.
 
     Parameters

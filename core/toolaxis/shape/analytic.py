@@ -92,7 +92,7 @@ def _turned(u: Array, rho: Array, z: Array) -> Derivatives:
 
 
 @dataclass(frozen=True)
-class Plane:
+class PlanarSurface:
     """(u, v, 0)."""
 
     u_range: Range = (0.0, 100.0)
@@ -129,7 +129,7 @@ class Plane:
 
 
 @dataclass(frozen=True)
-class Cylinder:
+class CylindricalSurface:
     """(R cos u, R sin u, v), normal outwards."""
 
     radius: float
@@ -167,7 +167,7 @@ class Cylinder:
 
 
 @dataclass(frozen=True)
-class Sphere:
+class SphericalSurface:
     """R (cos v cos u, cos v sin u, sin v), normal outwards; v = -pi/2 and v = pi/2 are poles."""
 
     radius: float
@@ -208,7 +208,7 @@ class Sphere:
 
 
 @dataclass(frozen=True)
-class Cone:
+class ConicalSurface:
     """((R + v sin a) cos u, (R + v sin a) sin u, v cos a), normal outwards.
 
     v runs along the generator, from the apex at -R / sin a.
@@ -259,7 +259,7 @@ class Cone:
 
 
 @dataclass(frozen=True)
-class Torus:
+class ToroidalSurface:
     """((R + r cos v) cos u, (R + r cos v) sin u, r sin v), normal out of the tube."""
 
     major: float

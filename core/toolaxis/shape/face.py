@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.polygons import Slabs, inside, signed_area, slabs
+from toolaxis.numeric.polygons import EdgeIndex, inside, signed_area, slabs
 from toolaxis.shape import measure
 from toolaxis.shape.differential import Curvature, curvatures, degenerate, normals
 from toolaxis.shape.nurbs import NurbsSurface
@@ -169,7 +169,7 @@ class Face:
         return curvatures(d, normals(d, self.flip, self._inward(rows)))
 
     @cached_property
-    def _slabs(self) -> Slabs:
+    def _slabs(self) -> EdgeIndex:
         return slabs(self.trims)
 
     def contains(self, uv: ArrayLike) -> NDArray[np.bool_]:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.clipping import clipped, grouped
-from toolaxis.numeric.knots import distinct_inner, restricted
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
+from toolaxis.numeric.knots import distinct_inner, restrict_spline
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
@@ -106,18 +106,18 @@ def split_at_kinks(face: Face) -> tuple[Face, ...]:
         column = _within(face.outline, 0, strip_u)
         for strip_v in zip((v0, *face.kinks[1]), (*face.kinks[1], v1), strict=True):
             loops = _within(column, 1, strip_v)
-            pieces += [_piece(face, strip_u, strip_v, own) for own in grouped(loops)]
+            pieces += [_piece(face, strip_u, strip_v, own) for own in outer_with_holes(loops)]
     return tuple(replace(piece, label=face.label + letters(k)) for k, piece in enumerate(pieces))
 
 
 def _within(loops: tuple[Array, ...], axis: int, strip: tuple[float, float]) -> tuple[Array, ...]:
-    return clipped(clipped(loops, axis, strip[0], True), axis, strip[1], False)
+    return clip_half_plane(clip_half_plane(loops, axis, strip[0], True), axis, strip[1], False)
 
 
 def _piece(face: Face, strip_u: tuple[float, float], strip_v: tuple[float, float], loops: tuple[Array, ...]) -> Face:
     surface = face.surface
-    knots_u, net = restricted(surface.knots_u, surface.control, surface.degree[0], *strip_u)
-    knots_v, net = restricted(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *strip_v)
+    knots_u, net = restrict_spline(surface.knots_u, surface.control, surface.degree[0], *strip_u)
+    knots_v, net = restrict_spline(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *strip_v)
     own = NurbsSurface(knots_u, knots_v, net.swapaxes(0, 1), surface.degree)
     whole = len(loops) == 1 and len(loops[0]) == 4 and np.isin(loops[0][:, 0], strip_u).all() \
         and np.isin(loops[0][:, 1], strip_v).all()

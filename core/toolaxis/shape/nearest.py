@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 STARTS = 4
 
 
-class Nearest(NamedTuple):
+class NearestPoints(NamedTuple):
     """Nearest points of a face to n points: parameters (n, 2), positions (n, 3) and distances (n,), mm."""
 
     uv: Array
@@ -25,7 +25,7 @@ class Nearest(NamedTuple):
     distance: Array
 
 
-def nearest(face: Face, points: ArrayLike, samples: int = 48) -> Nearest:
+def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
     """The nearest point of a face, its border included, to each point.
 
     Parameters
@@ -38,7 +38,7 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> Nearest:
 
     Returns
     -------
-    Nearest
+    NearestPoints
 
     Raises
     ------
@@ -56,8 +56,8 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> Nearest:
     if inner is None:
         return best
     closer = inner.distance < best.distance
-    return Nearest(*(np.where(closer if x.ndim == 1 else closer[:, None], x, y)
-                     for x, y in zip(inner, best, strict=True)))
+    return NearestPoints(*(np.where(closer if x.ndim == 1 else closer[:, None], x, y)
+                           for x, y in zip(inner, best, strict=True)))
 
 
 def _starts(samples: Array, targets: Array) -> NDArray[np.int64]:
@@ -68,17 +68,17 @@ def _starts(samples: Array, targets: Array) -> NDArray[np.int64]:
     return np.asarray(cKDTree(samples).query(targets, k=count)[1], dtype=np.int64).reshape(len(targets), count)
 
 
-def _answer(face: Face, targets: Array, uv: Array) -> Nearest:
+def _answer(face: Face, targets: Array, uv: Array) -> NearestPoints:
     point = face.evaluate(uv).point
-    return Nearest(uv, point, np.linalg.norm(point - targets, axis=1))
+    return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
 
 
-def _pick(found: list[Nearest]) -> Nearest:
+def _pick(found: list[NearestPoints]) -> NearestPoints:
     row, choice = np.arange(len(found[0].distance)), np.argmin([x.distance for x in found], axis=0)
-    return Nearest(*(np.stack(parts)[choice, row] for parts in zip(*found, strict=True)))
+    return NearestPoints(*(np.stack(parts)[choice, row] for parts in zip(*found, strict=True)))
 
 
-def _from_inside(face: Face, targets: Array, samples: int) -> Nearest | None:
+def _from_inside(face: Face, targets: Array, samples: int) -> NearestPoints | None:
     grid = face.grid(samples, samples)
     if not len(grid):
         return None
@@ -86,7 +86,7 @@ def _from_inside(face: Face, targets: Array, samples: int) -> Nearest | None:
     return _pick([_descended(face, targets, grid[column]) for column in start.T])
 
 
-def _descended(face: Face, targets: Array, uv: Array) -> Nearest:
+def _descended(face: Face, targets: Array, uv: Array) -> NearestPoints:
     """Newton steps down the squared distance, halved until they descend, as long as they stay on the face."""
     u0, u1, v0, v1 = face.bounds
     low, high = np.array([u0, v0]), np.array([u1, v1])
@@ -98,8 +98,8 @@ def _descended(face: Face, targets: Array, uv: Array) -> Nearest:
         if not better.any() and (share < 0.01).all():
             break
         share = np.where(better, 1.0, 0.5 * share)
-        best = Nearest(*(np.where(better if x.ndim == 1 else better[:, None], x, y)
-                         for x, y in zip(found, best, strict=True)))
+        best = NearestPoints(*(np.where(better if x.ndim == 1 else better[:, None], x, y)
+                               for x, y in zip(found, best, strict=True)))
     return best
 
 
@@ -117,7 +117,7 @@ def _newton(face: Face, targets: Array, uv: Array) -> Array:
     return np.asarray(step / np.where(determinant > 0, determinant, np.inf)[:, None])
 
 
-def _from_border(face: Face, targets: Array, samples: int) -> Nearest:
+def _from_border(face: Face, targets: Array, samples: int) -> NearestPoints:
     u0, u1, v0, v1 = face.bounds
     found = []
     for loop in face.outline:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.adjacency import Edge, edges_from_borders
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.edge_matching import matched, sides_of
+from toolaxis.shape.joining.edge_matching import match_edges, sides_of
 from toolaxis.shape.seams import Seam, seam_warnings, seams
 
 Array = NDArray[np.float64]
@@ -112,7 +112,7 @@ class Part:
         if edges is None:
             whole = cls(numbered)
             sides = [side for face in numbered for side in sides_of(face)] if len(numbered) > 1 else []
-            edges = edges_from_borders(numbered, matched(sides, whole.diagonal)) if sides else ()
+            edges = edges_from_borders(numbered, match_edges(sides, whole.diagonal)) if sides else ()
         return cls(numbered, tuple(edges), (body,), source, warnings=seam_warnings(edges))
 
     def __repr__(self) -> str:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from toolaxis.machine.machine import Machine
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
     from toolaxis.tools.tool import Tool
 
 #: The strategy with fixed axes: what is taken unless another one is asked for.
@@ -135,15 +135,15 @@ class Strategy(Protocol):
         """
         return
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """What a sub-surface is machined with, and the proven passes.
 
         Parameters
         ----------
-        task : Task
+        task : FaceProblem
             Its objective is "length" or "passes" where the axis moves.
-        inputs : Inputs
+        inputs : PlanInputs
         start : (3,) array, optional
             The axis for which the sub-surface was cut out of its face; for fixed axes.
 
@@ -162,7 +162,7 @@ class Strategy(Protocol):
         """
         ...
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw what is to be seen of an operation besides its passes, as PNG files.
 
         Parameters
@@ -170,7 +170,7 @@ class Strategy(Protocol):
         plan : Plan
         op : Operation
             With a path where the axis moves.
-        task : Task
+        task : FaceProblem
         folder : Path
         """
         return

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import built_in, compiled
-from toolaxis.numeric.support_functions import Convex
+from toolaxis.numeric.jit import jit, jit_fma_inline
+from toolaxis.numeric.support_functions import ConvexBodies
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.tools.profile import Profile
 
@@ -73,7 +73,7 @@ def solid_pieces(profile: Profile, outlines: dict[str, Array]) -> Array:
     return np.vstack([cutter_piece(profile)[None], *bodies])
 
 
-def convex_pieces(pieces: Array) -> Convex:
+def convex_pieces(pieces: Array) -> ConvexBodies:
     """The pieces as hulls of two discs, tip at the origin, axis along +z: what encloses each of them.
 
     Parameters
@@ -85,10 +85,11 @@ def convex_pieces(pieces: Array) -> Convex:
     centre = np.zeros((count, 2, 3))
     centre[:, 0, 2], centre[:, 1, 2] = pieces[:, 4] + pieces[:, 1], pieces[:, 5]
     ball = np.stack([pieces[:, 1], np.zeros(count)], axis=1)
-    return Convex(centre, np.tile([0.0, 0.0, 1.0], (count, 2, 1)), pieces[:, [0, 6]], ball, np.zeros((count, 3, 3)))
+    return ConvexBodies(centre, np.tile([0.0, 0.0, 1.0], (count, 2, 1)), pieces[:, [0, 6]], ball,
+                        np.zeros((count, 3, 3)))
 
 
-@built_in
+@jit_fma_inline
 def piece_distance(piece: Array | tuple[float, ...], rho: float, z: float) -> tuple[float, float, float, float]:
     """Signed distance of a meridian point from a convex piece, its slopes along rho and z, and its curvature.
 
@@ -148,7 +149,7 @@ class Distance(NamedTuple):
     gradient: Array
 
 
-@compiled
+@jit
 def _nearest_piece(pieces: Array, rho: Array, z: Array, out: Array) -> None:
     for k in range(rho.shape[0]):
         out[k, 0] = np.inf

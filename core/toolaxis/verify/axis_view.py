@@ -20,7 +20,7 @@ _REACH = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class MaterialView:
     """What is left on the faces of an operation, in square cells of a plane.
 
     Attributes
@@ -41,7 +41,7 @@ class View:
 
 
 def view_along(maps: Sequence[SurfaceMap], x: ArrayLike, y: ArrayLike, origin: ArrayLike,
-               most: int = MOST_CELLS) -> View:
+               most: int = MOST_CELLS) -> MaterialView:
     """The maps of an operation's faces in a plane.
 
     Parameters
@@ -87,15 +87,15 @@ def view_along(maps: Sequence[SurfaceMap], x: ArrayLike, y: ArrayLike, origin: A
         np.maximum.at(cells, index, value)
         cells[np.flatnonzero(empty)[found]] = value[near[found]]
         views.append(np.where(cells == -np.inf, np.nan, cells).reshape(rows, columns).astype(np.float32))
-    return View(low, cell, *views)
+    return MaterialView(low, cell, *views)
 
 
-def coarser(view: View, most: int) -> View:
+def coarser(view: MaterialView, most: int) -> MaterialView:
     """A view in larger cells, the greatest value of the smaller ones in each.
 
     Parameters
     ----------
-    view : View
+    view : MaterialView
     most : int
         About how many cells.
     """
@@ -111,4 +111,4 @@ def coarser(view: View, most: int) -> View:
         most_of = padded.reshape(high // step, step, wide // step, step).max(axis=(1, 3))
         return np.where(most_of == -np.inf, np.nan, most_of).astype(np.float32)
 
-    return View(view.corner, view.cell * step, _pooled(view.scallop), _pooled(view.gouge))
+    return MaterialView(view.corner, view.cell * step, _pooled(view.scallop), _pooled(view.gouge))

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 STEP, _PIECES = 0.25, 64
 
 
-class Line(NamedTuple):
+class BorderLoop(NamedTuple):
     """A loop as points no farther apart than `STEP`: parameters, places, and way to the next along the loop, mm."""
 
     uv: Array
@@ -23,7 +23,7 @@ class Line(NamedTuple):
     way: Array
 
 
-def line_of(face: Face, loop: Array) -> Line:
+def line_of(face: Face, loop: Array) -> BorderLoop:
     """A trim loop of a face as a line.
 
     Parameters
@@ -33,10 +33,10 @@ def line_of(face: Face, loop: Array) -> Line:
     """
     uv = loop_points(face, loop, STEP)
     point = face.evaluate(uv).point
-    return Line(uv, point, np.cumsum(np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)))
+    return BorderLoop(uv, point, np.cumsum(np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)))
 
 
-def on_border(face: Face, foot: Array, lines: list[Line], near: float) -> tuple[Array, Array]:
+def on_border(face: Face, foot: Array, lines: list[BorderLoop], near: float) -> tuple[Array, Array]:
     """Parameters of the nearest point of the border to each foot, and the border's direction there.
 
     Parameters
@@ -44,7 +44,7 @@ def on_border(face: Face, foot: Array, lines: list[Line], near: float) -> tuple[
     face : Face
     foot : (n, 3) array
         mm
-    lines : list of Line
+    lines : list of BorderLoop
         The face's loops.
     near : float
         Feet farther than that from the border need not be answered well, mm.

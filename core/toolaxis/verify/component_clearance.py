@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.component_clearance_numpy import clear_numpy
 from toolaxis.verify.linear_motions import Hierarchy, Tile, Tiles, floors, near_groups
 from toolaxis.verify.revolved_solids import reach_of
-from toolaxis.verify.sample_cells import Cells, ball_around, face_cells, joined, owned, split
+from toolaxis.verify.sample_cells import SampleCells, ball_around, face_cells, merge_cells, share_cells, split
 from toolaxis.verify.spatial_blocks import Blocks, blocks_of, in_chunks
 from toolaxis.verify.swept_solid import LOOK, least_over_motion, moment
 
@@ -68,7 +68,7 @@ class Clearance:
     uncertainty: float
 
 
-class Tables(NamedTuple):
+class ClearanceTables(NamedTuple):
     """What is known of motions: groups, how far the tool goes on each, mm, and where each arrives."""
 
     groups: Hierarchy
@@ -76,8 +76,8 @@ class Tables(NamedTuple):
     arrival: Index
 
 
-@compiled
-def _clear_block(body: Body, tables: Tables, block: tuple[Array, int, int], out: tuple[Array, Index, Array],
+@jit
+def _clear_block(body: Body, tables: ClearanceTables, block: tuple[Array, int, int], out: tuple[Array, Index, Array],
                  limit: float) -> None:
     """Distances of one block of points from all motions; those above the limit stay as they are."""
     solids, motion = body
@@ -104,7 +104,7 @@ def _clear_block(body: Body, tables: Tables, block: tuple[Array, int, int], out:
                         _approach((solids[j], motion), (k, tables.arrival[k]), point, (value, by), i)
 
 
-@compiled
+@jit
 def _approach(body: Body, which: tuple[int, int], point: Array, out: tuple[Array, Index], i: int) -> None:
     """Distance of point i from motion which[0], which arrives at which[1], where it is less than what is known."""
     solid, motion = body
@@ -119,8 +119,8 @@ def _approach(body: Body, which: tuple[int, int], point: Array, out: tuple[Array
             by[i] = arrival
 
 
-@compiled
-def _clear(body: Body, tables: Tables, blocks: tuple[Array, Index, Index],
+@jit
+def _clear(body: Body, tables: ClearanceTables, blocks: tuple[Array, Index, Index],
            out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
     """Distances of the points of blocks levels[2] up to levels[3], true where within a margin of the least so far."""
     ball, first, which = blocks
@@ -174,12 +174,12 @@ class _Search:
         floors(self.solids, tile.groups, balls, least)
         return least
 
-    def look(self, cells: Cells, blocks: Blocks, *, even_equal: bool = False) -> Cells:
+    def look(self, cells: SampleCells, blocks: Blocks, *, even_equal: bool = False) -> SampleCells:
         """Measure cells; those that may stand for a place that is nearer than the least distance known then.
 
         Parameters
         ----------
-        cells : Cells
+        cells : SampleCells
         blocks : Blocks
             Of their centres.
         even_equal : bool
@@ -195,7 +195,7 @@ class _Search:
         rows = np.flatnonzero((value - cells.radius <= self.best.distance) & (by >= 0))
         return replace(cells.rows(rows), value=value[rows])
 
-    def _distances(self, cells: Cells, blocks: Blocks) -> tuple[Array, Index]:
+    def _distances(self, cells: SampleCells, blocks: Blocks) -> tuple[Array, Index]:
         """Distance of each cell's centre, true where it may be near, and the location at which the motion arrives."""
         order = blocks.order
         value, by = np.full(len(order), FAR), np.full(len(order), -1, dtype=np.int64)
@@ -215,7 +215,7 @@ class _Search:
         """Lower distances to those from a tile of motions, as far as they may come within a margin of the least."""
         motions = tile.motions
         body = (self.solids, (motions.start, motions.step, motions.axis, motions.turn))
-        tables = Tables(tile.groups, tile.slack, motions.arrival)
+        tables = ClearanceTables(tile.groups, tile.slack, motions.arrival)
         least = self._floors(tile, blocks.ball)
         which = np.argsort(least, kind="stable")  # the nearest first: with their distance most others are passed over
         kernel = _clear if _compiled.available else clear_numpy
@@ -226,24 +226,24 @@ class _Search:
 
         in_chunks(work, int((least <= self.best.distance + margin).sum()), *self.workers)
 
-    def first_look(self) -> Cells:
+    def first_look(self) -> SampleCells:
         """Cells of whole faces, the nearest faces first, as long as one may come nearer than what is known."""
         balls = np.array([ball_around(face, CELL) for face in self.faces])
         least = self.floors(balls)
-        parts: dict[int, Cells] = {}
+        parts: dict[int, SampleCells] = {}
         for owner in np.argsort(least, kind="stable"):
             if parts and least[owner] > self.best.distance:
                 break
             made = face_cells(self.faces[owner], CELL)
-            parts[int(owner)] = self.look(owned(made.cells, int(owner)), made.blocks, even_equal=True)
+            parts[int(owner)] = self.look(share_cells(made.cells, int(owner)), made.blocks, even_equal=True)
         return self.near([parts[owner] for owner in sorted(parts)])
 
-    def near(self, parts: Sequence[Cells]) -> Cells:
+    def near(self, parts: Sequence[SampleCells]) -> SampleCells:
         """Of cells that were looked at those that still may stand for a nearer place."""
-        cells = joined(parts)
+        cells = merge_cells(parts)
         return cells.rows(np.flatnonzero(cells.value - cells.radius <= self.best.distance))
 
-    def closer_look(self, cells: Cells) -> Cells:
+    def closer_look(self, cells: SampleCells) -> SampleCells:
         """The pieces of cells, measured some at a time."""
         parts = []
         for low in range(0, len(cells), TILE):

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import dot, unit
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import Nearest, nearest
-from toolaxis.verify.borders import STEP, Line, in_parameters, line_of, on_border
+from toolaxis.shape.nearest import NearestPoints, nearest
+from toolaxis.verify.borders import STEP, BorderLoop, in_parameters, line_of, on_border
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def _behind(other: Face, rays: tuple[Array, Array, Array], reach: float) -> End:
     rows = rows[convex]
     if len(rows):
         end.there[rows] = True
-        at = Nearest(*(values[steep][convex] for values in found))
+        at = NearestPoints(*(values[steep][convex] for values in found))
         end.point[:, rows], end.outwards[:, rows] = _stations(other, at, (foot[rows], normal[rows], depth[rows]),
                                                                  reach)
     return end
@@ -126,7 +126,7 @@ def _goes_down(other: Face, point: Array, down: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _stations(other: Face, at: Nearest, rays: tuple[Array, Array, Array], reach: float) -> tuple[Array, Array]:
+def _stations(other: Face, at: NearestPoints, rays: tuple[Array, Array, Array], reach: float) -> tuple[Array, Array]:
     """Points on a face and its normals there, nearest to places down rays: their feet first, (stations, k, 3) each."""
     foot, normal, depth = rays
     outwards = other.normal(at.uv)
@@ -169,7 +169,7 @@ def _open(face: Face, rays: tuple[Array, Array], others: tuple[Face, ...], reach
     return end
 
 
-def _continued(point: Array, lines: list[Line], others: tuple[Face, ...]) -> NDArray[np.bool_]:
+def _continued(point: Array, lines: list[BorderLoop], others: tuple[Face, ...]) -> NDArray[np.bool_]:
     """Whether the part goes on beyond points of a border: on another face, or on the same beyond a seam."""
     from scipy.spatial import cKDTree
 

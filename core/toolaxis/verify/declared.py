@@ -16,7 +16,7 @@ Bools = NDArray[np.bool_]
 STRIP = 0.01
 
 
-class Declared:
+class DeclaredZones:
     """Declared zones, and the strip around them.
 
     Parameters

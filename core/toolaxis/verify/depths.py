@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
 from toolaxis.verify.convex_edges import depth_at_edges
-from toolaxis.verify.material_removal import Remains
-from toolaxis.verify.seams import Steps, steps_of, taken_off
-from toolaxis.verify.task import Task
+from toolaxis.verify.material_removal import RemainingMaterial
+from toolaxis.verify.seams import SeamSteps, depth_taken_off, steps_of
+from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.thin_walls import wall_depth
 
 Array = NDArray[np.float64]
@@ -28,15 +28,15 @@ class Depths:
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     cut : callable
         `removal` with everything but rays and their depth given.
     """
 
-    def __init__(self, task: Task, cut: Callable[..., Remains]) -> None:
+    def __init__(self, task: VerificationTask, cut: Callable[..., RemainingMaterial]) -> None:
         self.task, self.cut = task, cut
 
-    def correct(self, face: Face, rays: tuple[Array, Array], left: Remains) -> None:
+    def correct(self, face: Face, rays: tuple[Array, Array], left: RemainingMaterial) -> None:
         """Replace the depths of rays that are laid bare deeper than allowed by those below the part's surface.
 
         Parameters
@@ -45,7 +45,7 @@ class Depths:
             On which the rays stand.
         rays : (m, 3) and (m, 3) array
             Points of the face, mm, and normals out of the material.
-        left : Remains
+        left : RemainingMaterial
             Of these rays; its gouges are changed.
         """
         task = self.task
@@ -68,7 +68,7 @@ class Depths:
     def _laid_bare(self, feet: Array, ways: Array, depth: Array) -> Array:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
-    def _in_walls(self, rays: tuple[Array, Array], left: Remains, deep: NDArray[np.int64],
+    def _in_walls(self, rays: tuple[Array, Array], left: RemainingMaterial, deep: NDArray[np.int64],
                   asked: NDArray[np.bool_]) -> None:
         """Follow rays in thin walls to their middle only: each half belongs to its own side."""
         foot, normal = rays[0][asked] + self.task.allowance * rays[1][asked], rays[1][asked]
@@ -84,7 +84,7 @@ class Depths:
         if not len(point):
             return np.zeros(0)
         lower = (*self.task.targets, *self.task.skin)
-        return taken_off(steps_of(face, lower, point), point)
+        return depth_taken_off(steps_of(face, lower, point), point)
 
     def missed_behind_edges(self, owner: NDArray[np.int64], point: Array) -> Array:
         """By how much faces behind convex edges stand out over those that the cutter may touch, (n,) mm.
@@ -99,7 +99,7 @@ class Depths:
         off = np.zeros(len(point))
         for k in np.unique(owner):
             rows = owner == k
-            off[rows] = taken_off(self._behind[int(k)], point[rows])
+            off[rows] = depth_taken_off(self._behind[int(k)], point[rows])
         return off
 
     def missed_near(self, face: Face, point: Array) -> bool:
@@ -112,9 +112,9 @@ class Depths:
             mm
         """
         steps = steps_of(face, (*self.task.targets, *self.task.skin), point[None])
-        return bool(taken_off(steps, point[None])[0] > 0.0)
+        return bool(depth_taken_off(steps, point[None])[0] > 0.0)
 
     @cached_property
-    def _behind(self) -> tuple[Steps, ...]:
+    def _behind(self) -> tuple[SeamSteps, ...]:
         lower = (*self.task.targets, *self.task.skin)
         return tuple(steps_of(face, lower) for face in self.task.touching)

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 Made = TypeVar("Made")
 
 
-class Kept(Generic[Made]):
+class SizedCache(Generic[Made]):
     """Things by their keys, no more of them than a number of bytes.
 
     Parameters

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.jit import compiled, inlined
+from toolaxis.numeric.jit import jit, jit_inline
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.verify.revolved_solids import meridian
 
@@ -165,7 +165,7 @@ class Tiles:
         lean = np.linalg.norm(motions.axis + 0.5 * motions.turn, axis=1)
         sway = np.linalg.norm(motions.turn, axis=1) / lean
         way = np.linalg.norm(motions.step, axis=1)
-        return Tile(motions, grouped(motions, self._reach), 0.5 * way + 0.5 * sway * self._reach, sway)
+        return Tile(motions, group_motions(motions, self._reach), 0.5 * way + 0.5 * sway * self._reach, sway)
 
     def _motions(self, low: int, high: int) -> Motions:
         if len(self._tip) == 1:
@@ -218,7 +218,7 @@ def _pieces(way: Array, rate: Array, reach: float) -> tuple[Index, float]:
     return pieces, float((acceleration / (8.0 * pieces**2)).max())
 
 
-def grouped(motions: Motions, reach: float) -> Hierarchy:
+def group_motions(motions: Motions, reach: float) -> Hierarchy:
     """Balls around neighbouring motions, and around neighbouring balls.
 
     Parameters
@@ -267,7 +267,7 @@ def _mean(total: Array, instead: Array) -> Array:
     return np.where(size > 1e-6, total / np.maximum(size, 1e-6), instead)
 
 
-@inlined
+@jit_inline
 def bound(solids: Array, row: Array, ball: Array) -> float:
     """Lower bound of the distance between a ball of points and all motions of a group."""
     w0, w1, w2 = ball[0] - row[0], ball[1] - row[1], ball[2] - row[2]
@@ -279,7 +279,7 @@ def bound(solids: Array, row: Array, ball: Array) -> float:
     return nearest - row[3] - row[7] - ball[3]
 
 
-@compiled
+@jit
 def near_groups(solids: Array, groups: Hierarchy, ball: Array, lever: float, near: tuple[Index, Array]) -> int:
     """Collect the groups that may come within a lever of a ball, and bounds of their distances; how many they are."""
     which, least = near
@@ -295,7 +295,7 @@ def near_groups(solids: Array, groups: Hierarchy, ball: Array, lever: float, nea
     return count
 
 
-@compiled
+@jit
 def floors(solids: Array, groups: Hierarchy, balls: Array, out: Array) -> None:
     """Lower bounds of the distances of balls of points from all motions; each lowers what stands in the output."""
     for b in range(balls.shape[0]):

@@ -5,19 +5,19 @@ from dataclasses import replace
 from toolaxis.progress import Progress
 from toolaxis.verify.axis_limits import machine_faults
 from toolaxis.verify.component_clearance import Clearance
-from toolaxis.verify.machine_motion import Rig, least_room
-from toolaxis.verify.task import Task, motion_of, spot
+from toolaxis.verify.machine_motion import MachineModel, least_room
+from toolaxis.verify.task import VerificationTask, motion_of, spot
 
 #: What is judged, and what rounding of the cutter locations may cost there, mm.
 KINDS, _ROUNDING = ("machine", "index move", "tool on index move"), 1e-3
 
 
-def machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
+def machine_rooms(task: VerificationTask, progress: Progress) -> dict[str, Clearance]:
     """How near table and spindle come to each other, part and tool: along the passes, and on the index move before.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     progress : Progress
 
     Returns
@@ -30,8 +30,8 @@ def machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
         return {}
     if len(task.rotary) != len(machine.rotary) or machine_faults(machine, task.tips, task.axes, None, None):
         return {}
-    rig = Rig(machine, task.place, task.tool_length, task.profile, task.outlines,
-              (*task.targets, *task.skin, *task.touching, *task.surroundings))
+    rig = MachineModel(machine, task.place, task.tool_length, task.profile, task.outlines,
+                       (*task.targets, *task.skin, *task.touching, *task.surroundings))
     if not rig.judged:
         return {}
     needed = task.tolerance.holder_clearance
@@ -50,12 +50,12 @@ def machine_rooms(task: Task, progress: Progress) -> dict[str, Clearance]:
     return found
 
 
-def meeting_reasons(task: Task, name: str, room: Clearance) -> list[str]:
+def meeting_reasons(task: VerificationTask, name: str, room: Clearance) -> list[str]:
     """What comes too near, in words.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     name : str
         One of `KINDS`.
     room : Clearance

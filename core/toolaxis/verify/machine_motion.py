@@ -21,7 +21,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.component_clearance import FAR, Clearance
-from toolaxis.verify.rigid_bodies import Thing, body_thing, cutter_line, turned_thing
+from toolaxis.verify.rigid_bodies import RigidBody, body_thing, cutter_line, revolve_rigid_body
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ _GRID, _TILE = 60, 50_000
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class MachineModel:
     """A machine with a part on its table and a tool in its spindle.
 
     Attributes
@@ -65,21 +65,21 @@ class Rig:
     faces: tuple[Face, ...]
 
     @cached_property
-    def bodies(self) -> tuple[Thing, ...]:
+    def bodies(self) -> tuple[RigidBody, ...]:
         """The machine's own bodies."""
         return tuple(body_thing(body) for body in self.machine.bodies)
 
     @cached_property
-    def tool(self) -> tuple[Thing, ...]:
+    def tool(self) -> tuple[RigidBody, ...]:
         """Cutter, shank and holder in the spindle."""
         spindle = np.asarray(self.machine.spindle)
         tip = np.asarray(self.machine.gauge) - self.tool_length * spindle
         last = self.machine.head[-1].name if self.machine.head else self.machine.linear[-1].name
-        return tuple(turned_thing(name, last, line, tip, spindle)
+        return tuple(revolve_rigid_body(name, last, line, tip, spindle)
                      for name, line in {"cutter": cutter_line(self.profile), **self.outlines}.items())
 
     @cached_property
-    def part(self) -> Thing:
+    def part(self) -> RigidBody:
         """The faces of the part on the table."""
         found, labels = [np.empty((0, 3))], []
         for face in self.faces:
@@ -87,19 +87,19 @@ class Rig:
             labels += [f"face {face.label}"] * len(found[-1])
         apart = max((float(np.sqrt(face.area)) / _GRID for face in self.faces), default=0.0)
         points = np.concatenate(found) @ self.place[:3, :3].T + self.place[:3, 3]
-        return Thing("part", self._carrier, points, apart, None, tuple(labels))
+        return RigidBody("part", self._carrier, points, apart, None, tuple(labels))
 
     @property
     def _carrier(self) -> str:
         """What carries the part."""
         return self.machine.table[0].name if self.machine.table else BED
 
-    def beside_part(self, thing: Thing) -> bool:
+    def beside_part(self, thing: RigidBody) -> bool:
         """Whether a thing stands on the table's side of the linear axes.
 
         Parameters
         ----------
-        thing : Thing
+        thing : RigidBody
         """
         return thing.carried in (BED, *(axis.name for axis in self.machine.table))
 
@@ -190,12 +190,12 @@ class Rig:
             rows[k, :3], rows[k, 3:] = branches[best, :3], stand
         return rows
 
-    def placed(self, thing: Thing, joints: Array) -> tuple[Array, Array]:
+    def placed(self, thing: RigidBody, joints: Array) -> tuple[Array, Array]:
         """The rotation (3, 3) and the shift (3,) that bring a thing to where it is at joint coordinates.
 
         Parameters
         ----------
-        thing : Thing
+        thing : RigidBody
         joints : (3 + m,) array
         """
         table, head = list(self.machine.table), list(self.machine.head)
@@ -221,12 +221,12 @@ class Rig:
         return len({self.beside_part(one) for one in self.bodies}) == 2
 
     @cached_property
-    def tool_and_part(self) -> list[tuple[Thing, Thing]]:
+    def tool_and_part(self) -> list[tuple[RigidBody, RigidBody]]:
         """Points of the part against the tool: along passes material removal judges that."""
         return [(self.part, one) for one in self.tool if len(self.part.points)]
 
     @cached_property
-    def pairs(self) -> list[tuple[Thing, Thing]]:
+    def pairs(self) -> list[tuple[RigidBody, RigidBody]]:
         """What else is held apart: points of the first against the second."""
         head = [one for one in self.bodies if not self.beside_part(one)]
         table = [one for one in self.bodies if self.beside_part(one)]
@@ -240,13 +240,13 @@ class Rig:
         return found + [(some, one) for one in table if one.carried != self._carrier for some in part]
 
 
-def least_room(rig: Rig, joints: Array, needed: float, pairs: Sequence[tuple[Thing, Thing]],
+def least_room(rig: MachineModel, joints: Array, needed: float, pairs: Sequence[tuple[RigidBody, RigidBody]],
                progress: Progress = NO_PROGRESS) -> Clearance:
     """Where anything comes nearest to anything else along straight motions of the joints.
 
     Parameters
     ----------
-    rig : Rig
+    rig : MachineModel
     joints : (n, 3 + m) array
         mm and rad.
     needed : float
@@ -285,7 +285,7 @@ def least_room(rig: Rig, joints: Array, needed: float, pairs: Sequence[tuple[Thi
     return worst
 
 
-def _apart(rig: Rig, cloud: Thing, body: Thing, joints: Array) -> tuple[float, int, Array]:
+def _apart(rig: MachineModel, cloud: RigidBody, body: RigidBody, joints: Array) -> tuple[float, int, Array]:
     """The least distance of points from a body, mm, which one has it, and where that is in the part's frame."""
     assert body.inside is not None
     (turn, shift), (other, aside) = rig.placed(cloud, joints), rig.placed(body, joints)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
-from toolaxis.verify.material_removal import Remains
+from toolaxis.verify.material_removal import RemainingMaterial
 from toolaxis.verify.rays import Rays, face_rays, patch_around
 
 Array = NDArray[np.float64]
@@ -20,7 +20,7 @@ _PER_RAY = ("uv", "point", "weight", "border", "remaining", "gouge", "cut_by", "
 
 
 @dataclass(frozen=True)
-class Place:
+class MapPoint:
     """A place on a face and the value there.
 
     Attributes
@@ -44,7 +44,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Zone:
+class MapZone:
     """A connected zone of a face that is left above the limit.
 
     Attributes
@@ -86,7 +86,7 @@ class SurfaceMap:
         Index of the cutter location whose motion did it; -1 where none did.
     spacing : float
         Distance of neighbouring rays, mm.
-    worst_scallop, worst_gouge : Place or None
+    worst_scallop, worst_gouge : MapPoint or None
         The worst found by looking more closely around the worst rays; None without a finite height or without a gouge.
     declared : (m,) array of bool
         Whether the ray stands in a zone that is declared as left to a clean-up tool: no height is asked for there.
@@ -102,8 +102,8 @@ class SurfaceMap:
     cut_by: NDArray[np.int64]
     gouged_by: NDArray[np.int64]
     spacing: float
-    worst_scallop: Place | None
-    worst_gouge: Place | None
+    worst_scallop: MapPoint | None
+    worst_gouge: MapPoint | None
     declared: NDArray[np.bool_]
 
     @property
@@ -158,7 +158,7 @@ class SurfaceMap:
         slot = np.clip(np.searchsorted(edges, self.remaining, side="left") - 1, 0, len(edges) - 1)
         return np.asarray(np.bincount(slot, weights=self.weight, minlength=len(edges)), dtype=np.float64)
 
-    def worst(self, what: str, count: int = 10) -> tuple[Place, ...]:
+    def worst(self, what: str, count: int = 10) -> tuple[MapPoint, ...]:
         """The worst places, no two closer than eight spacings, the worst first.
 
         Parameters
@@ -170,7 +170,7 @@ class SurfaceMap:
         value = np.where(self.declared, 0.0, self.remaining) if what == "remaining" else self.gouge
         by = self.cut_by if what == "remaining" else self.gouged_by
         refined = self.worst_scallop if what == "remaining" else self.worst_gouge
-        found: list[Place] = []
+        found: list[MapPoint] = []
         if refined is not None and not (what == "remaining" and np.isinf(value).any()):
             found.append(refined)
         for i in np.argsort(-value, kind="stable"):
@@ -181,7 +181,7 @@ class SurfaceMap:
                 found.append(place_at(self.face, self.uv[i], self.point[i], (float(value[i]), int(by[i]))))
         return tuple(found)
 
-    def zones(self, limit: float) -> tuple[Zone, ...]:
+    def zones(self, limit: float) -> tuple[MapZone, ...]:
         """Connected zones left above a limit, declared ones aside, the largest first.
 
         Parameters
@@ -202,19 +202,19 @@ class SurfaceMap:
         zones = [self._zone(above[label == k]) for k in range(number)]
         return tuple(sorted(zones, key=lambda zone: (-zone.area, zone.low)))
 
-    def _zone(self, rows: NDArray[np.int64]) -> Zone:
+    def _zone(self, rows: NDArray[np.int64]) -> MapZone:
         low, high = self.point[rows].min(axis=0), self.point[rows].max(axis=0)
         lost = np.isinf(self.remaining[rows]).any()
-        return Zone(self.face.label, float(self.weight[rows].sum()), _triple(low), _triple(high),
-                    float(self.remaining[rows].max()), "not reached" if lost else "above the limit",
-                    bool(self.border[rows].any()))
+        return MapZone(self.face.label, float(self.weight[rows].sum()), _triple(low), _triple(high),
+                       float(self.remaining[rows].max()), "not reached" if lost else "above the limit",
+                       bool(self.border[rows].any()))
 
 
 def _triple(row: Array) -> tuple[float, float, float]:
     return float(row[0]), float(row[1]), float(row[2])
 
 
-def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> Place:
+def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> MapPoint:
     """A place from rows of arrays.
 
     Parameters
@@ -226,10 +226,10 @@ def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> P
     found : (float, int)
         Value, mm, and index of the cutter location; -1 where none did it.
     """
-    return Place(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
+    return MapPoint(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
 
 
-def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: float | None = None, *,
+def surface_map(face: Face, judge: Callable[[Array, Array], RemainingMaterial], spacing: float | None = None, *,
                 declared: Declared | None = None, heights: bool = True) -> SurfaceMap:
     """Maps of one face.
 
@@ -255,9 +255,9 @@ def surface_map(face: Face, judge: Callable[[Array, Array], Remains], spacing: f
                       left.gouged_by, rays.spacing, worst_scallop, worst_gouge, aside)
 
 
-def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], Remains],
+def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], RemainingMaterial],
                coarse: tuple[str, Array, NDArray[np.int64]],
-               aside: Declared | None = None) -> Place | None:
+               aside: Declared | None = None) -> MapPoint | None:
     """The worst place, looked for in ever smaller patches around the worst rays, and not where it is aside."""
     what, value, by = coarse
     if value.max() <= 0:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled, inlined
+from toolaxis.numeric.jit import jit, jit_inline
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile
@@ -34,7 +34,7 @@ NUMERICAL = 1e-6
 TILE, _RUN = 4_000, 256
 
 
-class Tables(NamedTuple):
+class RemovalTables(NamedTuple):
     """The cutter, and of its motions: groups, which of them cut, where each arrives, and how far its axis turns."""
 
     solids: Array
@@ -45,7 +45,7 @@ class Tables(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Remains:
+class RemainingMaterial:
     """What is left on each ray.
 
     Attributes
@@ -67,7 +67,7 @@ class Remains:
     uncertainty: float
 
 
-@compiled
+@jit
 def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, place: tuple[int, float]) -> None:
     """Let motion which[0] (cutting or not, arriving at which[2]) act on ray place[0], outside until t = place[1]."""
     solid, motion = body
@@ -88,7 +88,7 @@ def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, plac
             cut_by[i] = arrival
 
 
-@inlined
+@jit_inline
 def _level(found: tuple[float, float], height: float, cutting: bool) -> float:
     """Height below which a motion would change a ray: what remains on it, or minus its gouge where that is deeper."""
     remaining, gouge = found
@@ -124,7 +124,7 @@ class Block(NamedTuple):
     spread: float
 
 
-@compiled
+@jit
 def _block(ray: Array, ball: Array, low: int, high: int) -> Block:
     """What bounds the rays of a block."""
     n0, n1, n2 = 0.0, 0.0, 0.0
@@ -152,7 +152,7 @@ class Span(NamedTuple):
     level: float
 
 
-@compiled
+@jit
 def _span(ray: Array, out: Found, low: int, high: int) -> Span:
     depth, level = 0.0, 0.0
     for i in range(low, high):
@@ -161,7 +161,7 @@ def _span(ray: Array, out: Found, low: int, high: int) -> Span:
     return Span(depth, level)
 
 
-@inlined
+@jit_inline
 def _misses(body: Body, which: tuple[int, float], block: Block, span: Span) -> bool:
     """Whether motion which[0], whose axis turns by which[1], surely stays off all rays of a block in a span.
 
@@ -181,8 +181,8 @@ def _misses(body: Body, which: tuple[int, float], block: Block, span: Span) -> b
     return bool(least - sway * (block.radius + length) > 0.0)
 
 
-@compiled
-def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[Index, int, Array],
+@jit
+def _meet_group(body: Body, tables: RemovalTables, ray: Array, out: Found, near: tuple[Index, int, Array],
                 place: tuple[int, float]) -> None:
     """Let the motions near[0][:near[1]] act on ray place[0]: the closest first, then those it does not rule out.
 
@@ -217,8 +217,8 @@ def _meet_group(body: Body, tables: Tables, ray: Array, out: Found, near: tuple[
         found = (out[0][i], out[1][i])
 
 
-@compiled
-def _remove_block(body: Body, tables: Tables, ray: Array, out: Found, place: tuple[Array, int, int]) -> None:
+@jit
+def _remove_block(body: Body, tables: RemovalTables, ray: Array, out: Found, place: tuple[Array, int, int]) -> None:
     """Let all motions act on one block of rays, nearest groups first."""
     ball, low, high = place
     span = _span(ray, out, low, high)
@@ -245,8 +245,9 @@ def _remove_block(body: Body, tables: Tables, ray: Array, out: Found, place: tup
                 guess = out[0][i]
 
 
-@compiled
-def _remove(body: Body, tables: Tables, rays: tuple[Array, Array, Index], out: Found, part: tuple[int, int]) -> None:
+@jit
+def _remove(body: Body, tables: RemovalTables, rays: tuple[Array, Array, Index], out: Found,
+            part: tuple[int, int]) -> None:
     ray, ball, first = rays
     for b in range(part[0], part[1]):
         _remove_block(body, tables, ray, out, (ball[b], first[b], first[b + 1]))
@@ -301,7 +302,7 @@ class Removal:
         return NUMERICAL + self._tiles.uncertainty
 
     def along(self, rays: tuple[ArrayLike, ArrayLike], *, depth: ArrayLike = 1.0, height: ArrayLike = 10.0,
-              cutting: tuple[int, ...] = (Motion.CUT,)) -> Remains:
+              cutting: tuple[int, ...] = (Motion.CUT,)) -> RemainingMaterial:
         """Remove material and measure what is left along rays.
 
         Parameters
@@ -330,7 +331,7 @@ class Removal:
                 table = np.column_stack([foot[rows], unit(direction[rows]), low[rows], high[rows]])
                 blocks = (np.ascontiguousarray(table), ball[some], first[start:start + TILE + 1] - first[start])
                 self._act(cutting, blocks, rows, found)
-        return Remains(*found, self.uncertainty)
+        return RemainingMaterial(*found, self.uncertainty)
 
     def _within(self, foot: Array, lever: float) -> Index:
         """Rows of the rays whose feet may lie within a distance of the cutter on any motion, mm."""
@@ -354,7 +355,7 @@ class Removal:
         """Hand blocks of rays to the kernel, or to its twin."""
         motions = tile.motions
         body = (self._solid[0], (motions.start, motions.step, motions.axis, motions.turn))
-        tables = Tables(self._solid, tile.groups, np.isin(motions.kind, cutting), motions.arrival, tile.sway)
+        tables = RemovalTables(self._solid, tile.groups, np.isin(motions.kind, cutting), motions.arrival, tile.sway)
 
         def work(part: tuple[int, int]) -> None:
             if _compiled.available:
@@ -374,7 +375,8 @@ def _nothing(count: int) -> Found:
 
 def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: tuple[ArrayLike, ArrayLike], *,
             depth: ArrayLike = 1.0, height: ArrayLike = 10.0, cutting: tuple[int, ...] = (Motion.CUT,),
-            among: tuple[int, ...] | None = None, threads: int = 1, progress: Progress = NO_PROGRESS) -> Remains:
+            among: tuple[int, ...] | None = None, threads: int = 1,
+            progress: Progress = NO_PROGRESS) -> RemainingMaterial:
     """Remove material with a cutter along cutter location data and measure what is left along rays.
 
     Parameters
@@ -398,7 +400,7 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
 
     Returns
     -------
-    Remains
+    RemainingMaterial
 
     Raises
     ------

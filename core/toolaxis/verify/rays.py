@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
-from toolaxis.verify.kept import Kept
+from toolaxis.verify.kept import SizedCache
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def default_spacing(face: Face) -> float:
 
 
 #: The rays of the faces used last, since operations side by side look at the same neighbours.
-_KEPT: Kept[Rays] = Kept(200_000_000, lambda rays: 89 * len(rays.uv))
+_KEPT: SizedCache[Rays] = SizedCache(200_000_000, lambda rays: 89 * len(rays.uv))
 
 
 def face_rays(face: Face, spacing: float | None = None) -> Rays:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.jit import inlined
+from toolaxis.numeric.jit import jit_inline
 from toolaxis.tools.profile import Profile
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ def reach_of(solids: Array) -> float:
     return float(np.hypot(wide, solids[:, 5]).max())
 
 
-@inlined
+@jit_inline
 def meridian(solid: Array, rho: float, z: float) -> tuple[float, float, float]:
     """The greatest of all supporting lines of a solid's meridian at one point, and its slopes along rho and z.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from toolaxis.machine.bodies import Body
+from toolaxis.machine.bodies import MachineBody
 from toolaxis.tools.profile import Profile
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ _BATCH = 256
 
 
 @dataclass(frozen=True, eq=False)
-class Thing:
+class RigidBody:
     """Something rigid on a machine, with all axes at zero.
 
     Attributes
@@ -48,19 +48,19 @@ class Thing:
     labels: tuple[str, ...] = ()
 
 
-def body_thing(body: Body) -> Thing:
+def body_thing(body: MachineBody) -> RigidBody:
     """A body of a machine with points on its skin.
 
     Parameters
     ----------
-    body : Body
+    body : MachineBody
         A box, a cylinder, or the rounded hull of points.
     """
     if body.kind == "cylinder":
         low, high = body.points
         height = float(np.linalg.norm(high - low))
         line = np.array([[body.radius, 0.0], [body.radius, height]])
-        return turned_thing(body.name, body.carried, line, low, (high - low) / height)
+        return revolve_rigid_body(body.name, body.carried, line, low, (high - low) / height)
     corners = body.points
     if body.kind == "box":
         corners = np.array(np.meshgrid(*np.sort(body.points, axis=0).T)).reshape(3, -1).T
@@ -81,7 +81,7 @@ def body_thing(body: Body) -> Thing:
                 break
         return np.asarray(found - body.radius)
 
-    return Thing(body.name, body.carried, points, spacing, _inside)
+    return RigidBody(body.name, body.carried, points, spacing, _inside)
 
 
 def _from_triangles(points: Array, triangles: Array) -> Array:
@@ -115,7 +115,7 @@ def _on_triangles(triangles: Array) -> tuple[Array, float]:
     return np.einsum("nw,kwc->knc", weights, triangles).reshape(-1, 3), longest / count
 
 
-def turned_thing(name: str, carried: str, line: Array, foot: Array, axis: Array) -> Thing:
+def revolve_rigid_body(name: str, carried: str, line: Array, foot: Array, axis: Array) -> RigidBody:
     """A solid of revolution with points on its skin.
 
     Parameters
@@ -145,7 +145,7 @@ def turned_thing(name: str, carried: str, line: Array, foot: Array, axis: Array)
         radius = np.linalg.norm(away - height[:, None] * axis, axis=1)
         return _from_line(corners, np.stack([radius, height], axis=1))
 
-    return Thing(name, carried, points, max(apart, 2 * np.pi * float(line[:, 0].max()) / _AROUND), _inside)
+    return RigidBody(name, carried, points, max(apart, 2 * np.pi * float(line[:, 0].max()) / _AROUND), _inside)
 
 
 def _from_line(corners: Array, places: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
-from toolaxis.verify.kept import Kept
+from toolaxis.verify.kept import SizedCache
 from toolaxis.verify.spatial_blocks import Blocks, blocks_of
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ MOST = 200
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
+class SampleCells:
     """Cells of faces.
 
     Attributes
@@ -52,36 +52,36 @@ class Cells:
     def __len__(self) -> int:
         return len(self.owner)
 
-    def rows(self, which: NDArray[np.int64]) -> "Cells":
+    def rows(self, which: NDArray[np.int64]) -> "SampleCells":
         """Some of the cells.
 
         Parameters
         ----------
         which : array of int
         """
-        return Cells(*(getattr(self, one.name)[which] for one in fields(self)))
+        return SampleCells(*(getattr(self, one.name)[which] for one in fields(self)))
 
 
-class FaceCells(NamedTuple):
+class SampledFace(NamedTuple):
     """Cells over one face and its borders.
 
     Attributes
     ----------
-    cells : Cells
+    cells : SampleCells
         All of owner 0.
     blocks : Blocks
         Their centres in blocks of neighbours.
     """
 
-    cells: Cells
+    cells: SampleCells
     blocks: Blocks
 
 
-_KEPT: Kept[FaceCells] = Kept(100_000_000, lambda one: 150 * len(one.cells))
+_KEPT: SizedCache[SampledFace] = SizedCache(100_000_000, lambda one: 150 * len(one.cells))
 _AROUND: WeakKeyDictionary[Face, dict[float, Array]] = WeakKeyDictionary()
 
 
-def face_cells(face: Face, size: float) -> FaceCells:
+def face_cells(face: Face, size: float) -> SampledFace:
     """Cells over a face and its borders; those of the faces used last are kept.
 
     Parameters
@@ -112,7 +112,7 @@ def ball_around(face: Face, size: float) -> Array:
     return known[size]
 
 
-def _made(face: Face, size: float) -> FaceCells:
+def _made(face: Face, size: float) -> SampledFace:
     u0, u1, v0, v1 = face.bounds
     d = face.evaluate(face.grid(16, 16))
     wide, tall = (float(np.linalg.norm(x, axis=1).max()) if len(x) else 1.0 for x in (d.su, d.sv))
@@ -126,7 +126,7 @@ def _made(face: Face, size: float) -> FaceCells:
     count = len(inner) + len(line)
     cells = _cells((face,), np.zeros(count, dtype=np.int64), np.vstack([inner, line]), np.vstack([half, way]),
                    np.arange(count) >= len(inner))
-    return FaceCells(cells, blocks_of(cells.point))
+    return SampledFace(cells, blocks_of(cells.point))
 
 
 def _loop_pieces(face: Face, size: float) -> tuple[Array, Array]:
@@ -146,7 +146,7 @@ def _loop_pieces(face: Face, size: float) -> tuple[Array, Array]:
 
 
 def _cells(faces: tuple[Face, ...], owner: NDArray[np.int64], uv: Array, half: Array,
-           edge: NDArray[np.bool_]) -> Cells:
+           edge: NDArray[np.bool_]) -> SampleCells:
     """Evaluate centres and drop cells that do not touch their face."""
     point, radius = np.zeros((len(uv), 3)), np.zeros(len(uv))
     on_face, keep = edge.copy(), edge.copy()
@@ -166,28 +166,29 @@ def _cells(faces: tuple[Face, ...], owner: NDArray[np.int64], uv: Array, half: A
         around = (uv[inner][:, None] + corner * half[inner][:, None]).reshape(-1, 2)
         on_face[inner] = centre
         keep[inner] = centre | faces[index].contains(around).reshape(-1, 4).any(axis=1)
-    return Cells(owner, uv, half, edge, point, radius, on_face, np.full(len(uv), np.inf)).rows(np.flatnonzero(keep))
+    return SampleCells(owner, uv, half, edge, point, radius, on_face,
+                       np.full(len(uv), np.inf)).rows(np.flatnonzero(keep))
 
 
-def owned(cells: Cells, owner: int) -> Cells:
+def share_cells(cells: SampleCells, owner: int) -> SampleCells:
     """The same cells as those of another face.
 
     Parameters
     ----------
-    cells : Cells
+    cells : SampleCells
     owner : int
         Index of the face.
     """
     return replace(cells, owner=np.full(len(cells), owner))
 
 
-def split(faces: tuple[Face, ...], cells: Cells) -> Cells:
+def split(faces: tuple[Face, ...], cells: SampleCells) -> SampleCells:
     """Each cell cut into nine, each piece of a loop into three.
 
     Parameters
     ----------
     faces : tuple of Face
-    cells : Cells
+    cells : SampleCells
     """
     third = np.array([-2.0, 0.0, 2.0]) / 3
     inner, line = np.flatnonzero(~cells.edge), np.flatnonzero(cells.edge)
@@ -199,12 +200,12 @@ def split(faces: tuple[Face, ...], cells: Cells) -> Cells:
     return _cells(faces, owner, np.vstack([uv, loop]), half, np.arange(len(owner)) >= len(uv))
 
 
-def joined(parts: Sequence[Cells]) -> Cells:
+def merge_cells(parts: Sequence[SampleCells]) -> SampleCells:
     """Cells of several as one.
 
     Parameters
     ----------
-    parts : sequence of Cells
+    parts : sequence of SampleCells
         One at least.
     """
-    return Cells(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Cells)))
+    return SampleCells(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(SampleCells)))

@@ -29,14 +29,14 @@ NEAR, SPACING = 0.1, 0.2
 _INSIDE, _SMOOTH = 0.02, float(np.sin(np.radians(1.0)))
 
 
-class Steps(NamedTuple):
+class SeamSteps(NamedTuple):
     """Places on a face's border that stand out over another face: points (k, 3) and heights (k,), mm."""
 
     point: Array
     height: Array
 
 
-def steps_of(face: Face, lower: Sequence[Face], around: Array | None = None) -> Steps:
+def steps_of(face: Face, lower: Sequence[Face], around: Array | None = None) -> SeamSteps:
     """Where a face stands out over faces that it meets smoothly or over a convex edge.
 
     Parameters
@@ -49,7 +49,7 @@ def steps_of(face: Face, lower: Sequence[Face], around: Array | None = None) -> 
     """
     from scipy.spatial import cKDTree
 
-    found = [Steps(np.empty((0, 3)), np.empty(0))]
+    found = [SeamSteps(np.empty((0, 3)), np.empty(0))]
     for loop in face.outline:
         uv = loop_points(face, loop, SPACING)
         point = face.evaluate(uv).point
@@ -61,7 +61,7 @@ def steps_of(face: Face, lower: Sequence[Face], around: Array | None = None) -> 
         for other in lower:
             if other is not face:
                 found.append(_steps_over(other, _Border(face, uv[rows], point[rows], along[rows])))
-    return Steps(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+    return SeamSteps(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
 class _Border(NamedTuple):
@@ -76,19 +76,19 @@ class _Border(NamedTuple):
         return _Border(self.face, self.uv[which], self.point[which], self.along[which])
 
 
-def _steps_over(other: Face, border: _Border) -> Steps:
+def _steps_over(other: Face, border: _Border) -> SeamSteps:
     """Places of a border that stand out over one other face."""
     near = ((border.point > other.box[0] - NEAR) & (border.point < other.box[1] + NEAR)).all(axis=1)
     border = border.rows(np.flatnonzero(near))
     if not len(border.uv):
-        return Steps(np.empty((0, 3)), np.empty(0))
+        return SeamSteps(np.empty((0, 3)), np.empty(0))
     foot = nearest(other, border.point)
     up = other.normal(foot.uv)
     height = dot(border.point - foot.point, up)
     found = (foot.distance < NEAR) & (height >= SMALLEST) & (height <= GREATEST)
     rows = np.flatnonzero(found)
     rows = rows[_goes_down(border.rows(rows), up[rows])]
-    return Steps(border.point[rows], height[rows])
+    return SeamSteps(border.point[rows], height[rows])
 
 
 def _goes_down(border: _Border, up: Array) -> NDArray[np.bool_]:
@@ -103,12 +103,12 @@ def _goes_down(border: _Border, up: Array) -> NDArray[np.bool_]:
     return np.asarray(sound & (side != 0) & (dot(inwards, up) <= _SMOOTH))
 
 
-def taken_off(steps: Steps, points: Array) -> Array:
+def depth_taken_off(steps: SeamSteps, points: Array) -> Array:
     """What steps take off the depth of a cut at points of their face, (n,) mm.
 
     Parameters
     ----------
-    steps : Steps
+    steps : SeamSteps
     points : (n, 3) array
         mm
     """

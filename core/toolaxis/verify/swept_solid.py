@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import compiled, inlined
+from toolaxis.numeric.jit import jit, jit_inline
 from toolaxis.verify.revolved_solids import meridian
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ LEAST = 1e-10
 LOOK = 1e-4
 
 
-@inlined
+@jit_inline
 def gradient(solid: Array, motion: Motion, at: tuple[int, float], w: tuple[float, float, float],
              ) -> tuple[float, float, float, float, float]:
     """The solid's function at a point of the part, less the tip at the start, while motion at[0] is at share at[1].
@@ -55,7 +55,7 @@ def gradient(solid: Array, motion: Motion, at: tuple[int, float], w: tuple[float
     return value, slope, g0, g1, g2
 
 
-@inlined
+@jit_inline
 def moment(solid: Array, motion: Motion, at: tuple[int, float], ray: Ray, t: float) -> tuple[float, float, float]:
     """The solid's function at the point t of a ray while motion at[0] is at share at[1].
 
@@ -67,7 +67,7 @@ def moment(solid: Array, motion: Motion, at: tuple[int, float], ray: Ray, t: flo
     return value, slope, g0 * ray[3] + g1 * ray[4] + g2 * ray[5]
 
 
-@inlined
+@jit_inline
 def _zero(width: float, slope: tuple[float, float], other: tuple[float, float]) -> float:
     """Where a slope is zero between 0, where it is slope[0] < 0, and a width, where it is slope[1] > 0.
 
@@ -82,7 +82,7 @@ def _zero(width: float, slope: tuple[float, float], other: tuple[float, float]) 
     return -da / (db - da) * width
 
 
-@compiled
+@jit
 def least_over_motion(solid: Array, motion: Motion, k: int, ray: Ray, t: float) -> tuple[float, float, float, float]:
     """Least of the solid's function over motion k at the point t of a ray.
 
@@ -129,7 +129,7 @@ def least_over_motion(solid: Array, motion: Motion, k: int, ray: Ray, t: float) 
     return vb, min(low, vb), along, sb
 
 
-@compiled
+@jit
 def sway(motion: Motion, k: int) -> float:
     """Angle by which the axis turns on motion k, rad: how much a slope along a ray may change with the share."""
     _, _, axis, turn = motion
@@ -140,7 +140,7 @@ def sway(motion: Motion, k: int) -> float:
     return float(np.sqrt(size / near))
 
 
-@compiled
+@jit
 def first_entry(solid: Array, motion: Motion, k: int, ray: Ray, span: tuple[float, float]) -> float:
     """Least t in the span at which the ray is inside the solid swept along motion k; inf where it is not.
 

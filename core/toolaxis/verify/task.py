@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class VerificationTask:
     """What is to be judged: one operation, as data.
 
     Attributes
@@ -112,12 +112,12 @@ def spot(point: tuple[float, float, float]) -> str:
     return f"({point[0]:.3f}, {point[1]:.3f}, {point[2]:.3f})"
 
 
-def motion_of(task: Task, index: int) -> str:
+def motion_of(task: VerificationTask, index: int) -> str:
     """What the motion that arrives at a point is, for a sentence.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     index : int
         Of the point; below zero for none.
     """

@@ -18,10 +18,10 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.verify.borders import line_of, on_border
 from toolaxis.verify.component_clearance import Clearance
-from toolaxis.verify.declared import STRIP, Declared
-from toolaxis.verify.maps import Place, SurfaceMap
+from toolaxis.verify.declared import STRIP, DeclaredZones
+from toolaxis.verify.maps import MapPoint, SurfaceMap
 from toolaxis.verify.rays import border_points, face_rays
-from toolaxis.verify.task import Task
+from toolaxis.verify.task import VerificationTask
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ _OWN = 5e-4
 _ACROSS, _RIM, _SAME_WAY = 25.0, 1.0, 1.0 - 1e-6
 
 
-class Measured(NamedTuple):
+class OperationMeasurement(NamedTuple):
     """What was measured of an operation, before it is held against what is allowed.
 
     targets : maps of what is machined;
@@ -50,11 +50,11 @@ class Measured(NamedTuple):
     skin: tuple[tuple[SurfaceMap, int], ...]
     rooms: dict[str, Clearance | str]
     edge: Clearance
-    link_cut: Place | None
+    link_cut: MapPoint | None
     uncertainty: float
 
 
-class Turn(NamedTuple):
+class RigidMotion(NamedTuple):
     """A rotation (3, 3) and a shift (3,), mm, and by how much cutter locations miss each other after it, mm."""
 
     rotation: Array
@@ -65,11 +65,11 @@ class Turn(NamedTuple):
         """Points after the turn."""
         return np.asarray(points @ self.rotation.T + self.shift)
 
-    def after(self, first: "Turn") -> "Turn":
+    def after(self, first: "RigidMotion") -> "RigidMotion":
         """This turn after another one."""
-        return Turn(self.rotation @ first.rotation, self.moved(first.shift), self.error + first.error)
+        return RigidMotion(self.rotation @ first.rotation, self.moved(first.shift), self.error + first.error)
 
-    def is_near(self, other: "Turn") -> bool:
+    def is_near(self, other: "RigidMotion") -> bool:
         """Whether it brings points where another one does, up to the digits of cutter locations."""
         apart = np.abs(self.rotation - other.rotation).max(), np.abs(self.shift - other.shift).max()
         return bool(apart[0] <= _AXES and apart[1] <= _TIPS)
@@ -79,11 +79,11 @@ class OwnTurn(NamedTuple):
     """A turn that brings a face onto itself but for an error, mm.  Holding the face keeps its identity from others."""
 
     face: Face
-    turn: Turn
+    turn: RigidMotion
     error: float
 
 
-class Copy(NamedTuple):
+class TurnedCopy(NamedTuple):
     """A copy of a measured operation.
 
     turn : from the source to the copy;
@@ -92,7 +92,7 @@ class Copy(NamedTuple):
     error : by how much anything measured there may differ here, mm.
     """
 
-    turn: Turn
+    turn: RigidMotion
     images: dict[int, Face]
     names: dict[str, str]
     error: float
@@ -104,12 +104,12 @@ class TurnedCopies:
     def __init__(self) -> None:
         self._own: dict[tuple[int, bool], list[OwnTurn]] = {}
 
-    def find(self, source: Task, task: Task) -> Copy | None:
+    def find(self, source: VerificationTask, task: VerificationTask) -> TurnedCopy | None:
         """How an operation is a copy of another one; None where it is not, or not in all that counts.
 
         Parameters
         ----------
-        source, task : Task
+        source, task : VerificationTask
         """
         if not _same_inputs(source, task):
             return None
@@ -134,9 +134,9 @@ class TurnedCopies:
             return None
         of_source = (*source.targets, *source.skin, *source.touching, *source.surroundings)
         names = {face.label: images[id(face)].label for face in of_source}
-        return Copy(turn, images, names, turn.error + _NET + error)
+        return TurnedCopy(turn, images, names, turn.error + _NET + error)
 
-    def _own_error(self, face: Face, rim: bool, turn: Turn) -> float:
+    def _own_error(self, face: Face, rim: bool, turn: RigidMotion) -> float:
         """By how much a face after a turn misses itself, mm, as the sum of two turns where their errors are known."""
         known = self._own.setdefault((id(face), rim), [])
         for one in known:
@@ -150,7 +150,7 @@ class TurnedCopies:
         return known[-1].error
 
 
-def _same_inputs(source: Task, task: Task) -> bool:
+def _same_inputs(source: VerificationTask, task: VerificationTask) -> bool:
     """Whether all is the same that does not turn."""
     same = (source.scallop, source.allowance, source.depth, source.tolerance, source.profile) == \
         (task.scallop, task.allowance, task.depth, task.tolerance, task.profile)
@@ -159,7 +159,7 @@ def _same_inputs(source: Task, task: Task) -> bool:
         len(source.tips) == len(task.tips) and np.array_equal(source.kind, task.kind)
 
 
-def _turn_between(source: Task, task: Task) -> Turn | None:
+def _turn_between(source: VerificationTask, task: VerificationTask) -> RigidMotion | None:
     """The rigid motion that brings the cutter locations of one operation onto those of another."""
     arm = 1.0 + float(np.ptp(source.tips, axis=0).max())
     here = np.concatenate([source.tips, source.tips + arm * source.axes])
@@ -170,10 +170,10 @@ def _turn_between(source: Task, task: Task) -> Turn | None:
     shift = other - rotation @ middle
     error = float(np.linalg.norm(source.tips @ rotation.T + shift - task.tips, axis=1).max())
     leaning = float(np.linalg.norm(source.axes @ rotation.T - task.axes, axis=1).max())
-    return Turn(rotation, shift, error) if error <= _TIPS and leaning <= _AXES else None
+    return RigidMotion(rotation, shift, error) if error <= _TIPS and leaning <= _AXES else None
 
 
-def _images(faces: Sequence[Face], others: Sequence[Face], turn: Turn) -> dict[int, Face]:
+def _images(faces: Sequence[Face], others: Sequence[Face], turn: RigidMotion) -> dict[int, Face]:
     """By the identity of each face the other one that is its image, where there is one."""
     found: dict[int, Face] = {}
     middles = np.array([turn.moved(_net(face)).mean(axis=0) for face in faces]).reshape(-1, 3)
@@ -192,7 +192,7 @@ def _net(face: Face) -> Array:
     return np.asarray((control[..., :3] / control[..., 3:]).reshape(-1, 3))
 
 
-def _is_image(face: Face, other: Face, turn: Turn) -> bool:
+def _is_image(face: Face, other: Face, turn: RigidMotion) -> bool:
     """Whether a face after a turn is another one, with the same parameters."""
     one, two = face.surface, other.surface
     if one.degree != two.degree or one.control.shape != two.control.shape or face.flip != other.flip:
@@ -206,7 +206,7 @@ def _is_image(face: Face, other: Face, turn: Turn) -> bool:
     return bool(np.abs(turn.moved(_net(face)) - _net(other)).max() <= _NET)
 
 
-def _own_deviation(face: Face, rim: bool, turn: Turn) -> float:
+def _own_deviation(face: Face, rim: bool, turn: RigidMotion) -> float:
     """By how much a face after a turn misses itself, mm: an end face or a bore does not, whatever its parameters.
 
     Looked at both ways on points all over the face and along its border, which with `rim` must fall on its border
@@ -230,17 +230,18 @@ def _own_deviation(face: Face, rim: bool, turn: Turn) -> float:
     return worst
 
 
-def measured_on_copy(task: Task, source: Measured, copy: Copy) -> Measured | None:
+def transfer_measurement(task: VerificationTask, source: OperationMeasurement,
+                         copy: TurnedCopy) -> OperationMeasurement | None:
     """What was measured of the source, as it is at the copy; None where the plan declares other zones there.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
         The copy.
-    source : Measured
-    copy : Copy
+    source : OperationMeasurement
+    copy : TurnedCopy
     """
-    zones = Declared(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
+    zones = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
     targets = tuple(_map_on_copy(one, copy) for one in source.targets)
     if any((zones.holds(one.face, one.uv, one.point) != one.declared).any() for one in targets):
         return None
@@ -248,11 +249,11 @@ def measured_on_copy(task: Task, source: Measured, copy: Copy) -> Measured | Non
     rooms = {name: _clearance_on_copy(room, copy) if isinstance(room, Clearance) else room
              for name, room in source.rooms.items()}
     link_cut = None if source.link_cut is None else _place_on_copy(source.link_cut, copy)
-    return Measured(targets, skin, rooms, _clearance_on_copy(source.edge, copy), link_cut,
-                    source.uncertainty + copy.error)
+    return OperationMeasurement(targets, skin, rooms, _clearance_on_copy(source.edge, copy), link_cut,
+                                source.uncertainty + copy.error)
 
 
-def _map_on_copy(one: SurfaceMap, copy: Copy) -> SurfaceMap:
+def _map_on_copy(one: SurfaceMap, copy: TurnedCopy) -> SurfaceMap:
     """A map as it is at the copy, heights and depths greater by what may differ there."""
     worst = [None if place is None else _place_on_copy(place, copy) for place in (one.worst_scallop, one.worst_gouge)]
     return replace(one, face=copy.images[id(one.face)], point=copy.turn.moved(one.point),
@@ -264,12 +265,12 @@ def _greater(heights: Array, error: float) -> Array:
     return np.where(heights > 0.0, heights + error, heights)
 
 
-def _place_on_copy(place: Place, copy: Copy) -> Place:
+def _place_on_copy(place: MapPoint, copy: TurnedCopy) -> MapPoint:
     x, y, z = (float(c) for c in copy.turn.moved(np.array(place.point)))
     return replace(place, face=copy.names.get(place.face, place.face), point=(x, y, z), value=place.value + copy.error)
 
 
-def _clearance_on_copy(room: Clearance, copy: Copy) -> Clearance:
+def _clearance_on_copy(room: Clearance, copy: TurnedCopy) -> Clearance:
     """A clearance as it is at the copy, less by what may differ there."""
     if room.motion < 0:
         return room

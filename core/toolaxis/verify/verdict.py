@@ -13,15 +13,15 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.verify.axis_limits import machine_faults
 from toolaxis.verify.component_clearance import FAR, Clearance, clearance
-from toolaxis.verify.declared import STRIP, Declared
+from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
-from toolaxis.verify.maps import Place, SurfaceMap, Zone, place_at, surface_map
-from toolaxis.verify.material_removal import Remains, Removal
+from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
+from toolaxis.verify.material_removal import RemainingMaterial, Removal
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
-from toolaxis.verify.task import Task, motion_of, spot
-from toolaxis.verify.turned_copies import Measured
+from toolaxis.verify.task import VerificationTask, motion_of, spot
+from toolaxis.verify.turned_copies import OperationMeasurement
 
 Array = NDArray[np.float64]
 
@@ -57,12 +57,12 @@ class OperationVerdict:
         mm; the greatest is no more than the depth to which gouges are followed.
     clearance : dict of str to Clearance or "not checked"
         For "cutter", "shank" and "holder"; for "machine", where its bodies were judged, between table and spindle.
-    worst_scallop, worst_gouge : tuple of Place
+    worst_scallop, worst_gouge : tuple of MapPoint
         The worst first; the gouge's only where it exceeds the judge's uncertainty, and with the deepest place in a
         face behind a convex edge.
-    link_cut : Place or None
+    link_cut : MapPoint or None
         Where a link goes deepest into what the cutting motions leave; None where none does.
-    zones : tuple of Zone
+    zones : tuple of MapZone
         Connected zones left above the limit, declared ones aside, the largest first.
     area : float
         mm^2
@@ -88,10 +88,10 @@ class OperationVerdict:
     gouge_max: float
     gouge_allowed: float
     clearance: dict[str, Clearance | str]
-    worst_scallop: tuple[Place, ...]
-    worst_gouge: tuple[Place, ...]
-    link_cut: Place | None
-    zones: tuple[Zone, ...]
+    worst_scallop: tuple[MapPoint, ...]
+    worst_gouge: tuple[MapPoint, ...]
+    link_cut: MapPoint | None
+    zones: tuple[MapZone, ...]
     area: float
     rays: int
     spacing: float
@@ -149,13 +149,13 @@ class Verdict:
                 *(f"{name}: not judged: stopped before" for name in self.unjudged))
 
 
-def verify(tasks: Sequence[Task], *, spacing: float | None = None, threads: int = 1,
+def verify(tasks: Sequence[VerificationTask], *, spacing: float | None = None, threads: int = 1,
            progress: Progress = NO_PROGRESS) -> Verdict:
     """Judge operations by removing material with the cutter along their cutter location data.
 
     Parameters
     ----------
-    tasks : sequence of Task
+    tasks : sequence of VerificationTask
     spacing : float, optional
         Distance of neighbouring rays, mm; by the size of each face unless given.
     threads : int
@@ -176,25 +176,26 @@ def verify(tasks: Sequence[Task], *, spacing: float | None = None, threads: int 
     return Verdict(tuple(judged))
 
 
-def judge(task: Task, spacing: float | None = None, threads: int = 1,
+def judge(task: VerificationTask, spacing: float | None = None, threads: int = 1,
           progress: Progress = NO_PROGRESS) -> OperationVerdict:
     """Judge one operation.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     spacing, threads, progress
         As for `verify`.
     """
     return verdict_on(task, measure(task, spacing, threads, progress), progress)
 
 
-def measure(task: Task, spacing: float | None = None, threads: int = 1, progress: Progress = NO_PROGRESS) -> Measured:
+def measure(task: VerificationTask, spacing: float | None = None, threads: int = 1,
+            progress: Progress = NO_PROGRESS) -> OperationMeasurement:
     """Measure one operation: what it leaves, how deep it cuts, and how far its tool stays from all else.
 
     Parameters
     ----------
-    task : Task
+    task : VerificationTask
     spacing, threads, progress
         As for `verify`.
     """
@@ -204,12 +205,12 @@ def measure(task: Task, spacing: float | None = None, threads: int = 1, progress
 
     depths = Depths(task, cut)
 
-    def along(face: Face, point: Array, normal: Array) -> Remains:
+    def along(face: Face, point: Array, normal: Array) -> RemainingMaterial:
         left = cut((point + task.allowance * normal, normal), depth=task.depth)
         depths.correct(face, (point, normal), left)
         return left
 
-    left = Declared(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
+    left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
     targets = tuple(surface_map(face, partial(along, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
     skin = tuple(_kept_of(surface_map(face, partial(along, face), spacing, heights=False)) for face in task.skin)
@@ -217,7 +218,7 @@ def measure(task: Task, spacing: float | None = None, threads: int = 1, progress
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
     edge = _behind_edges(task, depths, threads, progress)
     uncertainty = cutter.uncertainty + max(face.tolerance for face in (*task.targets, *task.skin))
-    return Measured(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty)
+    return OperationMeasurement(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty)
 
 
 def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
@@ -225,7 +226,7 @@ def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
     return one.touched(), len(one.uv)
 
 
-def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) -> Clearance:
+def _behind_edges(task: VerificationTask, depths: Depths, threads: int, progress: Progress) -> Clearance:
     """How far faces behind convex edges stay out of the cutter; what the file's faces miss each other by is taken off
     where they do not."""
     find = partial(clearance, (task.tips, task.axes, task.kind), ("cutter at convex edges", cutter_solid(task.profile)),
@@ -238,13 +239,13 @@ def _behind_edges(task: Task, depths: Depths, threads: int, progress: Progress) 
     return find(taken_off=depths.missed_behind_edges) if missed else found
 
 
-def _needed(task: Task, name: str) -> float:
+def _needed(task: VerificationTask, name: str) -> float:
     """Clearance that a component must keep, mm."""
     needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance}
     return needed.get(name, task.tolerance.holder_clearance)
 
 
-def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance | str]:
+def _rooms(task: VerificationTask, threads: int, progress: Progress) -> dict[str, Clearance | str]:
     """Clearance of every component: the cutter from the surroundings, shank and holder from all faces."""
     everything = (*task.targets, *task.skin, *task.touching, *task.surroundings)
     parts = {name: (frustum_solids(outline, name), everything) for name, outline in task.outlines.items()}
@@ -257,14 +258,15 @@ def _rooms(task: Task, threads: int, progress: Progress) -> dict[str, Clearance 
     return rooms
 
 
-def _standing(task: Task) -> float:
+def _standing(task: VerificationTask) -> float:
     """How high stock stands on the targets before the cut, mm; it stays where no pass reaches, and links go over it."""
     return max(1.0, 20 * task.scallop)
 
 
-def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Remains]) -> Place | None:
+def _link_cut(task: VerificationTask, maps: tuple[SurfaceMap, ...],
+              links: Callable[..., RemainingMaterial]) -> MapPoint | None:
     """Where a link goes deepest into what the cutting motions leave above the targets."""
-    worst: Place | None = None
+    worst: MapPoint | None = None
     for one in maps:
         left = links((one.point + task.allowance * one.face.normal(one.uv), one.face.normal(one.uv)), depth=task.depth)
         depth = np.minimum(one.remaining, _standing(task)) - left.remaining
@@ -274,12 +276,13 @@ def _link_cut(task: Task, maps: tuple[SurfaceMap, ...], links: Callable[..., Rem
     return worst
 
 
-def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[Place, ...]:
+def _worst(maps: tuple[SurfaceMap, ...], what: str, least: float) -> tuple[MapPoint, ...]:
     places = [place for one in maps for place in one.worst(what) if place.value > least]
     return tuple(sorted(places, key=lambda place: -place.value)[:10])
 
 
-def _with_edge(task: Task, places: tuple[Place, ...], edge: Clearance, least: float) -> tuple[Place, ...]:
+def _with_edge(task: VerificationTask, places: tuple[MapPoint, ...], edge: Clearance, least: float) -> tuple[MapPoint,
+                                                                                                             ...]:
     """The deepest places of the maps and the one behind a convex edge, the worst first."""
     if -edge.distance <= least:
         return places
@@ -289,13 +292,14 @@ def _with_edge(task: Task, places: tuple[Place, ...], edge: Clearance, least: fl
     return tuple(sorted((behind, *places), key=lambda place: -place.value)[:10])
 
 
-def verdict_on(task: Task, measured: Measured, progress: Progress = NO_PROGRESS) -> OperationVerdict:
+def verdict_on(task: VerificationTask, measured: OperationMeasurement,
+               progress: Progress = NO_PROGRESS) -> OperationVerdict:
     """Hold what was measured of an operation against what is allowed; the machine is looked at here.
 
     Parameters
     ----------
-    task : Task
-    measured : Measured
+    task : VerificationTask
+    measured : OperationMeasurement
     progress : Progress
     """
     targets, edge, link_cut = measured.targets, measured.edge, measured.link_cut
@@ -326,7 +330,7 @@ def verdict_on(task: Task, measured: Measured, progress: Progress = NO_PROGRESS)
         maps)
 
 
-def _axis_reasons(task: Task) -> list[str]:
+def _axis_reasons(task: VerificationTask) -> list[str]:
     if task.named is None:
         return []
     apart = np.linalg.norm(task.axes - task.named, axis=1)
@@ -341,7 +345,7 @@ def _written(axis: Array) -> str:
     return "(" + ", ".join(f"{float(x) + 0.0:.6f}" for x in axis) + ")"
 
 
-def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: float) -> list[str]:
+def _scallop_reasons(task: VerificationTask, share: float, zones: tuple[MapZone, ...], area: float) -> list[str]:
     if share >= SHARE:
         return []
     aside = " that is not left to clean-up" if task.left else ""
@@ -355,7 +359,7 @@ def _scallop_reasons(task: Task, share: float, zones: tuple[Zone, ...], area: fl
     return [text]
 
 
-def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[str]:
+def _gouge_reasons(task: VerificationTask, gouge: float, places: tuple[MapPoint, ...]) -> list[str]:
     if gouge <= task.tolerance.gouge:
         return []
     worst = places[0]
@@ -364,27 +368,27 @@ def _gouge_reasons(task: Task, gouge: float, places: tuple[Place, ...]) -> list[
             f"{motion_of(task, worst.motion)}"]
 
 
-def _machine_reasons(task: Task) -> list[str]:
+def _machine_reasons(task: VerificationTask) -> list[str]:
     if task.machine is None:
         return []
     return machine_faults(task.machine, task.tips, task.axes, task.place, task.tool_length)
 
 
-def _edge_reasons(task: Task, edge: Clearance) -> list[str]:
+def _edge_reasons(task: VerificationTask, edge: Clearance) -> list[str]:
     if -edge.distance <= task.tolerance.gouge:
         return []
     return [f"gouge {-edge.distance:.4f} mm at face {edge.face} {spot(edge.point)} behind a convex edge, allowed "
             f"{task.tolerance.gouge} mm, by the {motion_of(task, edge.motion)}"]
 
 
-def _link_reasons(task: Task, place: Place | None) -> list[str]:
+def _link_reasons(task: VerificationTask, place: MapPoint | None) -> list[str]:
     if place is None:
         return []
     return [f"a {motion_of(task, place.motion)} goes {place.value:.4f} mm into what the passes leave on face "
             f"{place.face} at {spot(place.point)}: links must stay clear of it"]
 
 
-def _room_reasons(task: Task, rooms: dict[str, Clearance | str]) -> list[str]:
+def _room_reasons(task: VerificationTask, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
     for name, room in rooms.items():
         need = _needed(task, name)

@@ -33,17 +33,17 @@ def patient(progress):
 
 
 def started(compute):
-    from freecad.toolaxis.services.background import Work
+    from freecad.toolaxis.services.background import BackgroundWork
 
-    work = Work(compute)
+    work = BackgroundWork(compute)
     return work, Ears(work.start())
 
 
 def test_a_result_arrives_once_on_the_gui_thread(desk):
-    from freecad.toolaxis.services.background import Work
+    from freecad.toolaxis.services.background import BackgroundWork
 
     worked_in = []
-    work = Work(lambda progress: worked_in.append(threading.current_thread()) or 42)
+    work = BackgroundWork(lambda progress: worked_in.append(threading.current_thread()) or 42)
     ears = Ears(work)
     work.start()
     assert work.running
@@ -64,7 +64,7 @@ def test_stages_are_told_but_not_each_report(desk):
 
 
 def test_intermediate_results_are_digested_off_the_gui_thread(desk):
-    from freecad.toolaxis.services.background import Work
+    from freecad.toolaxis.services.background import BackgroundWork
 
     def compute(progress):
         for k in range(400):
@@ -73,7 +73,8 @@ def test_intermediate_results_are_digested_off_the_gui_thread(desk):
         return "done"
 
     digested, seen = [], []
-    work = Work(compute, None, lambda offered: digested.append(threading.current_thread()) or f"got {offered}")
+    work = BackgroundWork(compute, None, lambda offered: digested.append(threading.current_thread())
+                          or f"got {offered}")
     ears = Ears(work)
     work.interim.connect(seen.append)
     begin = time.monotonic()

@@ -33,7 +33,7 @@ def part_from(thing: Any, selected: Sequence[Any] = ()) -> Part:
         When none of its faces can be used.
     """
     shape, name = shape_of(thing), name_of(thing)
-    faces = [_picked(thing, shape, item) for item in selected]
+    faces = [_pick_face(thing, shape, item) for item in selected]
     return part_from_record(shape_record(shape, faces), name)
 
 
@@ -144,7 +144,7 @@ def _nearest(shape: Any, face: Any) -> Any:
     return min(copies, key=lambda other: other.CenterOfMass.distanceToPoint(face.CenterOfMass), default=face)
 
 
-def _picked(thing: Any, shape: Any, item: Any) -> Any:
+def _pick_face(thing: Any, shape: Any, item: Any) -> Any:
     """A face by its name, also below the objects of a container; faces come as they are."""
     if not isinstance(item, str):
         return item

@@ -35,7 +35,7 @@ def rows(vectors: Any) -> Array:
     return np.array([(p.x, p.y, p.z) for p in vectors]).reshape(-1, 3)
 
 
-def untrimmed(geometry: Any, basis: str) -> Any:
+def remove_trim(geometry: Any, basis: str) -> Any:
     """What a trimmed curve or surface was cut from."""
     while hasattr(geometry, basis) and type(geometry).__name__.startswith(("RectangularTrimmed", "TrimmedCurve")):
         geometry = getattr(geometry, basis)
@@ -47,7 +47,7 @@ class FreecadSurface:
 
     def __init__(self, surface: Any) -> None:
         self.surface = surface
-        self.basis = untrimmed(surface, "BasisSurface")
+        self.basis = remove_trim(surface, "BasisSurface")
         self.name = type(self.basis).__name__
         self.kind = KINDS.get(self.name, "other")
 
@@ -160,7 +160,7 @@ _READERS: dict[str, Callable[[Any], Form | None]] = {
 
 def curve_form(curve: Any) -> CurveForm | None:
     """The exact form of a curve of the Part module; None where there is none of our kinds."""
-    curve = untrimmed(curve, "BasisCurve")
+    curve = remove_trim(curve, "BasisCurve")
     reader = _CURVES.get(type(curve).__name__)
     return reader(curve) if reader else None
 

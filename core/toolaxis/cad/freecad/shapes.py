@@ -14,7 +14,7 @@ from toolaxis.cad.faces import record_of_shape
 from toolaxis.cad.freecad.geometry import FreecadSurface, rows
 from toolaxis.cad.kernel_protocol import KernelBody
 from toolaxis.cad.shape_data import ShapeRecord, Transfer
-from toolaxis.cad.step.faces import numbered, transferred
+from toolaxis.cad.step.faces import number_faces, warn_of_lost_faces
 from toolaxis.cad.step.precheck import StepText
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.tolerances import Tolerance
@@ -104,11 +104,11 @@ def step_record(path: Path, text: StepText) -> Transfer:
     for face in faces:
         face.Placement = FreeCAD.Placement()
     origins = text.order.guessed(len(faces))
-    numbers = numbered(text.order, origins)
+    numbers = number_faces(text.order, origins)
     record = shape_record(shape, numbers=numbers.made)
     record.unit = text.unit
     distinct = Numbering()
-    return transferred(record, [distinct.add(face) for face in faces], text.order, numbers, origins)
+    return warn_of_lost_faces(record, [distinct.add(face) for face in faces], text.order, numbers, origins)
 
 
 class FreecadFace:
@@ -140,7 +140,7 @@ class FreecadFace:
         whole = len(ordered) == len(listed) + len(twice)
         edges = [FreecadEdge(edge, self.face, self.edges.add(edge)) for edge in (ordered if whole else listed + twice)]
         periods = self.surface.periods if self.surface else (0.0, 0.0)
-        return edges if whole and _closes(edges, periods) else _chained(edges, periods)
+        return edges if whole and _closes(edges, periods) else _chain_edges(edges, periods)
 
 
 class FreecadEdge:
@@ -252,7 +252,7 @@ def _closes(edges: list[FreecadEdge], periods: tuple[float, float]) -> bool:
     return all(_gap(edges[k - 1], edge, periods) <= limit for k, edge in enumerate(edges))
 
 
-def _chained(edges: list[FreecadEdge], periods: tuple[float, float]) -> list[FreecadEdge]:
+def _chain_edges(edges: list[FreecadEdge], periods: tuple[float, float]) -> list[FreecadEdge]:
     """The edges in the order in which each begins nearest to where the one before ends."""
     walk, rest = edges[:1], edges[1:]
     while rest:

@@ -23,7 +23,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.work_coordinates import WorkCoordinates
-from toolaxis.numeric.simplify_polyline import thinned_loop
+from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -223,7 +223,7 @@ def _runs(face: Face, loop: Array) -> list[Array]:
     """A loop as smooth stretches between its corners, (m, 2) each, ends included; iso-parametric lines stand alone."""
     d = face.evaluate(loop)
     scale = np.maximum([np.linalg.norm(rows, axis=1).mean() for rows in (d.su, d.sv)], 1e-12)
-    rows = loop[thinned_loop(np.hstack([d.point, loop * scale]), 0.25 * BORDER)]
+    rows = loop[simplify_loop(np.hstack([d.point, loop * scale]), 0.25 * BORDER)]
     ahead = np.roll(rows, -1, axis=0) - rows
     iso = (np.abs(ahead) <= 1e-12 * np.maximum(np.abs(rows), 1.0)).any(axis=1)
     size, heading = np.hypot(*(ahead * scale).T), np.arctan2(*(ahead * scale).T)

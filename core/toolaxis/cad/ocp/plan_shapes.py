@@ -19,7 +19,7 @@ PART, LINES, AXIS = (0.86, 0.86, 0.86), (0.0, 0.28, 0.55), (0.1, 0.1, 0.1)
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class OperationShapes:
     """What CAD shows of an operation; shapes are made when they are asked for.
 
     Attributes
@@ -87,17 +87,17 @@ class Piece:
         return polyline_edge(foot + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, reach]]))
 
 
-def pieces(plan: Plan) -> tuple[Piece, ...]:
+def pieces(plan: Plan) -> tuple[OperationShapes, ...]:
     """The pieces of a plan, in the order of its operations.
 
     Parameters
     ----------
     plan : Plan
     """
-    return tuple(Piece(op) for op in plan.operations)
+    return tuple(OperationShapes(op) for op in plan.operations)
 
 
-def piece_of(plan: Plan, operation: str | int) -> Piece:
+def piece_of(plan: Plan, operation: str | int) -> OperationShapes:
     """The piece of one operation that has a work coordinate system.
 
     Parameters

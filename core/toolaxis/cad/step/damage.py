@@ -41,7 +41,7 @@ DOUBLED = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
 Found = Iterator[tuple[int, str]]
 
 
-def broken_text(entities: Entities) -> str:
+def text_damage(entities: Entities) -> str:
     """What makes a text useless as a whole, with its entity; empty where nothing does.
 
     Parameters
@@ -111,7 +111,7 @@ def _unbalanced(entities: Entities) -> str:
     return ""
 
 
-def lost_places(entities: Entities) -> str:
+def place_damage(entities: Entities) -> str:
     """What of an assembly stands at a place that the text lacks; empty where nothing does.
 
     Parameters
@@ -180,13 +180,13 @@ def faces_with(entities: Entities, faces: Iterable[int], guilty: dict[int, str])
         return {}
     found = {}
     for face in faces:
-        met = next((number for number in _needed(entities, face) if number in guilty), 0)
+        met = next((number for number in _entities_below(entities, face) if number in guilty), 0)
         if met:
             found[face] = guilty[met]
     return found
 
 
-def _needed(entities: Entities, face: int) -> Iterator[int]:
+def _entities_below(entities: Entities, face: int) -> Iterator[int]:
     """Everything that a face stands on; of an edge's curves in parameters only those on its own surface."""
     last = entities.references(entities.table[face])[-1:] if face in entities.table else []
     seen: set[int] = set()
@@ -199,10 +199,10 @@ def _needed(entities: Entities, face: int) -> Iterator[int]:
         yield number
         entity = entities.table.get(number)
         if entity is not None:
-            front += reversed(_followed(entities, entity, last))
+            front += reversed(_entities_followed(entities, entity, last))
 
 
-def _followed(entities: Entities, entity: Entity, surface: list[int]) -> list[int]:
+def _entities_followed(entities: Entities, entity: Entity, surface: list[int]) -> list[int]:
     """What an entity stands on, for a face on a surface."""
     referred = entities.references(entity)
     if entity.keyword == "PCURVE" and referred[:1] != surface:

@@ -183,7 +183,7 @@ class Entities:
         ----------
         entity : Entity
         """
-        return nested(b"(" + self.body(entity))
+        return parse_lists(b"(" + self.body(entity))
 
     def parts(self, entity: Entity) -> dict[str, Nested]:
         """The parameters of a complex entity, by keyword.
@@ -193,14 +193,14 @@ class Entities:
         entity : Entity
         """
         found: dict[str, Nested] = {}
-        words = nested(b"(" + self.body(entity))
+        words = parse_lists(b"(" + self.body(entity))
         for word, following in pairwise(words):
             if isinstance(word, bytes) and isinstance(following, list):
                 found[word.decode()] = following
         return found
 
 
-def nested(text: bytes) -> Nested:
+def parse_lists(text: bytes) -> Nested:
     """The lists of a text in brackets, one in another.
 
     Parameters

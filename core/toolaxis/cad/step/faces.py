@@ -96,10 +96,10 @@ def _helping(entities: Entities) -> set[int]:
         return set()
     holders = [holder for kind in REPRESENTATIONS for holder in entities.of(kind)]
     wanted = FACES + BOUNDED
-    return reached(entities, helpers, wanted) - reached(entities, holders, wanted)
+    return find_referring(entities, helpers, wanted) - find_referring(entities, holders, wanted)
 
 
-def reached(entities: Entities, starts: Iterable[Entity], wanted: Sequence[str]) -> set[int]:
+def find_referring(entities: Entities, starts: Iterable[Entity], wanted: Sequence[str]) -> set[int]:
     """Entities of some kinds that others refer to, directly or over more; what they refer to is not followed.
 
     Parameters
@@ -188,7 +188,7 @@ class Numbers(NamedTuple):
     missing: dict[int, int]
 
 
-def numbered(order: FaceOrder, origins: Sequence[int]) -> Numbers:
+def number_faces(order: FaceOrder, origins: Sequence[int]) -> Numbers:
     """The numbers that faces have in the whole file, where a kernel has made some of them only.
 
     Parameters
@@ -227,8 +227,8 @@ def numbered(order: FaceOrder, origins: Sequence[int]) -> Numbers:
     return Numbers(made, missing)
 
 
-def transferred(record: ShapeRecord, copies: Sequence[int], order: FaceOrder, numbers: Numbers,
-                origins: Sequence[int]) -> Transfer:
+def warn_of_lost_faces(record: ShapeRecord, copies: Sequence[int], order: FaceOrder, numbers: Numbers,
+                       origins: Sequence[int]) -> Transfer:
     """What a kernel has made of a file, with a warning for each face that it was not given.
 
     Parameters

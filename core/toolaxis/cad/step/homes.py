@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from toolaxis.cad.step.entities import Entities, Entity
-from toolaxis.cad.step.faces import FACES, REPRESENTATIONS, SETS, SHELLS, is_bounded_surface, reached
-from toolaxis.cad.step.mending import Mending, listed
+from toolaxis.cad.step.faces import FACES, REPRESENTATIONS, SETS, SHELLS, find_referring, is_bounded_surface
+from toolaxis.cad.step.mending import Mending, format_entities
 
 SOLIDS = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "FACETED_BREP")
 MODELS = ("SHELL_BASED_SURFACE_MODEL", "FACE_BASED_SURFACE_MODEL")
@@ -80,7 +80,7 @@ class _Loose:
         if faces:
             self.found.setdefault("faces", []).extend(faces)
         rest = [member for member in members if member not in wrong]
-        return [self.mending.add("GEOMETRIC_SET", f"'',({listed(rest)})"), *beside] if rest else beside
+        return [self.mending.add("GEOMETRIC_SET", f"'',({format_entities(rest)})"), *beside] if rest else beside
 
     def _model(self, what: str, number: int, keyword: str) -> int:
         if number not in self.models:
@@ -127,7 +127,7 @@ def give_products(mending: Mending, faces: Iterable[int]) -> frozenset[int]:
     used = _used_representations(entities)
     lonely: list[tuple[Entity, set[int]]] = []
     for holder in entities.of(*REPRESENTATIONS):
-        own = reached(entities, [holder], FACES)
+        own = find_referring(entities, [holder], FACES)
         if holder.number in used:
             homeless -= own
         else:
@@ -168,13 +168,14 @@ def _house(mending: Mending, homeless: set[int]) -> None:
     entities, rest = mending.entities, set(homeless)
     items: list[int] = []
     for holder in entities.of(*SOLIDS, *MODELS, *SHELLS):
-        own = reached(entities, [holder], FACES)
+        own = find_referring(entities, [holder], FACES)
         if own & rest:
             model = model_of_shell(holder.keyword)
             items.append(mending.add(model, f"'',(#{holder.number})") if model else holder.number)
             rest -= own
     context = _context(mending)
-    _add_product(mending, mending.add("SHAPE_REPRESENTATION", f"'',({listed([*items, *sorted(rest)])}),#{context}"))
+    _add_product(mending, mending.add("SHAPE_REPRESENTATION",
+                                      f"'',({format_entities([*items, *sorted(rest)])}),#{context}"))
 
 
 def _context(mending: Mending) -> int:

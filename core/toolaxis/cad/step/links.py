@@ -18,7 +18,7 @@ GEOMETRY = (".stp", ".step", ".p21", ".stpz", ".stpx", ".prt", ".asm", ".sldprt"
             ".ipt", ".iam", ".x_t", ".x_b", ".jt", ".igs", ".iges", ".brep", ".sat", ".model", ".par", ".psm")
 
 
-def linked_files(entities: Entities) -> list[str]:
+def find_linked_files(entities: Entities) -> list[str]:
     """Names of the files that a text refers to.
 
     Parameters
@@ -38,7 +38,7 @@ def with_geometry(names: list[str]) -> list[str]:
     return [name for name in names if name.lower().endswith(GEOMETRY)]
 
 
-def named(names: list[str]) -> str:
+def list_names(names: list[str]) -> str:
     """The first three names, and how many more there are.
 
     Parameters

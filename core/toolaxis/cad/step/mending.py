@@ -75,7 +75,7 @@ class Mending:
         for holder, members in self._lists.items():
             entity = self.entities.table[holder]
             start = bare.find(b"(", entity.start, entity.end) + 1
-            pieces[start, bare.find(b")", start, entity.end)] = listed(members).encode()
+            pieces[start, bare.find(b")", start, entity.end)] = format_entities(members).encode()
         whole, place = [], 0
         for (start, stop), text in sorted(pieces.items()):
             whole += [content[place:start], text]
@@ -83,7 +83,7 @@ class Mending:
         return b"".join([*whole, content[place:]])
 
 
-def listed(numbers: Iterable[int]) -> str:
+def format_entities(numbers: Iterable[int]) -> str:
     """Entity numbers as a list in a STEP text.
 
     Parameters

@@ -4,12 +4,12 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from toolaxis.cad.step.damage import broken_text, damaged_entities, faces_with, far_entities, lost_places
+from toolaxis.cad.step.damage import damaged_entities, faces_with, far_entities, place_damage, text_damage
 from toolaxis.cad.step.entities import Entities
 from toolaxis.cad.step.faces import FaceLists, FaceOrder, face_lists
 from toolaxis.cad.step.file import EXPORT, file_bytes, plain_text
 from toolaxis.cad.step.homes import give_models, give_products
-from toolaxis.cad.step.links import linked_files, named, with_geometry
+from toolaxis.cad.step.links import find_linked_files, list_names, with_geometry
 from toolaxis.cad.step.mending import Mending, leave_out
 from toolaxis.cad.step.units import length_units, unit_fault
 from toolaxis.errors import InvalidInput
@@ -75,14 +75,14 @@ def read_text(path: Path, accept_lost_faces: bool = False) -> StepText:
     raw = file_bytes(path)
     content, notes = plain_text(path, raw)
     entities = _entities(path, content)
-    fault = broken_text(entities)
+    fault = text_damage(entities)
     if fault:
         raise InvalidInput(f"{path} {fault}")
-    promised, links = face_lists(entities), linked_files(entities)
+    promised, links = face_lists(entities), find_linked_files(entities)
     if not promised.faces:
         raise InvalidInput(f"{path} {_nothing(entities, links)}")
     left = _left_out(path, entities, promised, accept_lost_faces)
-    fault = unit_fault(entities) or lost_places(entities)
+    fault = unit_fault(entities) or place_damage(entities)
     if fault:
         raise InvalidInput(f"{path} {fault}")
     mending = Mending(entities)
@@ -98,7 +98,7 @@ def read_text(path: Path, accept_lost_faces: bool = False) -> StepText:
     return StepText(mended.content, changed, promised.faces, order, dangling, unit, tuple(notes), homeless)
 
 
-def declared_unit(content: bytes) -> str:
+def find_declared_unit(content: bytes) -> str:
     """The length units that the contexts of a STEP text declare, such as "millimetre" or "inch"; "not declared".
 
     Parameters
@@ -117,8 +117,8 @@ def _reservations(unit: str, links: list[str]) -> list[str]:
     found = ["the file declares no length unit: its numbers were taken for mm"] if unit == UNDECLARED else []
     elsewhere = with_geometry(links)
     if elsewhere:
-        found.append(f"the file also refers to {named(elsewhere)}; what stands there is not read: export everything as "
-                     "one STEP file")
+        found.append(f"the file also refers to {list_names(elsewhere)}; what stands there is not read: "
+                     "export everything as one STEP file")
     return found
 
 
@@ -146,8 +146,8 @@ def _entities(path: Path, content: bytes) -> Entities:
 def _nothing(entities: Entities, links: list[str]) -> str:
     """Why a text holds no faces, and what to do."""
     if links:
-        return (f"holds no geometry itself: it refers to other files, {named(links)}; open it in the CAD system and "
-                "export everything as one STEP file")
+        return (f"holds no geometry itself: it refers to other files, {list_names(links)}; open it in the CAD system "
+                "and export everything as one STEP file")
     other = {"TESSELLATED": "a mesh", "TRIANGULATED": "a mesh", "POLY_LOOP": "a mesh", "CURVE": "curves",
              "B_SPLINE_SURFACE": "surfaces that no face uses"}
     kinds = {entity.keyword for entity in entities.table.values()}

@@ -47,8 +47,8 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     """
     file = Path(path)
     text = read_text(file, accept_lost_faces)
-    found = _transferred(file, text, time_limit)
-    lost = _lost(file, text, found)
+    found = _transfer(file, text, time_limit)
+    lost = _lost_faces_sentence(file, text, found)
     if lost and not accept_lost_faces:
         raise InvalidInput(f"{lost}; {ACCEPT}")
     record = found.record
@@ -80,7 +80,7 @@ def readable(file: Path, text: StepText) -> Iterator[Path]:
         yield mended
 
 
-def _transferred(file: Path, text: StepText, time_limit: float | None) -> Transfer:
+def _transfer(file: Path, text: StepText, time_limit: float | None) -> Transfer:
     """What the kernel makes of a file."""
     if find_spec("OCP") is not None:
         return _in_child(file, text, 60.0 + 20.0 * len(text.content) / 1e6 if time_limit is None else time_limit)
@@ -129,7 +129,7 @@ def _outcome(child: "subprocess.CompletedProcess[bytes]", target: Path, file: Pa
     raise InvalidInput(f"{file} crashed the CAD kernel ({why}): repair the geometry and export it again")
 
 
-def _lost(file: Path, text: StepText, found: Transfer) -> str:
+def _lost_faces_sentence(file: Path, text: StepText, found: Transfer) -> str:
     """A sentence about the faces that the kernel was given and has not made."""
     promised, cause = text.order.promised, _cause(text, found.lost)
     missing = len(found.lost) or promised - found.distinct

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from toolaxis.cad.shape_data import Transfer
-from toolaxis.cad.step.faces import FaceOrder, numbered, transferred
+from toolaxis.cad.step.faces import FaceOrder, number_faces, warn_of_lost_faces
 from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, place_of, report_it
 
 #: How many faces times entities the kernel is asked for the origin of each: always, and where faces are missing.
@@ -143,7 +143,7 @@ def convert(path: str, order: FaceOrder | None = None) -> tuple[Any, ...]:
     except ToolAxisError as reason:
         return "failed", ToolAxisError, str(reason)
     except Exception as reason:
-        return "failed", *_blamed(reason)
+        return "failed", *_blame_file(reason)
 
 
 def _converted(path: str, order: FaceOrder) -> Transfer:
@@ -161,13 +161,13 @@ def _converted(path: str, order: FaceOrder) -> Transfer:
     asked = order.lists and faces.Extent() * entities <= (ASKED_OF_MISSING if missing else ASKED)
     ranks = ranks_of_faces(reading, faces) if asked else [0] * faces.Extent()
     origins = order.origins(ranks, read)
-    numbers = numbered(order, origins)
+    numbers = number_faces(order, origins)
     record = shape_record(reading.shape, numbers=numbers.made)
     record.unit = reading.unit
-    return transferred(record, copies, order, numbers, origins)
+    return warn_of_lost_faces(record, copies, order, numbers, origins)
 
 
-def _blamed(reason: Exception) -> tuple[type[ToolAxisError], str]:
+def _blame_file(reason: Exception) -> tuple[type[ToolAxisError], str]:
     """The kernel's own exceptions are the file's fault; every other one is a fault of ours."""
     what = f"{type(reason).__name__}: {str(reason).strip() or 'no message'}"
     if type(reason).__module__.split(".")[0] == "OCP":

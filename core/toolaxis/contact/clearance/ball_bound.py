@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.local_frame import Bend, Frame, Piece, Triple, cross, dot, look, plus
-from toolaxis.numeric.jit import built_in
+from toolaxis.numeric.jit import jit_fma_inline
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ SLIGHTEST = 0.02
 SLENDER = 2.0
 
 
-@built_in
+@jit_fma_inline
 def ball_around(piece: Piece, rise: float, climb: float) -> tuple[float, float]:
     """Radius of a ball that touches a piece on its arc and holds its lower part; how far the rest keeps behind.
 
@@ -60,7 +60,7 @@ def ball_around(piece: Piece, rise: float, climb: float) -> tuple[float, float]:
     return max(radius, ((wide + at)**2 + up * up) / (2.0 * far)), behind
 
 
-@built_in
+@jit_fma_inline
 def least_form(form: Triple, slopes: Triple, along: Triple, at: tuple[float, float]) -> float:
     """Least value of a quadratic form over a cell and a motion, or less; -inf where it is not convex in the cell.
 
@@ -93,7 +93,7 @@ def least_form(form: Triple, slopes: Triple, along: Triple, at: tuple[float, flo
     return least - 2.0 * abs(slope) + bend
 
 
-@built_in
+@jit_fma_inline
 def tangents(frame: Frame, bend: Bend, s: float, t: float) -> tuple[Triple, Triple, Triple]:
     """A point of the cell's second-order form seen from the tip, and its two tangents there.
 
@@ -107,7 +107,7 @@ def tangents(frame: Frame, bend: Bend, s: float, t: float) -> tuple[Triple, Trip
     return point, plus(plus(a, suu, s), suv, t), plus(plus(b, suv, s), svv, t)
 
 
-@built_in
+@jit_fma_inline
 def normal_of(ya: Triple, yb: Triple, axis: Triple) -> tuple[Triple, Triple, float, float]:
     """Unit normal away from the spindle, the unit vector outwards below it, and its parts outwards and along the axis.
 
@@ -136,7 +136,7 @@ def normal_of(ya: Triple, yb: Triple, axis: Triple) -> tuple[Triple, Triple, flo
     return n, (out[0] / rise, out[1] / rise, out[2] / rise), rise, climb
 
 
-@built_in
+@jit_fma_inline
 def towards_parallel(bend: Bend, piece: Piece, at: tuple[Triple, Triple, Triple],
                      view: tuple[Triple, Triple, float]) -> tuple[float, float]:
     """Newton's step to where the cell and the piece have one normal across their gap.
@@ -169,7 +169,7 @@ def towards_parallel(bend: Bend, piece: Piece, at: tuple[Triple, Triple, Triple]
     return (jab * fb - jbb * fa) / det, (jba * fa - jaa * fb) / det
 
 
-@built_in
+@jit_fma_inline
 def enclosing_gap(frame: Frame, piece: Piece, bend: Bend) -> tuple[float, float]:
     """Least phi of one piece over a cell: a lower bound, -inf where the ball tells nothing, and one that is exceeded.
 

@@ -12,7 +12,7 @@ from toolaxis.tools.solid import piece_distance_numpy
 Array = NDArray[np.float64]
 
 
-class _Place(NamedTuple):
+class _FormPoints(NamedTuple):
     """Points of second-order forms: shares, point less the piece's own, tangents, normal, its parts, outwards."""
 
     s: Array
@@ -27,7 +27,7 @@ class _Place(NamedTuple):
     out: Array
 
 
-class Curved(NamedTuple):
+class CurvedCells(NamedTuple):
     """Cells and pieces, n of each: q from the tip, axis, (a, b, c) as (n, 3, 3), A, B, C and rest, piece."""
 
     w: Array
@@ -41,7 +41,7 @@ class Curved(NamedTuple):
         """A, B and C."""
         return self.bend[:, 0:3], self.bend[:, 3:6], self.bend[:, 6:9]
 
-    def place(self, s: Array, t: Array) -> _Place:
+    def place(self, s: Array, t: Array) -> _FormPoints:
         """Points at shares; rise is zero where no arc has their normal."""
         suu, suv, svv = self.second
         s1, t1 = s[:, None], t[:, None]
@@ -59,9 +59,9 @@ class Curved(NamedTuple):
         out = (n - climb[:, None] * self.axis) / np.where(good, rise, 1.0)[:, None]
         flat, r, low = self.piece[:, 0], self.piece[:, 1], self.piece[:, 4]
         f = point - flat[:, None] * out - (low + r)[:, None] * self.axis - r[:, None] * n
-        return _Place(s, t, point, f, ya, yb, n, rise, climb, out)
+        return _FormPoints(s, t, point, f, ya, yb, n, rise, climb, out)
 
-    def step(self, at: _Place) -> tuple[Array, Array]:
+    def step(self, at: _FormPoints) -> tuple[Array, Array]:
         """Newton's step to where the cell and the piece have one normal across their gap."""
         suu, suv, svv = self.second
         naa, nab, nbb = (dot(at.n, part) for part in (suu, suv, svv))
@@ -80,7 +80,7 @@ class Curved(NamedTuple):
         ds, dt = np.where(good, (jab * fb - jbb * fa) / det, 0.0), np.where(good, (jba * fa - jaa * fb) / det, 0.0)
         return np.clip(at.s + ds, -1, 1) - at.s, np.clip(at.t + dt, -1, 1) - at.t
 
-    def parallel(self) -> _Place:
+    def parallel(self) -> _FormPoints:
         """Where cells and pieces have one normal across their gap, or nearly so."""
         at = self.place(np.zeros(len(self.w)), np.zeros(len(self.w)))
         active = np.ones(len(self.w), dtype=bool)
@@ -90,7 +90,7 @@ class Curved(NamedTuple):
             at = self.place(at.s + np.where(active, ds, 0.0), at.t + np.where(active, dt, 0.0))
         return at
 
-    def ball(self, at: _Place) -> tuple[Array, Array]:
+    def ball(self, at: _FormPoints) -> tuple[Array, Array]:
         """Radius of the enclosing balls, and how far the rest of the pieces keeps behind."""
         flat, r, cb, sb, low, top, rim = self.piece[:, :7].T
         height = np.minimum(top - low, SLENDER * (flat + r))
@@ -123,12 +123,12 @@ def _least_form(form: Array, slopes: Array, along: Array, at: tuple[Array, Array
     return np.where(good, least, -np.inf)
 
 
-def enclosing_gap_numpy(cell: Curved) -> tuple[Array, Array]:
+def enclosing_gap_numpy(cell: CurvedCells) -> tuple[Array, Array]:
     """Twin of `toolaxis.contact.clearance.ball_bound.enclosing_gap`: lower and upper bounds, (n,) each.
 
     Parameters
     ----------
-    cell : Curved
+    cell : CurvedCells
     """
     at, c, rest = cell.parallel(), cell.span[:, 2], cell.bend[:, 9]
     rho = np.linalg.norm(at.point - dot(at.point, cell.axis)[:, None] * cell.axis, axis=1)

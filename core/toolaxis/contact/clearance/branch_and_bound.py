@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.cell_bounds import bound_over_cell, bound_over_region
 from toolaxis.contact.clearance.local_frame import Bend, Triple, dot, look, row
-from toolaxis.contact.clearance.relief import Relief, relieved_bounds
+from toolaxis.contact.clearance.relief import Relief, relieve_bounds
 from toolaxis.contact.clearance.trimmed_cells import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
-from toolaxis.numeric.jit import borrowed, built_in, compiled
+from toolaxis.numeric.jit import borrowed, jit, jit_fma_inline
 from toolaxis.shape.bounding.bounding_tree import ForestData
 from toolaxis.tools.solid import piece_distance
 
@@ -43,7 +43,7 @@ Cell: TypeAlias = tuple[Triple, Triple, Triple, Triple, Bend]
 Item: TypeAlias = tuple[float, float, float, float, float, float]
 
 
-@built_in
+@jit_fma_inline
 def close_enough(least: float, resolution: float) -> float:
     """The bound that need not be improved: beyond a depth of 0.1 mm a twentieth of what is deeper may be lost.
 
@@ -55,7 +55,7 @@ def close_enough(least: float, resolution: float) -> float:
     return least - max(resolution, -0.05 * (least + 0.1))
 
 
-@built_in
+@jit_fma_inline
 def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
             tag: tuple[int, int, int, int, float, float], state: State) -> tuple[int, float]:
     """Which pieces are still open over one cell, and the lowest of their bounds.
@@ -104,7 +104,7 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
         else:
             lower, upper = bound_over_region(frame, piece, (e, radius, wanted), region, count)
         if k == 0 and relief[0].shape[0] > 0 and (lower < wanted or upper < found[0, k]):
-            lower, upper = relieved_bounds(relief, (face, q, ball), (lower, upper, wanted))
+            lower, upper = relieve_bounds(relief, (face, q, ball), (lower, upper, wanted))
         if upper < found[0, k]:
             found[0, k], found[2, k], found[3, k], found[4, k] = upper, q[0], q[1], q[2]
             tags[k] = face
@@ -119,7 +119,7 @@ def examine(tool: ToolData, cell: Cell, motion: Motion, region: Array,
     return left, key
 
 
-@built_in
+@jit_fma_inline
 def tree_cell(shape: Array, node: int) -> Cell:
     """Enclosure of a node of the tree.
 
@@ -132,7 +132,7 @@ def tree_cell(shape: Array, node: int) -> Cell:
     return row(shape, node, 0), row(shape, node, 3), row(shape, node, 6), row(shape, node, 9), bend
 
 
-@built_in
+@jit_fma_inline
 def part_cell(data: ForestData, node: int, rect: tuple[float, float, float, float], work: Work) -> Cell:
     """Enclosure of a part of a leaf.
 
@@ -167,8 +167,8 @@ def part_cell(data: ForestData, node: int, rect: tuple[float, float, float, floa
     return row(d, 0, 0), a, b, (e, radius, extra), bend
 
 
-@built_in
-def halved(cell: Cell, motion: Motion, half: float, branch: bool) -> int:
+@jit_fma_inline
+def choose_split(cell: Cell, motion: Motion, half: float, branch: bool) -> int:
     """What is to be halved of an open cell: u, v, the motion, or the branch of the tree.
 
     Parameters
@@ -186,7 +186,7 @@ def halved(cell: Cell, motion: Motion, half: float, branch: bool) -> int:
     return HALVE_U if dot(cell[1], cell[1]) >= dot(cell[2], cell[2]) else HALVE_V
 
 
-@built_in
+@jit_fma_inline
 def part(data: ForestData, entry: tuple[int, int, int], item: Item, side: int) -> tuple[int, int, Item]:
     """One of the two parts of a cell or of its motion.
 
@@ -225,7 +225,7 @@ def part(data: ForestData, entry: tuple[int, int, int], item: Item, side: int) -
     return node, kind, (u, v + sign * dv / 2.0, du, dv / 2.0, middle, half)
 
 
-@built_in
+@jit_fma_inline
 def admit(data: ForestData, tool: ToolData, motion: Motion, tag: tuple[int, int, int, Item], stack: Stack, depth: int,
           work: Work, state: State) -> int:
     """Look at one cell and put it on the stack if it is still open; the new depth of the stack.
@@ -259,13 +259,13 @@ def admit(data: ForestData, tool: ToolData, motion: Motion, tag: tuple[int, int,
         items[depth, 0], items[depth, 1], items[depth, 2], items[depth, 3] = u, v, du, dv
         items[depth, 4], items[depth, 5], items[depth, 6] = middle, half, key
         tags[depth, 0], tags[depth, 1], tags[depth, 2] = node, kind, left
-        tags[depth, 3] = halved(cell, motion, half, kind == TREE and number < 0)
+        tags[depth, 3] = choose_split(cell, motion, half, kind == TREE and number < 0)
         depth += 1
     return depth
 
 
-@built_in
-def decided(tool: ToolData, state: State, mask: int, key: float) -> bool:
+@jit_fma_inline
+def is_decided(tool: ToolData, state: State, mask: int, key: float) -> bool:
     """Whether what was found since makes a waiting cell needless; its bound is then taken into account.
 
     Parameters
@@ -286,7 +286,7 @@ def decided(tool: ToolData, state: State, mask: int, key: float) -> bool:
     return True
 
 
-@built_in
+@jit_fma_inline
 def give_up(tool: ToolData, state: State, mask: int, key: float) -> None:
     """Take the bound of a cell into account without looking further into it.
 
@@ -307,7 +307,7 @@ def give_up(tool: ToolData, state: State, mask: int, key: float) -> None:
                 state[1][3] = k
 
 
-@built_in
+@jit_fma_inline
 def exchange(stack: Stack, low: int) -> None:
     """Exchange two neighbouring entries of the stack.
 
@@ -324,7 +324,7 @@ def exchange(stack: Stack, low: int) -> None:
         tags[low, k], tags[low + 1, k] = tags[low + 1, k], tags[low, k]
 
 
-@built_in
+@jit_fma_inline
 def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work: Work, state: State) -> None:
     """Bound the least distance of the tool's components on one motion, or decide whether they keep their limits.
 
@@ -345,7 +345,7 @@ def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work
         if state[1][4] > BUDGET:
             give_up(tool, state, mask, key)
             continue
-        if decided(tool, state, mask, key):
+        if is_decided(tool, state, mask, key):
             continue
         entry = (tags[bottom, 0], tags[bottom, 1], across)
         whole = (items[bottom, 0], items[bottom, 1], items[bottom, 2], items[bottom, 3], items[bottom, 4],
@@ -370,7 +370,7 @@ def scratch(most_edges: int) -> tuple[Array, Array, Array, Array, Indices, Array
             np.empty((DEPTH, 4), dtype=np.int64), np.empty((5, 3)), np.empty(5, dtype=np.int64))
 
 
-@compiled
+@jit
 def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array],
                  room: tuple[Array, Array, Array, Array, Indices, Array, Indices],
                  answer: tuple[Array, Indices]) -> None:

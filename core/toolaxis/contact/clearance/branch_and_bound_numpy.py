@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.ball_bound_numpy import Curved, enclosing_gap_numpy
+from toolaxis.contact.clearance.ball_bound_numpy import CurvedCells, enclosing_gap_numpy
 from toolaxis.contact.clearance.branch_and_bound import BUDGET, DECIDED, ToolData
 from toolaxis.contact.clearance.cell_bounds import BETTER
 from toolaxis.contact.clearance.relief import relief_over_numpy
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
-from toolaxis.shape.bounding.bounding_tree import Cells
-from toolaxis.shape.bounding.build import clipped, margin_of, reached, remainder, second_remainder
+from toolaxis.shape.bounding.bounding_tree import BoundingTree
+from toolaxis.shape.bounding.build import clip_edges, is_near_face, margin_of, remainder, second_remainder
 from toolaxis.shape.face import Face
 from toolaxis.tools.solid import piece_distance_numpy
 
@@ -57,7 +57,7 @@ class _Cells(NamedTuple):
     corners: _Corners
 
 
-def _trimmed(cells: Cells, front: _Front) -> tuple[_Front, NDArray[np.intp], _Corners]:
+def _trim_triples(cells: BoundingTree, front: _Front) -> tuple[_Front, NDArray[np.intp], _Corners]:
     """Triples below leaves less what trims cut away, where they stood, and the corners that are left."""
     leaf = cells.link[front.node, 3]
     start, count = cells.edge_start[leaf], np.diff(cells.edge_start)[leaf]
@@ -66,26 +66,26 @@ def _trimmed(cells: Cells, front: _Front) -> tuple[_Front, NDArray[np.intp], _Co
     index = np.repeat(start, count) + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     u, v, du, dv = front.rect.T
     rect = np.stack([u - du, u + du, v - dv, v + dv], axis=1)
-    through, ends = clipped(rect[owner], cells.edges[index], 1e-9 * np.stack([du, dv], axis=1)[owner])
+    through, ends = clip_edges(rect[owner], cells.edges[index], 1e-9 * np.stack([du, dv], axis=1)[owner])
     cut = np.zeros(len(leaf), dtype=bool)
     cut[owner[through]] = True
     owners, points = [np.repeat(owner[through], 2)], [ends[through].reshape(-1, 2)]
     rows = np.flatnonzero(cut)
     for corner in ((0, 2), (0, 3), (1, 2), (1, 3)):
-        within = _asked(cells, front.node[rows], rect[rows][:, corner], _reached)
+        within = _ask_nodes(cells, front.node[rows], rect[rows][:, corner], _reached)
         owners.append(rows[within])
         points.append(rect[rows[within]][:, corner])
     kept = ~front.below | cut
     rest = np.flatnonzero(~kept)
-    kept[rest] = _asked(cells, front.node[rest], front.rect[rest, :2], Face.contains)
+    kept[rest] = _ask_nodes(cells, front.node[rest], front.rect[rest, :2], Face.contains)
     return _shrunk(front, (cut, kept), np.concatenate(owners), np.concatenate(points))
 
 
 def _reached(face: Face, uv: Array) -> Flags:
-    return reached(face, uv, margin_of(face))
+    return is_near_face(face, uv, margin_of(face))
 
 
-def _asked(cells: Cells, node: Indices, uv: Array, question: Callable[[Face, Array], Flags]) -> Flags:
+def _ask_nodes(cells: BoundingTree, node: Indices, uv: Array, question: Callable[[Face, Array], Flags]) -> Flags:
     """The answers of the nodes' faces for one parameter each."""
     number = cells.link[node, 2]
     found = np.zeros(len(uv), dtype=bool)
@@ -108,9 +108,9 @@ def _shrunk(front: _Front, which: tuple[Flags, Flags], owner: NDArray[np.intp],
             _Corners(cut[kept], place[owner].astype(np.int64), share))
 
 
-def _enclosed(cells: Cells, front: _Front) -> tuple[_Front, _Cells]:
+def _enclose_cells(cells: BoundingTree, front: _Front) -> tuple[_Front, _Cells]:
     """Cells of the triples; those wholly outside the loops are gone."""
-    front, _, corners = _trimmed(cells, front)
+    front, _, corners = _trim_triples(cells, front)
     link, leaf = cells.link[front.node], cells.leaf[cells.link[front.node, 3]]
     shape = np.column_stack([cells.shape[front.node], np.where(link[:, 3] >= 0, leaf[:, 7], 0.0)])
     bend = cells.bend[front.node]
@@ -129,7 +129,7 @@ def _enclosed(cells: Cells, front: _Front) -> tuple[_Front, _Cells]:
     return front, _Cells(shape, bend, real, corners)
 
 
-class _Sight(NamedTuple):
+class _LocalFrames(NamedTuple):
     """Cells seen from the tip: q, axis, the three directions (n, 3, 3), and the piece of each triple."""
 
     w: Array
@@ -219,17 +219,17 @@ def _lowest(slopes: Array, at: Array, corners: _Corners) -> tuple[Array, Array]:
     return fall, share
 
 
-def _curved(sight: _Sight, found: _Cells, value: Array) -> tuple[Array, Array]:
+def _curved_bounds(sight: _LocalFrames, found: _Cells, value: Array) -> tuple[Array, Array]:
     """The bounds of `enclosing_gap_numpy` where they are worth a look."""
     lower, upper = np.full(len(value), -np.inf), np.full(len(value), np.inf)
     rest, e = found.bend[:, 9], found.shape[:, 9]
     worth = ~found.corners.cut & (rest < BETTER * e) & (rest < np.maximum(np.abs(value), found.shape[:, 10]))
     lower[worth], upper[worth] = enclosing_gap_numpy(
-        Curved(sight.w[worth], sight.axis[worth], sight.span[worth], found.bend[worth], sight.piece[worth]))
+        CurvedCells(sight.w[worth], sight.axis[worth], sight.span[worth], found.bend[worth], sight.piece[worth]))
     return lower, upper
 
 
-def _bounds(sight: _Sight, found: _Cells) -> tuple[Array, Array]:
+def _bounds(sight: _LocalFrames, found: _Cells) -> tuple[Array, Array]:
     """Lower bounds of phi over the cells, and values that some of their points do not exceed."""
     e, radius = found.shape[:, 9], found.shape[:, 10] + np.linalg.norm(sight.span[:, 2], axis=1)
     zero, cut = np.zeros_like(sight.w), found.corners.cut
@@ -241,12 +241,12 @@ def _bounds(sight: _Sight, found: _Cells) -> tuple[Array, Array]:
     at = np.where(cut[:, None], share, _nearest(slopes, form))
     seen, slopes, _ = sight.look(at)
     fall, _ = _lowest(slopes, at, found.corners)
-    ball, over = _curved(sight, found, value)
+    ball, over = _curved_bounds(sight, found, value)
     upper = np.where(found.real > 1, np.minimum(value, over), np.where(found.real > 0, value, np.inf))
     return np.maximum(np.maximum(lower, seen + fall - e), ball), np.where(cut, seen + e, upper)
 
 
-def _parts(cells: Cells, front: _Front, found: _Cells, sweep: Array) -> _Front:
+def _parts(cells: BoundingTree, front: _Front, found: _Cells, sweep: Array) -> _Front:
     """Both halves of every open triple."""
     motion = sweep > found.shape[:, 10]
     branch = ~motion & ~front.below & (cells.link[front.node, 3] < 0)
@@ -268,10 +268,10 @@ def _parts(cells: Cells, front: _Front, found: _Cells, sweep: Array) -> _Front:
     return _Front(*(np.concatenate(pair) for pair in zip(*halves, strict=True)))
 
 
-class Breadth:
+class VectorisedBranchAndBound:
     """One question about many motions: what was found so far, and the open triples."""
 
-    def __init__(self, cells: Cells, tool: ToolData, motions: Array, cutoff: Array) -> None:
+    def __init__(self, cells: BoundingTree, tool: ToolData, motions: Array, cutoff: Array) -> None:
         self.cells, self.motions = cells, motions
         self.pieces, self.limits, (_, _, self.resolution), self.relief = tool
         n, k = len(motions), len(self.pieces)
@@ -298,15 +298,15 @@ class Breadth:
     def step(self, front: _Front) -> _Front:
         """Bound every triple; the halves of those that are still open."""
         front = front.take(self.blocked[front.query] < 0)
-        front, found = _enclosed(self.cells, front)
+        front, found = _enclose_cells(self.cells, front)
         if not len(front.query):
             return front
         np.add.at(self.looked, front.query, 1)
         moves = self.motions[front.query]
         middle, half = front.part[:, :1], front.part[:, 1:]
         span = np.stack([found.shape[:, 3:6], found.shape[:, 6:9], -half * moves[:, 1]], axis=1)
-        sight = _Sight(found.shape[:, :3] - moves[:, 0] - middle * moves[:, 1], moves[:, 2], span,
-                       self.pieces[front.piece])
+        sight = _LocalFrames(found.shape[:, :3] - moves[:, 0] - middle * moves[:, 1], moves[:, 2], span,
+                             self.pieces[front.piece])
         lower, upper = _bounds(sight, found)
         still = self.weigh(front, found, (lower, upper))
         cut = np.isin(np.arange(len(still)), np.flatnonzero(still))
@@ -341,12 +341,12 @@ class Breadth:
         return np.asarray(asked & ~done & ~over)
 
 
-def descend_many_numpy(cells: Cells, tool: ToolData, motions: Array, cutoff: Array) -> tuple[Array, Indices]:
+def descend_many_numpy(cells: BoundingTree, tool: ToolData, motions: Array, cutoff: Array) -> tuple[Array, Indices]:
     """The plain twin of `toolaxis.contact.clearance.branch_and_bound.descend_many`.
 
     Parameters
     ----------
-    cells : Cells
+    cells : BoundingTree
     tool : tuple
     motions : (n, 3, 3) array
     cutoff : (3,) array
@@ -357,7 +357,7 @@ def descend_many_numpy(cells: Cells, tool: ToolData, motions: Array, cutoff: Arr
     tags : (n, 5) array of int
         As there.
     """
-    question = Breadth(cells, tool, motions, cutoff)
+    question = VectorisedBranchAndBound(cells, tool, motions, cutoff)
     question.run()
     lower = np.minimum(question.least, question.given_up)
     values = np.concatenate([lower[:, None], question.point.transpose(0, 2, 1)], axis=1)

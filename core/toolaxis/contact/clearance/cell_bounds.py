@@ -25,7 +25,7 @@ from toolaxis.contact.clearance.local_frame import (
     slopes_along,
     spread,
 )
-from toolaxis.numeric.jit import built_in
+from toolaxis.numeric.jit import jit_fma_inline
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 SLIGHT, BETTER = 0.05, 0.5
 
 
-@built_in
+@jit_fma_inline
 def settle(step: Triple, along: tuple[float, float, float, float], at: Triple) -> Triple:
     """Best share of one direction in phi's second-order form, the others held.
 
@@ -65,7 +65,7 @@ def settle(step: Triple, along: tuple[float, float, float, float], at: Triple) -
     return share, over + share * across, around + share * step[2]
 
 
-@built_in
+@jit_fma_inline
 def nearest_share(steps: Steps, along: tuple[float, float, float, float]) -> Triple:
     """Shares in [-1, 1] where phi's second-order form about the centre is about least, by two sweeps."""
     s, over, around = settle(steps[0], along, (0.0, 0.0, 0.0))
@@ -77,14 +77,14 @@ def nearest_share(steps: Steps, along: tuple[float, float, float, float]) -> Tri
     return s, t, tau
 
 
-@built_in
+@jit_fma_inline
 def fall_over_cell(slopes: Triple, at: Triple) -> float:
     """Least value of a linear function over a whole cell, less its value at some shares."""
     return (-abs(slopes[0]) - slopes[0] * at[0] - abs(slopes[1]) - slopes[1] * at[1]
             - abs(slopes[2]) - slopes[2] * at[2])
 
 
-@built_in
+@jit_fma_inline
 def fall_over_region(slopes: Triple, at: Triple, region: Array, count: int) -> tuple[float, int]:
     """Least value of a linear function over what trims leave of a cell, less its value at some shares; its corner."""
     corner, least = 0, np.inf
@@ -95,7 +95,7 @@ def fall_over_region(slopes: Triple, at: Triple, region: Array, count: int) -> t
     return least - abs(slopes[2]) - slopes[2] * at[2], corner
 
 
-@built_in
+@jit_fma_inline
 def plane_gap(frame: Frame, piece: Piece, along: tuple[float, float], outwards: Triple) -> float:
     """Distance by which the plane of a cell lies beyond the piece's supporting plane; -inf where a cell has none.
 
@@ -122,8 +122,8 @@ def plane_gap(frame: Frame, piece: Piece, along: tuple[float, float], outwards: 
     return float(scale * dot(n, w) - abs(scale * dot(n, c)) - support)
 
 
-@built_in
-def seen_from(frame: Frame, piece: Piece, at: Triple) -> tuple[float, Triple]:
+@jit_fma_inline
+def evaluate_shares(frame: Frame, piece: Piece, at: Triple) -> tuple[float, Triple]:
     """phi at some shares of a, b and c, and its slopes along them there."""
     w, axis, a, b, c = frame
     s, t, tau = at
@@ -133,7 +133,7 @@ def seen_from(frame: Frame, piece: Piece, at: Triple) -> tuple[float, Triple]:
     return value, slopes_along(spread(frame, outwards), rise, climb)
 
 
-@built_in
+@jit_fma_inline
 def bound_inside(piece: Piece, steps: Steps, rho: float, z: float) -> float:
     """Bound from the bottom's and the side's supporting planes together, and from the axis; for cells inside a piece.
 
@@ -160,7 +160,7 @@ def bound_inside(piece: Piece, steps: Steps, rho: float, z: float) -> float:
     return max(least, value - abs(climb) * (abs(a[1]) + abs(b[1]) + abs(c[1])))
 
 
-@built_in
+@jit_fma_inline
 def bound_over_cell(frame: Frame, piece: Piece, view: View, bend: Bend, reach: Triple) -> tuple[float, float]:
     """Least phi of one piece over a whole cell: a lower bound, and one that some point of a whole cell stays under.
 
@@ -196,11 +196,11 @@ def bound_over_cell(frame: Frame, piece: Piece, view: View, bend: Bend, reach: T
     if lower >= wanted:
         return lower, upper
     at = nearest_share(steps, (rise, climb, curved, ring))
-    seen, slopes = seen_from(frame, piece, at)
+    seen, slopes = evaluate_shares(frame, piece, at)
     return max(lower, seen + fall_over_cell(slopes, at) - e), upper
 
 
-@built_in
+@jit_fma_inline
 def bound_over_region(frame: Frame, piece: Piece, reach: Triple, region: Array, count: int) -> tuple[float, float]:
     """Least phi of one piece over what trims leave of a cell: a lower bound, and one that some point stays under.
 
@@ -217,7 +217,7 @@ def bound_over_region(frame: Frame, piece: Piece, reach: Triple, region: Array, 
     """
     e, radius, wanted = reach
     centre = (0.0, 0.0, 0.0)
-    value, slopes = seen_from(frame, piece, centre)
+    value, slopes = evaluate_shares(frame, piece, centre)
     fall, corner = fall_over_region(slopes, centre, region, count)
     lower = max(value - radius, value + fall - e)
     if lower >= wanted:
@@ -226,6 +226,6 @@ def bound_over_region(frame: Frame, piece: Piece, reach: Triple, region: Array, 
     if slopes[2] != 0.0:
         tau = -1.0 if slopes[2] > 0.0 else 1.0
     at = (region[corner, 0], region[corner, 1], tau)
-    value, slopes = seen_from(frame, piece, at)
+    value, slopes = evaluate_shares(frame, piece, at)
     fall, corner = fall_over_region(slopes, at, region, count)
     return max(lower, value + fall - e), value + e

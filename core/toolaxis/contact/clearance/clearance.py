@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeAlias, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, motions, segment_motions
 from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
@@ -44,7 +44,7 @@ class Clearances(NamedTuple):
     checked: tuple[str, ...]
 
 
-class Verdicts(NamedTuple):
+class ClearanceFlags(NamedTuple):
     """Whether n positions or motions keep all required distances.
 
     safe : (n,) True is proven;
@@ -158,7 +158,7 @@ def segment_clearances(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Sur
     return _distances(tool, segment_motions(tips, axis), around, (cutoff, resolution))
 
 
-def clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> Verdicts:
+def clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> ClearanceFlags:
     """Whether every component keeps its required distance from every face, for tool tips.
 
     Parameters
@@ -173,7 +173,7 @@ def clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -
     return _verdicts(tool, motions(tips, axis), around)
 
 
-def segment_clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> Verdicts:
+def segment_clears(tool: Tool, tips: ArrayLike, axis: ArrayLike, around: Surroundings) -> ClearanceFlags:
     """Whether every component keeps its required distance on the motions from each tip to the next, n - 1 rows.
 
     Parameters
@@ -198,14 +198,14 @@ def _distances(tool: Tool, moves: Array, around: Surroundings, how: tuple[float,
     checked = tuple(name for name in _known(tool) if asked[COMPONENTS.index(name)])
     if not around.faces or not n:
         return Clearances(np.full((n, 3), cutoff), np.full((n, 3), -1), np.zeros((n, 3, 3)), checked)
-    found = bounded(around.cells, tool, moves, cutoff, resolution, around.required)
+    found = lower_bounds(around.cells, tool, moves, cutoff, resolution, around.required)
     return Clearances(found.lower, found.face, found.point, checked)
 
 
-def _verdicts(tool: Tool, moves: Array, around: Surroundings) -> Verdicts:
+def _verdicts(tool: Tool, moves: Array, around: Surroundings) -> ClearanceFlags:
     if not around.faces or not len(moves):
-        return Verdicts(np.ones(len(moves), dtype=bool), np.full(len(moves), -1), np.full(len(moves), -1))
-    found = judged(around.cells, tool, moves, around.required)
+        return ClearanceFlags(np.ones(len(moves), dtype=bool), np.full(len(moves), -1), np.full(len(moves), -1))
+    found = keeps_limits(around.cells, tool, moves, around.required)
     safe = np.asarray(found.blocked < 0)
     face = np.where(safe, -1, np.take_along_axis(found.face, np.maximum(found.blocked, 0)[:, None], axis=1)[:, 0])
-    return Verdicts(safe, found.blocked, face)
+    return ClearanceFlags(safe, found.blocked, face)

@@ -6,11 +6,11 @@ from math import pi, sin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.clearance.queries import bounded, judged, motions, segment_motions
+from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, motions, segment_motions
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import axis_rows
-from toolaxis.shape.bounding.bounding_tree import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import BoundingTree, forest
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -20,7 +20,7 @@ Flags = NDArray[np.bool_]
 RESOLUTION = 0.0003
 
 
-def skin_cells(skin: Cells | Sequence[Face]) -> Cells:
+def skin_cells(skin: BoundingTree | Sequence[Face]) -> BoundingTree:
     """Cells of a skin, made once and used for any tool and axis.
 
     Parameters
@@ -28,10 +28,10 @@ def skin_cells(skin: Cells | Sequence[Face]) -> Cells:
     skin : Cells or sequence of Face
         The machined face and its tangent-continuous neighbours.
     """
-    return skin if isinstance(skin, Cells) else forest(skin)
+    return skin if isinstance(skin, BoundingTree) else forest(skin)
 
 
-def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face] | None = None, *,
+def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: BoundingTree | Sequence[Face] | None = None, *,
           allowance: float = 0.0) -> Array:
     """Upper bound of the depth to which the cutter reaches below the skin, for contacts of a face.
 
@@ -64,7 +64,7 @@ def gouge(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, skin: Cells | 
     return penetration(tool, tips, axis_rows(axis, len(tips)), (face,) if skin is None else skin, allowance=allowance)
 
 
-def penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], *,
+def penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingTree | Sequence[Face], *,
                 allowance: float = 0.0) -> Array:
     """Upper bound of the depth below the skin, for tool tips.
 
@@ -86,7 +86,7 @@ def penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequ
     return _depth(tool, motions(tips, axis), skin, allowance)
 
 
-def segment_penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], *,
+def segment_penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingTree | Sequence[Face], *,
                         allowance: float = 0.0) -> Array:
     """Upper bound of the depth below the skin on the straight motions from each tip to the next, (n - 1,) mm.
 
@@ -104,7 +104,7 @@ def segment_penetration(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cell
     return _depth(tool, segment_motions(tips, axis), skin, allowance)
 
 
-def gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face], limit: float) -> Flags:
+def gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingTree | Sequence[Face], limit: float) -> Flags:
     """Whether the cutter may reach below the skin deeper than a limit: False is proven, (n,).
 
     Parameters
@@ -126,7 +126,7 @@ def gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[
     return _exceeds(tool, motions(tips, axis), skin, limit)
 
 
-def segment_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | Sequence[Face],
+def segment_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingTree | Sequence[Face],
                    limit: float) -> Flags:
     """Whether the cutter may reach deeper than a limit on the motions from each tip to the next, (n - 1,).
 
@@ -186,16 +186,16 @@ def depth_from_distance(tool: Tool, distance: Array, allowance: float = 0.0) -> 
     return np.maximum(allowance + np.where(inside <= corner, inside, corner + (inside - corner) / wedge), 0.0)
 
 
-def _depth(tool: Tool, moves: Array, skin: Cells | Sequence[Face], allowance: float) -> Array:
+def _depth(tool: Tool, moves: Array, skin: BoundingTree | Sequence[Face], allowance: float) -> Array:
     cells = skin_cells(skin)
     only = np.tile([0.0, -np.inf, -np.inf], (len(cells.faces), 1))
-    found = bounded(cells, tool, moves, allowance, -least_distance(tool, RESOLUTION), only)
+    found = lower_bounds(cells, tool, moves, allowance, -least_distance(tool, RESOLUTION), only)
     return depth_from_distance(tool, found.lower[:, 0], allowance)
 
 
-def _exceeds(tool: Tool, moves: Array, skin: Cells | Sequence[Face], limit: float) -> Flags:
+def _exceeds(tool: Tool, moves: Array, skin: BoundingTree | Sequence[Face], limit: float) -> Flags:
     if not np.isfinite(limit):
         raise InvalidInput(f"gouge limit is {limit} mm: it must be a finite number")
     cells = skin_cells(skin)
     required = np.tile([least_distance(tool, limit), -np.inf, -np.inf], (len(cells.faces), 1))
-    return judged(cells, tool, moves, required).blocked >= 0
+    return keeps_limits(cells, tool, moves, required).blocked >= 0

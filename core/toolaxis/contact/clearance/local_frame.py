@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import built_in
+from toolaxis.numeric.jit import jit_fma_inline
 
 Array = NDArray[np.float64]
 Triple: TypeAlias = tuple[float, float, float]
@@ -23,31 +23,31 @@ Steps: TypeAlias = tuple[Triple, Triple, Triple]
 Piece: TypeAlias = tuple[float, float, float, float, float, float, float]
 
 
-@built_in
+@jit_fma_inline
 def dot(x: Triple, y: Triple) -> float:
     """Scalar product."""
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
-@built_in
+@jit_fma_inline
 def cross(x: Triple, y: Triple) -> Triple:
     """Vector product."""
     return x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
 
 
-@built_in
+@jit_fma_inline
 def plus(x: Triple, y: Triple, share: float) -> Triple:
     """x + share y."""
     return x[0] + share * y[0], x[1] + share * y[1], x[2] + share * y[2]
 
 
-@built_in
+@jit_fma_inline
 def row(table: Array, k: int, first: int) -> Triple:
     """Three neighbours of a row."""
     return table[k, first], table[k, first + 1], table[k, first + 2]
 
 
-@built_in
+@jit_fma_inline
 def look(w: Triple, axis: Triple) -> View:
     """Where a point, seen from the tip, stands to the axis."""
     z = dot(w, axis)
@@ -57,7 +57,7 @@ def look(w: Triple, axis: Triple) -> View:
     return rho, z, scale, (p[0] * scale, p[1] * scale, p[2] * scale)
 
 
-@built_in
+@jit_fma_inline
 def spread(frame: Frame, outwards: Triple) -> Steps:
     """Parts of a, b and c outwards, along the axis and around it."""
     _, axis, a, b, c = frame
@@ -66,7 +66,7 @@ def spread(frame: Frame, outwards: Triple) -> Steps:
             (dot(c, outwards), dot(c, axis), dot(c, around)))
 
 
-@built_in
+@jit_fma_inline
 def slopes_along(steps: Steps, rise: float, climb: float) -> Triple:
     """Slopes along a, b and c of a function with slopes ``rise`` along rho and ``climb`` along z."""
     a, b, c = steps

@@ -12,7 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
-from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
 
@@ -26,7 +26,7 @@ _MOTIONS_AT_ONCE = 256
 _QUESTION, _MOTION = 2000, 20
 
 
-class Found(NamedTuple):
+class NearestFound(NamedTuple):
     """Answers for n positions or motions.
 
     lower : (n, 3) lower bounds of the signed distance of cutter, shank and holder, mm;
@@ -92,15 +92,15 @@ def _axes(axis: ArrayLike, count: int) -> Array:
     return np.broadcast_to(rows, (count, 3))
 
 
-def bounded(cells: Cells, tool: Tool, moves: Array, cutoff: ArrayLike, resolution: float,
-            required: Array | None = None) -> Found:
+def lower_bounds(cells: BoundingTree, tool: Tool, moves: Array, cutoff: ArrayLike, resolution: float,
+                 required: Array | None = None) -> NearestFound:
     """Lower bounds of the distances, at most ``resolution`` (and the faces' tolerance) below the true ones.
 
     Depths beyond 0.1 mm are only told to a twentieth.
 
     Parameters
     ----------
-    cells : Cells
+    cells : BoundingTree
     tool : Tool
     moves : (n, 3, 3) array
         From `motions` or `segment_motions`.
@@ -115,12 +115,12 @@ def bounded(cells: Cells, tool: Tool, moves: Array, cutoff: ArrayLike, resolutio
     return _run(cells, tool, moves, (limits, np.broadcast_to(np.asarray(cutoff, dtype=float), 3), resolution))
 
 
-def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
+def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array) -> NearestFound:
     """Whether every component is proven to keep its limits: ``blocked`` is -1 there.
 
     Parameters
     ----------
-    cells : Cells
+    cells : BoundingTree
     tool : Tool
     moves : (n, 3, 3) array
         From `motions` or `segment_motions`.
@@ -130,24 +130,26 @@ def judged(cells: Cells, tool: Tool, moves: Array, required: Array) -> Found:
     return _run(cells, tool, moves, (np.ascontiguousarray(required), np.full(3, np.inf), -1.0))
 
 
-def _run(cells: Cells, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> Found:
+def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> NearestFound:
     limits, cutoff, resolution = ask
     pieces = tool.pieces
     asked = np.asarray((limits > -np.inf).any(axis=0))
     pieces = pieces[asked[pieces[:, 7].astype(int)]]
     n = len(moves)
     relief = no_relief(len(cells.faces)) if cells.mismatch is None else cells.mismatch.plain
-    total = Found(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1), np.zeros(n, int))
+    total = NearestFound(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1),
+                         np.zeros(n, int))
     for first in range(0, len(pieces), _PIECES_AT_ONCE):
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
         asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
         values, tags = _descended(cells, asked_of, moves, cutoff)
-        total = _merged(total, Found(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1), *tags[:, 3:].T))
+        total = _merged(total, NearestFound(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
+                                            *tags[:, 3:].T))
     return total
 
 
-def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
+def _descended(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
     room = scratch(cells.most_edges) if _compiled.available else None
@@ -163,8 +165,8 @@ def _descended(cells: Cells, tool: ToolData, moves: Array, cutoff: Array) -> tup
     return values, tags
 
 
-def _merged(one: Found, other: Found) -> Found:
+def _merged(one: NearestFound, other: NearestFound) -> NearestFound:
     nearer = (other.lower < one.lower) | (one.face < 0)
-    return Found(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
-                 np.where(nearer[..., None], other.point, one.point),
-                 np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)
+    return NearestFound(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
+                        np.where(nearer[..., None], other.point, one.point),
+                        np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.local_frame import Triple
-from toolaxis.numeric.jit import built_in
+from toolaxis.numeric.jit import jit_fma_inline
 from toolaxis.shape.seams import GREATEST, REACH
 
 Array = NDArray[np.float64]
@@ -33,15 +33,15 @@ def no_relief(faces: int) -> Relief:
     return np.empty((0, 7)), np.zeros((faces + 1, 2), dtype=np.int64), 0.0
 
 
-@built_in
-def relieved(distance: float, relief: float, stock: float) -> float:
+@jit_fma_inline
+def relieve_distance(distance: float, relief: float, stock: float) -> float:
     """A signed distance with what is taken off the depth below the stock that is left, mm."""
     return max(distance, min(distance + relief, stock))
 
 
-@built_in
-def relieved_bounds(relief: Relief, ball: tuple[int, Triple, float], bounds: tuple[float, float, float],
-                    ) -> tuple[float, float]:
+@jit_fma_inline
+def relieve_bounds(relief: Relief, ball: tuple[int, Triple, float], bounds: tuple[float, float, float],
+                   ) -> tuple[float, float]:
     """Bounds of a signed distance over a cell, less deep by what is taken off there, mm.
 
     Most cells are spared the look at the edges: those that no relief brings up to what is wanted, and those too large
@@ -59,21 +59,21 @@ def relieved_bounds(relief: Relief, ball: tuple[int, Triple, float], bounds: tup
     lower, upper, wanted = bounds
     stock = relief[2]
     if face < 0:
-        return lower, relieved(upper, GREATEST, stock)
+        return lower, relieve_distance(upper, GREATEST, stock)
     helps = lower < min(wanted, stock) and lower + GREATEST >= wanted and radius < 2.0 * REACH
     if not helps and upper >= stock:
         return lower, upper
     less, more = relief_over(relief, face, centre, radius)
-    return relieved(lower, less, stock), relieved(upper, more, stock)
+    return relieve_distance(lower, less, stock), relieve_distance(upper, more, stock)
 
 
-@built_in
-def faded(distance: float) -> float:
+@jit_fma_inline
+def fading_share(distance: float) -> float:
     """Share of a height that counts at a distance from its edge."""
     return min(max(2.0 - distance / REACH, 0.0), 1.0)
 
 
-@built_in
+@jit_fma_inline
 def relief_over(relief: Relief, face: int, centre: Triple, radius: float) -> tuple[float, float]:
     """Least and greatest relief of the points of a face in a ball, mm.
 
@@ -105,8 +105,8 @@ def relief_over(relief: Relief, face: int, centre: Triple, radius: float) -> tup
         if square > (2.0 * REACH + radius) ** 2:
             continue
         away = np.sqrt(square)
-        greatest = max(greatest, height * faded(away - radius))
-        least = max(least, height * faded(away + radius))
+        greatest = max(greatest, height * fading_share(away - radius))
+        least = max(least, height * fading_share(away + radius))
     if face < 0:
         least = 0.0
     return least, greatest

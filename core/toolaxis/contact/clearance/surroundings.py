@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.bounding.bounding_tree import Cells, forest
+from toolaxis.shape.bounding.bounding_tree import BoundingTree, forest
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 
@@ -76,7 +76,7 @@ class Surroundings:
         return cls(tuple(faces), table)
 
     @cached_property
-    def cells(self) -> Cells:
+    def cells(self) -> BoundingTree:
         """The faces' cells under one root."""
         return forest(self.faces)
 

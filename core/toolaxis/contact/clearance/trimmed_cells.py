@@ -5,14 +5,14 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 # centre u, v and half widths
 Rect: TypeAlias = tuple[float, float, float, float]
 
 
-@built_in
+@jit_fma_inline
 def clip_edges(edges: Array, rect: Rect, corners: Array) -> int:
     """Ends of the parts of trim edges that run through the inner part of a rectangle.
 
@@ -50,7 +50,7 @@ def clip_edges(edges: Array, rect: Rect, corners: Array) -> int:
     return count
 
 
-@compiled
+@jit
 def inside_leaf(edges: Array, reference: Array, u: float, v: float) -> bool:
     """Whether a point of a leaf's rectangle lies inside the loops: crossings of the way from the reference point.
 
@@ -77,8 +77,8 @@ def inside_leaf(edges: Array, reference: Array, u: float, v: float) -> bool:
     return within
 
 
-@built_in
-def touched(edges: Array, rect: Rect) -> bool:
+@jit_fma_inline
+def edge_touches(edges: Array, rect: Rect) -> bool:
     """Whether an edge comes into a small rectangle, or within rounding of it.
 
     Parameters
@@ -104,7 +104,7 @@ def touched(edges: Array, rect: Rect) -> bool:
     return False
 
 
-@built_in
+@jit_fma_inline
 def shrunk(region: Array, count: int, axis: int, least: float) -> tuple[float, float]:
     """Middle and half width of corners along u or v; the corners become shares of it.
 
@@ -125,7 +125,7 @@ def shrunk(region: Array, count: int, axis: int, least: float) -> tuple[float, f
     return middle, half
 
 
-@compiled
+@jit
 def trim_cell(edges: Array, reference: Array, rect: Rect, region: Array) -> tuple[int, float, float, float, float]:
     """Corners of what trims leave of a rectangle, and the box around them.
 
@@ -153,7 +153,7 @@ def trim_cell(edges: Array, reference: Array, rect: Rect, region: Array) -> tupl
         for j in (-1.0, 1.0):
             x, y = u + i * du, v + j * dv
             # An edge in the border zone was not clipped, and rounding decides on which side of it the corner lies.
-            if inside_leaf(edges, reference, x, y) or touched(edges, (x, y, 3e-9 * du, 3e-9 * dv)):
+            if inside_leaf(edges, reference, x, y) or edge_touches(edges, (x, y, 3e-9 * du, 3e-9 * dv)):
                 region[count, 0], region[count, 1] = x, y
                 count += 1
     u, du = shrunk(region, count, 0, 1e-9 * du)

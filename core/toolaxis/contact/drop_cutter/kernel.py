@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -31,7 +31,7 @@ _CLOSE = 1e-14
 _SHIFT, _LEVEL = 6, 63
 
 
-@compiled
+@jit
 def underside(cutter: Cutter, rho: float) -> float:
     """Height of the cutter's underside above its tip at a distance from its axis, mm."""
     flat, corner, sine, cosine, _ = cutter
@@ -45,7 +45,7 @@ def underside(cutter: Cutter, rho: float) -> float:
     return corner * (1.0 - sine) + (t - corner * cosine) * cosine / sine
 
 
-@compiled
+@jit
 def _arc_rest(cutter: Cutter, line: tuple[float, float], low: float, high: float) -> float:
     """As `edge_rest` on the corner arc, beyond the flat bottom and for a line that rises.
 
@@ -83,7 +83,7 @@ def _arc_rest(cutter: Cutter, line: tuple[float, float], low: float, high: float
     return float(min(max(low, np.sqrt(max(rho * rho - m * m, 0.0))), high))
 
 
-@compiled
+@jit
 def edge_rest(cutter: Cutter, line: tuple[float, float], low: float, high: float) -> float:
     """Where on a straight line the cutter rests: u in [low, high] at which k u - h(sqrt(m^2 + u^2)) is greatest.
 
@@ -105,7 +105,7 @@ def edge_rest(cutter: Cutter, line: tuple[float, float], low: float, high: float
     return float(min(max(low, k * sine * m / np.sqrt(cosine * cosine - k * k * sine * sine)), high))
 
 
-@compiled
+@jit
 def _edge(cutter: Cutter, a: tuple[float, float, float], b: tuple[float, float, float], best: float) -> float:
     """Height of the tip resting on the edge between two points relative to the axis, or best where that is higher."""
     if a[2] > b[2]:
@@ -130,7 +130,7 @@ def _edge(cutter: Cutter, a: tuple[float, float, float], b: tuple[float, float, 
     return max(best, float(z - underside(cutter, np.sqrt(m * m + u * u))))
 
 
-@compiled
+@jit
 def _triangle(cutter: Cutter, row: Array, x: float, y: float, best: float) -> float:
     """Height of the tip at (x, y) resting on one triangle, or best where that is higher."""
     kind = row[14]
@@ -152,7 +152,7 @@ def _triangle(cutter: Cutter, row: Array, x: float, y: float, best: float) -> fl
     return float(max(best, min(tip, row[15] - row[13]))) if inside else best
 
 
-@compiled
+@jit
 def _bound(cutter: Cutter, box: Array, x: float, y: float) -> float:
     """No tip at (x, y) that rests on what is in the box is higher than this."""
     dx, dy = max(box[0] - x, x - box[1], 0.0), max(box[2] - y, y - box[3], 0.0)
@@ -162,7 +162,7 @@ def _bound(cutter: Cutter, box: Array, x: float, y: float) -> float:
     return float(box[4] - underside(cutter, np.sqrt(square)))
 
 
-@compiled
+@jit
 def _one(cutter: Cutter, tree: Tree, x: float, y: float, stack: tuple[Array, Counts]) -> float:
     """Height of the tip at (x, y); the stack holds bounds and numbers of nodes to visit, the highest last."""
     rows, boxes, levels = tree
@@ -193,7 +193,7 @@ def _one(cutter: Cutter, tree: Tree, x: float, y: float, stack: tuple[Array, Cou
     return best
 
 
-@compiled
+@jit
 def drop_many(cutter: Cutter, tree: Tree, xy: Array, out: Array) -> None:
     """Heights of the tip at points (k, 2) into out (k,), -inf where nothing is below or above the cutter."""
     room = FAN * len(tree[2])

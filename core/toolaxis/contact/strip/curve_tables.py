@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import Pair, tip_from
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 Floats3: TypeAlias = tuple[float, float, float]
@@ -29,7 +29,7 @@ WIDEST = 0.45
 FIRST_CLOSE = 3
 
 
-@built_in
+@jit_fma_inline
 def iso_state(surface: SurfaceData, place: tuple[float, int, float, float], d: Array, basis: Array) -> State:
     """Point, tangent, normal and its rate on an iso-curve; place = (sign, along, fixed, w)."""
     sign, along, fixed, w = place
@@ -52,7 +52,7 @@ def iso_state(surface: SurfaceData, place: tuple[float, int, float, float], d: A
             r0 - dot * n0, r1 - dot * n1, r2 - dot * n2)
 
 
-@compiled
+@jit
 def lay_road(surface: SurfaceData, place: tuple[float, int, float, float], sizes: tuple[float, float, float],
              table: Array) -> tuple[int, int]:
     """Nodes of the pass around a contact into table (ROWS, 13); the contact is row SIDE.
@@ -95,7 +95,7 @@ def lay_road(surface: SurfaceData, place: tuple[float, int, float, float], sizes
     return ends
 
 
-@compiled
+@jit
 def lay_bank(surface: SurfaceData, place: tuple[float, int, float, float], sizes: tuple[float, float, float],
              table: Array, rows: tuple[int, int]) -> int:
     """Nodes of the cross curve from row rows[0] on (laid already unless it is SIDE) up to a length on one side.
@@ -134,7 +134,7 @@ def lay_bank(surface: SurfaceData, place: tuple[float, int, float, float], sizes
         s += side * CLOSE * radius / pace
 
 
-@built_in
+@jit_fma_inline
 def interval(table: Array, ends: tuple[int, int], near: int, x: float) -> int:
     """The row k with table[k, 0] <= x < table[k + 1, 0], by steps from a row near to it."""
     k = min(max(near, ends[0]), ends[1] - 1)
@@ -145,7 +145,7 @@ def interval(table: Array, ends: tuple[int, int], near: int, x: float) -> int:
     return k
 
 
-@built_in
+@jit_fma_inline
 def blend(table: Array, k: int, column: int, x: float) -> Pair:
     """Value and derivative at x of three columns, from the rows k and k + 1 with derivatives three columns on."""
     size = table[k + 1, 0] - table[k, 0]
@@ -162,7 +162,7 @@ def blend(table: Array, k: int, column: int, x: float) -> Pair:
             db * q0 + dc * f0 + de * g0, db * q1 + dc * f1 + de * g1, db * q2 + dc * f2 + de * g2)
 
 
-@built_in
+@jit_fma_inline
 def road_tip(cutter: Array, axis: Floats3, table: Array, k: int, w: float) -> Pair:
     """Tip and its rate at w of a road, between rows k and k + 1."""
     return tip_from(cutter, axis, blend(table, k, 1, w), blend(table, k, 7, w))

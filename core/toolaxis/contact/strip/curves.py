@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,7 +25,7 @@ ALONG_U, ALONG_V, SECTION = 0, 1, 2
 NODES = 128
 
 
-@built_in
+@jit_fma_inline
 def normal_rates(d: Array, sign: float, rates: Array) -> None:
     """Unit normal and its derivatives in u and v into rates (3, 3), from the six derivatives d (6, 3)."""
     a0, a1, a2, b0, b1, b2 = d[1, 0], d[1, 1], d[1, 2], d[2, 0], d[2, 1], d[2, 2]
@@ -51,7 +51,7 @@ def normal_rates(d: Array, sign: float, rates: Array) -> None:
         rates[row, 0], rates[row, 1], rates[row, 2] = r0 - along * n0, r1 - along * n1, r2 - along * n2
 
 
-@compiled
+@jit
 def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
     """The normal next to a point where Su x Sv vanishes; its rates are taken as zero."""
     p, q = (d[4], d[2]) if su_small else (d[1], d[4])
@@ -67,7 +67,7 @@ def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
         rates[2, c] = 0.0
 
 
-@built_in
+@jit_fma_inline
 def curve_point(side: tuple[SurfaceData, float], curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
     """Point, tangent, normal and its rate at parameter w of a curve.
 
@@ -101,25 +101,25 @@ def curve_point(side: tuple[SurfaceData, float], curve: Curve, w: float, state: 
         state[3, c] = du * rates[1, c] + dv * rates[2, c]
 
 
-@compiled
+@jit
 def new_scratch() -> Scratch:
     """Working memory of `curve_point`."""
     return np.empty((6, 3)), np.empty((6, 26)), np.empty((3, 3)), np.empty(4)
 
 
-@compiled
+@jit
 def new_nodes() -> Nodes:
     """Room for the nodes of a plane section, and their numbers ahead of and behind the start."""
     return np.empty((2 * NODES + 1, 10)), np.zeros(2, dtype=np.int64)
 
 
-@built_in
+@jit_fma_inline
 def iso_curve(along: int, fixed: float, frame: Array, nodes: Nodes) -> Curve:
     """The iso-curve along u (0) or v (1) on which the other parameter is fixed; frame and nodes are not used."""
     return along, fixed, frame[0], nodes[0], nodes[1]
 
 
-@compiled
+@jit
 def plane_section(surface: SurfaceData, start: tuple[float, float, float], ahead: tuple[Array, Array], nodes: Nodes,
                   scratch: Scratch) -> Curve:
     """The section of a surface by a plane through a point of it.
@@ -146,7 +146,7 @@ def plane_section(surface: SurfaceData, start: tuple[float, float, float], ahead
     return curve
 
 
-@built_in
+@jit_fma_inline
 def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
     """Rates of u and v that keep in the plane and make unit progress along the tangent."""
     d, _, _, place = scratch
@@ -161,7 +161,7 @@ def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
     place[3] = -p / det if det != 0.0 else 0.0
 
 
-@built_in
+@jit_fma_inline
 def _store_node(curve: Curve, index: int, scratch: Scratch) -> None:
     d, _, _, place = scratch
     row = curve[3][index]
@@ -179,7 +179,7 @@ def _store_node(curve: Curve, index: int, scratch: Scratch) -> None:
     row[3] = place[3] / size if size > 0.0 else 0.0
 
 
-@compiled
+@jit
 def _section_point(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> None:
     """Evaluate a plane section at w, laying nodes up to there first."""
     spacing, built = curve[1], curve[4]
@@ -194,7 +194,7 @@ def _section_point(surface: SurfaceData, curve: Curve, w: float, scratch: Scratc
     _progress(surface, curve, side * last, w - side * last * spacing, scratch)
 
 
-@compiled
+@jit
 def _progress(surface: SurfaceData, curve: Curve, index: int, t: float, scratch: Scratch) -> None:
     """The point of the plane that lies t ahead of a node along its tangent, by Newton's method."""
     plane, row = curve[2], curve[3][index]
@@ -220,7 +220,7 @@ def _progress(surface: SurfaceData, curve: Curve, index: int, t: float, scratch:
     _point_forward(plane, row[7:10], scratch)
 
 
-@compiled
+@jit
 def curve_length(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> float:
     """Arc length of a plane section from its start to w, mm, by three-point Gauss quadrature between nodes."""
     spacing, d, place = curve[1], scratch[0], scratch[3]

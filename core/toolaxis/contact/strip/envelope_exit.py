@@ -17,13 +17,13 @@ from toolaxis.contact.strip.newton import exit_step
 from toolaxis.contact.strip.swept_cutter import (
     Setting,
     gap_rates,
-    lifted_point,
+    lift_point,
     pair_of,
     pass_tip,
     scan_pass,
     signed_distance,
 )
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 Job: TypeAlias = tuple[Setting, Curve, Curve]
@@ -39,7 +39,7 @@ Lengths: TypeAlias = tuple[float, float, float, float]
 _BEFORE = 1e-6
 
 
-@compiled
+@jit
 def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, float], room: Array,
                 memory: Memory) -> tuple[bool, float, float]:
     """Solve F = 0, dF/dw = 0.
@@ -62,7 +62,7 @@ def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, fl
     tip, point, second, old = memory[1], memory[2], room[0], room[2]
     w_old = w0
     for step in range(12):
-        lifted_point(setting, cross, s, lift, memory)
+        lift_point(setting, cross, s, lift, memory)
         pass_tip(setting, road, w, memory)
         travel = sqrt(tip[1, 0] ** 2 + tip[1, 1] ** 2 + tip[1, 2] ** 2)
         pace = sqrt(point[1, 0] ** 2 + point[1, 1] ** 2 + point[1, 2] ** 2)
@@ -83,7 +83,7 @@ def newton_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, fl
     return False, s, w
 
 
-@compiled
+@jit
 def least_between(job: Job, point: Array, ends: tuple[int, int], road: Road,
                   memory: Memory) -> tuple[float, float, float]:
     """The least distance of a point to the cutter between two nodes of the pass.
@@ -140,13 +140,13 @@ def least_between(job: Job, point: Array, ends: tuple[int, int], road: Road,
     return best, place, slope
 
 
-@built_in
+@jit_fma_inline
 def _valley(gaps: Array, k: int) -> bool:
     """Whether the distance has a minimum between nodes k and k + 1."""
     return bool(gaps[k, 1] < 0.0 <= gaps[k + 1, 1])
 
 
-@compiled
+@jit
 def _deepest(job: Job, lengths: Lengths, road: Road, memory: Memory) -> tuple[float, float, float]:
     """The least distance of memory[2] to the swept cutter, from the distances of the nodes; F, w, F_s.
 
@@ -166,15 +166,15 @@ def _deepest(job: Job, lengths: Lengths, road: Road, memory: Memory) -> tuple[fl
     return best, place, slope
 
 
-@compiled
+@jit
 def swept_distance(job: Job, lengths: Lengths, s: float, road: Road, memory: Memory) -> tuple[float, float, float]:
     """m(s), the w at which it is taken, and dm/ds."""
-    lifted_point(job[0], job[2], s, lengths[0], memory)
+    lift_point(job[0], job[2], s, lengths[0], memory)
     scan_pass(job[0], road[0], (road[2], road[3]), memory[2], road[1])
     return _deepest(job, lengths, road, memory)
 
 
-@built_in
+@jit_fma_inline
 def _tip_between(table: Array, rows: tuple[int, int], w: float, tip: Array) -> None:
     """The tip at w by cubic interpolation between the nodes, into tip[0]."""
     k = rows[0]
@@ -193,9 +193,9 @@ def _tip_between(table: Array, rows: tuple[int, int], w: float, tip: Array) -> N
                      + q * ((1.0 - t) * table[k, 4 + c] - t * table[k + 1, 4 + c]))
 
 
-@compiled
-def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, float], road: Road,
-              memory: Memory) -> bool:
+@jit
+def is_first_exit(job: Job, lengths: Lengths, found: tuple[float, float, float, float], road: Road,
+                  memory: Memory) -> bool:
     """Whether an exit is the first one, and not covered from elsewhere on the pass; found = (s0, w0, s, w).
 
     Points a third and two thirds of the way must be covered, and the exit must be free of the cutter everywhere else.
@@ -208,12 +208,12 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
         return False
     for k in range(1, 3):
         share = k / 3.0
-        lifted_point(setting, cross, s0 + share * (s - s0), lengths[0], memory)
+        lift_point(setting, cross, s0 + share * (s - s0), lengths[0], memory)
         _tip_between(table, (first, last), w0 + share * (w - w0), tip)
         if signed_distance(setting[2], setting[3], point[0, 0] - tip[0, 0], point[0, 1] - tip[0, 1],
                            point[0, 2] - tip[0, 2]) >= 0.0:
             return False
-    lifted_point(setting, cross, s, lengths[0], memory)
+    lift_point(setting, cross, s, lengths[0], memory)
     scan_pass(setting, table, (first, last), point, gaps)
     for k in range(first, last):
         if gaps[k, 0] < -1e-9 * lengths[1]:
@@ -225,7 +225,7 @@ def confirmed(job: Job, lengths: Lengths, found: tuple[float, float, float, floa
     return True
 
 
-@compiled
+@jit
 def _root(job: Job, lengths: Lengths, inside: float, outside: float,
           bench: tuple[Road, Memory]) -> float:
     """The zero of m between a covered and an uncovered s.
@@ -263,7 +263,7 @@ def _root(job: Job, lengths: Lengths, inside: float, outside: float,
     return outside
 
 
-@built_in
+@jit_fma_inline
 def _pole_between(job: Job, s: float, ahead: float) -> float:
     """The end of the surface on an iso-curve between two parameters; NaN where there is none."""
     surface, cross = job[0][0], job[2]
@@ -274,7 +274,7 @@ def _pole_between(job: Job, s: float, ahead: float) -> float:
     return float(end) if min(s, ahead) < end < max(s, ahead) else nan
 
 
-@compiled
+@jit
 def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road,
                memory: Memory) -> tuple[float, int]:
     """The first exit by steps along the cross curve.
@@ -296,7 +296,7 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
     setting, _, cross = job
     s0, stride = move
     state, point = memory[0], memory[2]
-    lifted_point(setting, cross, s0, lengths[0], memory)
+    lift_point(setting, cross, s0, lengths[0], memory)
     x, y, z = state[0, 0], state[0, 1], state[0, 2]
     a, b, c = state[2, 0], state[2, 1], state[2, 2]
     pace = sqrt(state[1, 0] ** 2 + state[1, 1] ** 2 + state[1, 2] ** 2)
@@ -306,7 +306,7 @@ def march_exit(job: Job, lengths: Lengths, move: tuple[float, float], road: Road
     while pace > 1e-300:
         steps += 1
         ahead = s + stride / pace
-        lifted_point(setting, cross, ahead, lengths[0], memory)
+        lift_point(setting, cross, ahead, lengths[0], memory)
         if a * state[2, 0] + b * state[2, 1] + c * state[2, 2] < 0.0:
             pole = _pole_between(job, s, ahead)
             if not isnan(pole):

@@ -21,12 +21,12 @@ from toolaxis.contact.strip.curves import (
     plane_section,
 )
 from toolaxis.contact.strip.cutter_parameters import CAP
-from toolaxis.contact.strip.envelope_exit import Job, Lengths, Memory, Road, confirmed, march_exit, newton_exit
+from toolaxis.contact.strip.envelope_exit import Job, Lengths, Memory, Road, is_first_exit, march_exit, newton_exit
 from toolaxis.contact.strip.second_order import Form, compliance, surface_form
 from toolaxis.contact.strip.swept_cutter import SIDE_NODES, lay_pass, new_memory
 from toolaxis.contact.strip.tabulated_exit import rapid_exit
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 
 Array = NDArray[np.float64]
 Geometry: TypeAlias = tuple[SurfaceData, float, Array]
@@ -52,7 +52,7 @@ STRIDE = 1 / 16
 """Longest step of the march, in radii of the tool."""
 
 
-@compiled
+@jit
 def _frame_at(surface: SurfaceData, sign: float, contact: Array, scratch: Scratch, frame: Array) -> bool:
     """Rows feed, left, normal into frame; contact = (u, v, feed code, vector); False where there is no feed."""
     d, basis, rates, _ = scratch
@@ -78,7 +78,7 @@ def _frame_at(surface: SurfaceData, sign: float, contact: Array, scratch: Scratc
     return True
 
 
-@compiled
+@jit
 def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, float], bench: Bench,
                stride: float) -> float:
     """s of the exit on one side; start = (s0, w0, s, w), with s = s0 where there is no guess."""
@@ -90,7 +90,7 @@ def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, flo
         for c in range(3):
             room[0, c] = (table[high, 4 + c] - table[low, 4 + c]) / (table[high, 0] - table[low, 0])
         solved, s, w = newton_exit(job, lengths, start, room, memory)
-        if solved and confirmed(job, lengths, (s0, w0, s, w), road, memory):
+        if solved and is_first_exit(job, lengths, (s0, w0, s, w), road, memory):
             far = 0.0
             for c in range(3):
                 far += (memory[2][0, c] - room[1, c]) ** 2
@@ -101,7 +101,7 @@ def _side_exit(job: Job, lengths: Lengths, start: tuple[float, float, float, flo
     return s
 
 
-@compiled
+@jit
 def _curves(surface: SurfaceData, contact: Array, frame: Array, node: float,
             rooms: tuple[Nodes, Nodes, Scratch]) -> tuple[Curve, Curve]:
     """Pass and cross curve of a contact; in the step parameter where contact[6] is even, else along normal sections."""
@@ -116,7 +116,7 @@ def _curves(surface: SurfaceData, contact: Array, frame: Array, node: float,
     return road, iso_curve(ALONG_V if code == ALONG_U else ALONG_U, u if code == ALONG_U else v, frame, across)
 
 
-@compiled
+@jit
 def _guess(form: Form, frame: Array, cutter: Array, axis: Array, h: float) -> tuple[float, float]:
     """Second-order half width, mm, drawn in below 2 R, and advance along the feed per mm to the left; zeros if none.
 
@@ -131,7 +131,7 @@ def _guess(form: Form, frame: Array, cutter: Array, axis: Array, h: float) -> tu
     return width / np.sqrt(1.0 + (0.5 * width / radius) ** 2), ahead
 
 
-@compiled
+@jit
 def _paces(contact: Array, frame: Array, d: Array) -> tuple[float, float, float]:
     """Rate of the pass along the feed, and of the cross curve along the feed and to the left."""
     if contact[2] == SECTION:
@@ -147,7 +147,7 @@ def _paces(contact: Array, frame: Array, d: Array) -> tuple[float, float, float]
     return pace, c_f, c_k
 
 
-@compiled
+@jit
 def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes, bench: Bench) -> tuple[float, float]:
     """Half widths at one contact: towards lower and upper s, the cross curve's parameter."""
     surface, sign, cutter = geometry
@@ -184,14 +184,14 @@ def contact_widths(geometry: Geometry, contact: Array, axis: Array, sizes: Sizes
     return abs(low - s0), abs(high - s0)
 
 
-@compiled
+@jit
 def new_bench() -> Bench:
     road = (np.empty((2 * SIDE_NODES + 1, 7)), np.empty((2 * SIDE_NODES + 1, 2)), 0, 0)
     return (road, new_memory(new_scratch()), np.empty((3, 3)), np.empty((3, 3)), (new_nodes(), new_nodes()),
             np.zeros(1))
 
 
-@compiled
+@jit
 def section_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> float:
     """Half widths at n contacts into out (n, 2), towards lower and upper parameter of the cross curves; steps taken."""
     bench = new_bench()
@@ -200,7 +200,7 @@ def section_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Size
     return float(bench[5][0])
 
 
-@compiled
+@jit
 def step_half_widths(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> float:
     """Half widths in the step parameter at n contacts with k axes each into out (k, n, 2); steps taken with care.
 

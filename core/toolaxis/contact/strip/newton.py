@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import Pair, Vector, gap_rates
-from toolaxis.numeric.jit import built_in
+from toolaxis.numeric.jit import jit_fma_inline
 
 Array = NDArray[np.float64]
 Second: TypeAlias = tuple[float, float, float]
@@ -15,7 +15,7 @@ Step: TypeAlias = tuple[float, float, float, bool]
 """ds, dw, dF/ds, and whether F has a minimum in w there, on the part of the cutter that was meant."""
 
 
-@built_in
+@jit_fma_inline
 def exit_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Second) -> Step:
     """Newton's step; second is the second derivative of the tip along the pass."""
     if cutter[0] > 0.0:
@@ -23,7 +23,7 @@ def exit_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Secon
     return _ball_step(cutter, axis, point, tip, second)
 
 
-@built_in
+@jit_fma_inline
 def side_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Second) -> Step:
     """Newton's step for an exit through the side line above the arc, as on the near side of a sideways lean."""
     a, r, cos_side, sin_side = cutter[0], cutter[1], cutter[2], cutter[3]
@@ -50,7 +50,7 @@ def side_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Secon
     return (f_w * f_w - f * f_ww) * det, (f * f_ws - f_s * f_w) * det, f_s, f_ww > 0.0 and on_side
 
 
-@built_in
+@jit_fma_inline
 def disc_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Second) -> Step:
     """Newton's step for an exit through the flat bottom, where the tip moves square to the axis.
 
@@ -67,7 +67,7 @@ def disc_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Secon
     return (tz * dw - z) / pz, dw, -pz, sz > 0.0 and rho <= cutter[0] * cutter[0]
 
 
-@built_in
+@jit_fma_inline
 def _ball_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Second) -> Step:
     """The step from the distance and its derivatives, which have no singular place on a ball."""
     f, f_s, f_w, f_ww, f_ws, g0, g1, g2 = gap_rates(cutter, axis, point, tip)
@@ -76,7 +76,7 @@ def _ball_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Seco
     return (f_w * f_w - f * f_ww) / det, (f * f_ws - f_s * f_w) / det, f_s, f_ww > 0.0
 
 
-@built_in
+@jit_fma_inline
 def _ring_step(cutter: Array, axis: Vector, point: Pair, tip: Pair, second: Second) -> Step:
     """The step for a point of the corner arc whose normal is perpendicular to the tip's path.
 

@@ -8,7 +8,7 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.half_widths import Bench, Geometry, contact_widths, new_bench
 from toolaxis.contact.strip.width import contact_rows
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -19,7 +19,7 @@ RA_SHARE = 4 / (9 * np.sqrt(3))
 """Ra of parabolic scallops over their height."""
 
 
-@compiled
+@jit
 def _reach(geometry: Geometry, pair: tuple[Array, Array], axis: Array, heights: tuple[float, float],
            bench: Bench) -> float:
     """Upper half width of the first contact and lower half width of the second at a height, in the step parameter."""
@@ -29,7 +29,7 @@ def _reach(geometry: Geometry, pair: tuple[Array, Array], axis: Array, heights: 
                                                                                      bench)[0]
 
 
-@compiled
+@jit
 def _heights(geometry: Geometry, contacts: tuple[Array, Array], axes: Array, allowance: float, out: Array) -> None:
     bench = new_bench()
     radius = geometry[2][0] + geometry[2][1]

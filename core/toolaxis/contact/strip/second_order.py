@@ -10,7 +10,7 @@ from toolaxis.contact.frame import Feed, contact_frame
 from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows, dot, unit
 from toolaxis.shape.differential import curvature_form
 from toolaxis.shape.face import Face
@@ -27,7 +27,7 @@ _TOGETHER = 64
 """Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
 
 
-@compiled
+@jit
 def surface_form(d: Array, frame: Array) -> Form:
     """Second fundamental form in an orthonormal tangent frame, 1/mm, positive where bending towards the normal.
 
@@ -55,7 +55,7 @@ def surface_form(d: Array, frame: Array) -> Form:
             uk * uk * l + 2.0 * uk * vk * m + vk * vk * n)
 
 
-@compiled
+@jit
 def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
     """Curvature of the cutter at a contact on its corner arc, 1/mm.
 
@@ -79,7 +79,7 @@ def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
     return (along * x * x + across * y * y, (along - across) * x * y, along * y * y + across * x * x)
 
 
-@compiled
+@jit
 def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tuple[float, float, bool]:
     """(D^-1)_kk, mm, and the advance of the covering contact along the feed per unit to the left.
 
@@ -117,7 +117,7 @@ def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tup
     return 1.0 / rest, fk / ff, True
 
 
-@compiled
+@jit
 def _screen(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
     """Half widths of k axes at n contacts into out (k, n); forms as in `contact_forms`."""
     cap = CAP * (cutter[0] + cutter[1])

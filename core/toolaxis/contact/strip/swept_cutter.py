@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.curves import Curve, Scratch, curve_point
 from toolaxis.numeric.bspline import SurfaceData
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 Setting: TypeAlias = tuple[SurfaceData, float, Array, Array]
@@ -27,7 +27,7 @@ SIDE_NODES = 96
 UPRIGHT = 1e-12
 
 
-@built_in
+@jit_fma_inline
 def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float, float, float]:
     """Signed distance from a point of the meridian half plane to the cutter, its gradient, and its bend.
 
@@ -59,7 +59,7 @@ def meridian_distance(cutter: Array, rho: float, z: float) -> tuple[float, float
     return z - top, 0.0, 1.0, 0.0
 
 
-@built_in
+@jit_fma_inline
 def signed_distance(cutter: Array, axis: Array | tuple[float, float, float], x: float, y: float, z: float) -> float:
     """Signed distance from a point, relative to the tip, to the cutter, mm."""
     height = x * axis[0] + y * axis[1] + z * axis[2]
@@ -69,7 +69,7 @@ def signed_distance(cutter: Array, axis: Array | tuple[float, float, float], x: 
     return meridian_distance(cutter, sqrt(x * x + y * y + z * z), height)[0]
 
 
-@built_in
+@jit_fma_inline
 def tip_from(cutter: Array, axis: Vector, centre: Pair, normal: Pair) -> Pair:
     """Tip and its rate from c = S + offset n and n with their rates.
 
@@ -90,13 +90,13 @@ def tip_from(cutter: Array, axis: Vector, centre: Pair, normal: Pair) -> Pair:
             centre[5] + reach * (y2 - turn * x2))
 
 
-@built_in
+@jit_fma_inline
 def pair_of(rows: Array) -> Pair:
     """The six numbers of a (2, 3) array."""
     return rows[0, 0], rows[0, 1], rows[0, 2], rows[1, 0], rows[1, 1], rows[1, 2]
 
 
-@built_in
+@jit_fma_inline
 def gap_rates(cutter: Array, axis: Vector, point: Pair, tip: Pair) -> Gap:
     """Distance F(s, w) of a moving point q(s) to the cutter at tip(w), and derivatives.
 
@@ -132,7 +132,7 @@ def gap_rates(cutter: Array, axis: Vector, point: Pair, tip: Pair) -> Gap:
             g_rho * x0 + g_z * t0, g_rho * x1 + g_z * t1, g_rho * x2 + g_z * t2)
 
 
-@built_in
+@jit_fma_inline
 def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Array, Array, Scratch]) -> None:
     """Tip and its rate at w of a pass into memory[1]; memory = state (4, 3), tip (2, 3), point (2, 3), scratch."""
     surface, sign, cutter, axis = setting
@@ -146,9 +146,9 @@ def pass_tip(setting: Setting, curve: Curve, w: float, memory: tuple[Array, Arra
     (tip[0, 0], tip[0, 1], tip[0, 2], tip[1, 0], tip[1, 1], tip[1, 2]) = tip_from(cutter, axis, centre, normal)
 
 
-@built_in
-def lifted_point(setting: Setting, curve: Curve, s: float, lift: float,
-                 memory: tuple[Array, Array, Array, Scratch]) -> None:
+@jit_fma_inline
+def lift_point(setting: Setting, curve: Curve, s: float, lift: float,
+               memory: tuple[Array, Array, Array, Scratch]) -> None:
     """The point lift above the surface at s of a curve, and its rate, into memory[2]."""
     curve_point((setting[0], setting[1]), curve, s, memory[0], memory[3])
     state, point = memory[0], memory[2]
@@ -157,13 +157,13 @@ def lifted_point(setting: Setting, curve: Curve, s: float, lift: float,
         point[1, c] = state[1, c] + lift * state[3, c]
 
 
-@compiled
+@jit
 def new_memory(scratch: Scratch) -> tuple[Array, Array, Array, Scratch]:
     """Working memory of one contact."""
     return np.empty((4, 3)), np.empty((2, 3)), np.empty((2, 3)), scratch
 
 
-@compiled
+@jit
 def lay_pass(setting: Setting, curve: Curve, reach: tuple[float, float, float],
              memory: tuple[Array, Array, Array, Scratch], table: Array) -> tuple[int, int]:
     """Tips along a pass around a contact.
@@ -217,7 +217,7 @@ def lay_pass(setting: Setting, curve: Curve, reach: tuple[float, float, float],
     return first, last
 
 
-@compiled
+@jit
 def scan_pass(setting: Setting, table: Array, rows: tuple[int, int], point: Array, gaps: Array) -> float:
     """Distances of a point to the cutter at all nodes of a pass, and their slopes, into gaps (n, 2); the least one."""
     cutter, axis = setting[2], setting[3]

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
 from toolaxis.tools.tool import Tool
@@ -21,7 +21,7 @@ _ROWS = 64
 _GROUP, _TOGETHER = 16, 24
 
 
-@compiled
+@jit
 def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
     """The least of a bound and the distance of a point to the cutter on one motion.
 
@@ -54,7 +54,7 @@ def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
     return best
 
 
-@compiled
+@jit
 def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
           groups: NDArray[np.int64], near: NDArray[np.int64]) -> int:
     """Motions that may come nearer than a distance to a point of a ball, by group; the number of groups with any.
@@ -78,7 +78,7 @@ def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
     return some
 
 
-@compiled
+@jit
 def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
     """Points and moves (middle, half way, half length) in the frame whose z is the axis.
 
@@ -112,7 +112,7 @@ def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple
             out[i] = best
 
 
-@compiled
+@jit
 def _around(points: Array, start: int, end: int, ball: Array) -> None:
     """A ball around points of some rows: its middle and radius."""
     for c in range(3):

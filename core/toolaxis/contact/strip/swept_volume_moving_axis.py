@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.swept_cutter import meridian_distance
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]
@@ -87,7 +87,7 @@ def _least_numpy(cutter: Array, points: Array, tips: Array, axes: Array) -> Arra
     return np.asarray(best)
 
 
-@built_in
+@jit_fma_inline
 def _between(cutter: Array, point: Array, near: tuple[Array, Array], t: float) -> float:
     """Distance to the cutter at t from -1 to 1 on the parabolas through three positions."""
     tips, axes = near
@@ -104,7 +104,7 @@ def _between(cutter: Array, point: Array, near: tuple[Array, Array], t: float) -
     return meridian_distance(cutter, rho, height)[0]
 
 
-@compiled
+@jit
 def _least(cutter: Array, points: Array, positions: tuple[Array, Array], out: Array) -> None:
     tips, axes = positions
     count = tips.shape[1]

@@ -10,7 +10,7 @@ from toolaxis.contact.strip.curve_tables import SIDE, blend, interval, iso_state
 from toolaxis.contact.strip.newton import Second, disc_step, exit_step, side_step
 from toolaxis.contact.strip.swept_cutter import Pair, gap_rates, signed_distance, tip_from
 from toolaxis.numeric.bspline import SurfaceData
-from toolaxis.numeric.jit import built_in, compiled
+from toolaxis.numeric.jit import jit, jit_fma_inline
 
 Array = NDArray[np.float64]
 ARC, FLANK, DISC = 0, 1, 2
@@ -25,14 +25,14 @@ Axis: TypeAlias = tuple[float, float, float]
 Place: TypeAlias = tuple[float, float]
 
 
-@built_in
+@jit_fma_inline
 def _node_tip(cutter: Array, axis: Axis, road: Array, k: int) -> Pair:
     return tip_from(cutter, axis,
                     (road[k, 1], road[k, 2], road[k, 3], road[k, 4], road[k, 5], road[k, 6]),
                     (road[k, 7], road[k, 8], road[k, 9], road[k, 10], road[k, 11], road[k, 12]))
 
 
-@built_in
+@jit_fma_inline
 def _bend(cutter: Array, axis: Axis, road: Array, rows: Rows) -> Second:
     """Second derivative of the tip at the contact, from its rates at the neighbouring nodes."""
     low, high = max(SIDE - 1, rows[0]), min(SIDE + 1, rows[1])
@@ -41,23 +41,23 @@ def _bend(cutter: Array, axis: Axis, road: Array, rows: Rows) -> Second:
     return (b[3] - a[3]) * share, (b[4] - a[4]) * share, (b[5] - a[5]) * share
 
 
-@built_in
+@jit_fma_inline
 def _length(pair: Pair) -> float:
     return sqrt(pair[3] * pair[3] + pair[4] * pair[4] + pair[5] * pair[5])
 
 
-@built_in
+@jit_fma_inline
 def _secant(second: Second, new: Pair, old: Pair, dw: float) -> Second:
     share = 1.0 / dw
     return (new[3] - old[3]) * share, (new[4] - old[4]) * share, (new[5] - old[5]) * share
 
 
-@built_in
+@jit_fma_inline
 def _gap(cutter: Array, axis: Axis, point: Pair, tip: Pair) -> float:
     return signed_distance(cutter, axis, point[0] - tip[0], point[1] - tip[1], point[2] - tip[2])
 
 
-@compiled
+@jit
 def rapid_exit(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contact,
                guess: tuple[Place, Rows]) -> tuple[bool, float]:
     """The first exit, or False where it must be looked for with more care.
@@ -77,19 +77,19 @@ def rapid_exit(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contac
     _, along, u, v, _ = contact
     rows = guess[1]
     s0, w0 = (v, u) if along == 0 else (u, v)
-    found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, ARC))
+    found, s, w, point = _solve_on_tables(surface, tables, axis, contact, (guess[0], rows, ARC))
     if not found:
-        found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, FLANK))
+        found, s, w, point = _solve_on_tables(surface, tables, axis, contact, (guess[0], rows, FLANK))
     if not found and tables[0][0] > 0.0:
-        found, s, w, point = _solved(surface, tables, axis, contact, (guess[0], rows, DISC))
+        found, s, w, point = _solve_on_tables(surface, tables, axis, contact, (guess[0], rows, DISC))
     if not (found and road[rows[0], 0] < w < road[rows[1], 0] and bank[rows[2], 0] <= s <= bank[rows[3], 0]):
         return False, s
-    return _confirmed(tables, axis, point, (s0, w0, s, w), rows), s
+    return _confirm_exit(tables, axis, point, (s0, w0, s, w), rows), s
 
 
-@compiled
-def _solved(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contact,
-            guess: tuple[Place, Rows, int]) -> tuple[bool, float, float, Pair]:
+@jit
+def _solve_on_tables(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contact,
+                     guess: tuple[Place, Rows, int]) -> tuple[bool, float, float, Pair]:
     """Newton's method on the tables and then on the surface: whether it ended at an exit, s, w and the point there."""
     cutter, road, bank, d, basis = tables
     sign, along, u, v, radius = contact
@@ -131,23 +131,23 @@ def _solved(surface: SurfaceData, tables: Tables, axis: Axis, contact: Contact,
     return False, s, w, point
 
 
-@built_in
+@jit_fma_inline
 def _lifted(state: tuple[float, float, float, float, float, float, float, float, float, float, float, float],
             lift: float) -> Pair:
     return (state[0] + lift * state[6], state[1] + lift * state[7], state[2] + lift * state[8],
             state[3] + lift * state[9], state[4] + lift * state[10], state[5] + lift * state[11])
 
 
-@built_in
+@jit_fma_inline
 def _placed(state: tuple[float, float, float, float, float, float, float, float, float, float, float, float],
             cutter: Array, axis: Axis) -> Pair:
     return tip_from(cutter, axis, _lifted(state, cutter[5]),
                     (state[6], state[7], state[8], state[9], state[10], state[11]))
 
 
-@built_in
-def _confirmed(tables: Tables, axis: Axis, point: Pair, found: tuple[float, float, float, float],
-               rows: Rows) -> bool:
+@jit_fma_inline
+def _confirm_exit(tables: Tables, axis: Axis, point: Pair, found: tuple[float, float, float, float],
+                  rows: Rows) -> bool:
     """Whether points a third and two thirds of the way are covered, and the exit is not covered by another contact.
 
     From the exit's own contact outwards the cutter must come no nearer again, but where it is far off anyway.
@@ -164,7 +164,7 @@ def _confirmed(tables: Tables, axis: Axis, point: Pair, found: tuple[float, floa
     return (_recedes(tables, axis, point, (own, rows[0], -1)) and _recedes(tables, axis, point, (own + 1, rows[1], 1)))
 
 
-@built_in
+@jit_fma_inline
 def _recedes(tables: Tables, axis: Axis, point: Pair, walk: tuple[int, int, int]) -> bool:
     """Whether the cutter goes away from a point from node to node, unless it is far off.
 

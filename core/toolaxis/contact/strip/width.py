@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _QUESTION, _CONTACT, _STEP = 500, 40, 6
 
 
-def _checked(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[Geometry, Sizes]:
+def _check_inputs(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[Geometry, Sizes]:
     """What kernels take of a face, a tool and the heights."""
     cutter = cutter_numbers(tool, scallop, allowance)
     return (face.surface.data, -1.0 if face.flip else 1.0, cutter), (scallop, scallop + allowance, tool.radius)
@@ -114,7 +114,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     **Properties**: 1. a rigid motion changes nothing, a mirror exchanges left and right; 2. lengths scale; 3. for
     h -> 0 the sum tends to `second_order_width`.
     """
-    geometry, sizes = _checked(face, tool, scallop, allowance)
+    geometry, sizes = _check_inputs(face, tool, scallop, allowance)
     contacts = contact_rows(uv, feed, True)
     axes = np.ascontiguousarray(axis_rows(axis, len(contacts)))
     out = np.empty((len(contacts), 2))
@@ -185,5 +185,5 @@ def _step_job(face: Face, tool: Tool, uv: ArrayLike, feed: str,
               heights: tuple[float, float]) -> tuple[Geometry, Sizes, Array]:
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
-    geometry, sizes = _checked(face, tool, *heights)
+    geometry, sizes = _check_inputs(face, tool, *heights)
     return geometry, sizes, contact_rows(uv, feed, False)

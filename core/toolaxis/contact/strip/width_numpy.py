@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 WINDOW, NODES = 2.5, 20
 
 
-class Scene(NamedTuple):
+class StripScene(NamedTuple):
     """Surface, whether it is flipped, and the cutter's numbers."""
 
     surface: SurfaceData
@@ -34,7 +34,7 @@ class Scene(NamedTuple):
         return Derivatives(*(table[:, k] for k in range(6)))
 
 
-class Line(NamedTuple):
+class CurveFamily(NamedTuple):
     """n curves through n contacts: iso-curves (code 0 or 1) or plane sections (code 2), x = 0 at the contact."""
 
     code: int
@@ -53,12 +53,12 @@ class Moving(NamedTuple):
 class Sweep(NamedTuple):
     """Passes and cross curves of n contacts, and axes (n, 3)."""
 
-    road: Line
-    cross: Line
+    road: CurveFamily
+    cross: CurveFamily
     axis: Array
 
 
-def along(scene: Scene, line: Line, x: Array) -> tuple[Moving, Moving]:
+def along(scene: StripScene, line: CurveFamily, x: Array) -> tuple[Moving, Moving]:
     """Points and normals, with their rates, at x of each curve."""
     rate = np.zeros_like(line.start)
     if line.code < 2:
@@ -76,7 +76,7 @@ def along(scene: Scene, line: Line, x: Array) -> tuple[Moving, Moving]:
     return Moving(d.point, move), Moving(n, turn - dot(turn, n)[:, None] * n)
 
 
-def _on_section(scene: Scene, line: Line, x: Array) -> tuple[Array, Array]:
+def _on_section(scene: StripScene, line: CurveFamily, x: Array) -> tuple[Array, Array]:
     """Parameters and their rates where a section has made progress x along its tangent, by Newton's method."""
     uv, origin = line.start, scene.derivatives(line.start).point
     rest = np.stack([-x, np.zeros_like(x)], -1)
@@ -97,7 +97,7 @@ def _on_section(scene: Scene, line: Line, x: Array) -> tuple[Array, Array]:
     return uv, np.where(lost[:, None], np.nan, rate)
 
 
-def placed(scene: Scene, line: Line, x: Array, axis: Array) -> Moving:
+def place_tips(scene: StripScene, line: CurveFamily, x: Array, axis: Array) -> Moving:
     """Tips and their rates for contacts at x of each curve."""
     a, r, offset = scene.cutter[0], scene.cutter[1], scene.cutter[5]
     point, normal = along(scene, line, x)
@@ -120,14 +120,14 @@ def distance_numpy(cutter: Array, axis: Array, apart: Array) -> Array:
     return np.asarray(np.maximum(np.where(arc, np.hypot(x, y) - r, planes), z - top))
 
 
-def _residual(scene: Scene, sweep: Sweep, place: Array, lift: float) -> Array:
+def _residual(scene: StripScene, sweep: Sweep, place: Array, lift: float) -> Array:
     """What vanishes at an exit, (n, 2) mm: the point's two coordinates relative to the arc's touching point.
 
     On a ball: distance from its surface, and progress of the centre past the point.
     """
     a, r = scene.cutter[0], scene.cutter[1]
     point, normal = along(scene, sweep.cross, place[:, 0])
-    tip = placed(scene, sweep.road, place[:, 1], sweep.axis)
+    tip = place_tips(scene, sweep.road, place[:, 1], sweep.axis)
     apart = point.point + lift * normal.point - tip.point
     if a == 0:
         out = apart - r * sweep.axis
@@ -141,7 +141,7 @@ def _residual(scene: Scene, sweep: Sweep, place: Array, lift: float) -> Array:
     return np.stack([rho - a - r * np.sin(theta), z - r + r * np.cos(theta)], -1)
 
 
-def _solve(scene: Scene, sweep: Sweep, place: Array, heights: tuple[float, float]) -> tuple[Array, Flags]:
+def _solve(scene: StripScene, sweep: Sweep, place: Array, heights: tuple[float, float]) -> tuple[Array, Flags]:
     """Newton's method with differences for the matrix; places (n, 2) of (s, w), and whether it converged."""
     lift, radius = heights
     pace = np.stack([np.linalg.norm(along(scene, line, np.zeros(len(place)))[0].rate, axis=1)
@@ -168,7 +168,7 @@ def _solve(scene: Scene, sweep: Sweep, place: Array, heights: tuple[float, float
     return place, small <= 1e-9 * radius
 
 
-def _first(scene: Scene, sweep: Sweep, place: Array, heights: tuple[float, float]) -> Flags:
+def _first(scene: StripScene, sweep: Sweep, place: Array, heights: tuple[float, float]) -> Flags:
     """Whether exits are the first ones: the way there covered, and the point free of all other contacts."""
     lift, radius = heights
     good = np.ones(len(place), dtype=bool)
@@ -177,9 +177,9 @@ def _first(scene: Scene, sweep: Sweep, place: Array, heights: tuple[float, float
         """Distances (n, m) of points at x (n,) to cutters at w (n, m)."""
         count, n = w.shape[1], len(x)
         point, normal = along(scene, sweep.cross, x)
-        road = Line(sweep.road.code, *(np.repeat(rows, count, axis=0) for rows in sweep.road[1:]))
+        road = CurveFamily(sweep.road.code, *(np.repeat(rows, count, axis=0) for rows in sweep.road[1:]))
         axis = np.repeat(sweep.axis, count, axis=0)
-        tip = placed(scene, road, w.ravel(), axis).point
+        tip = place_tips(scene, road, w.ravel(), axis).point
         lifted = np.repeat(point.point + lift * normal.point, count, axis=0)
         return distance_numpy(scene.cutter, axis, lifted - tip).reshape(n, count)
 
@@ -195,7 +195,7 @@ def _first(scene: Scene, sweep: Sweep, place: Array, heights: tuple[float, float
     return good
 
 
-def _starts(scene: Scene, sweep: Sweep, frame: Array, height: float) -> tuple[Array, Flags]:
+def _starts(scene: StripScene, sweep: Sweep, frame: Array, height: float) -> tuple[Array, Flags]:
     """Second-order exits (n, 2) on the upper side, and whether the cutter is free there."""
     a, r = scene.cutter[0], max(scene.cutter[1], SHARPEST * (scene.cutter[0] + scene.cutter[1]))
     t = np.einsum("nij,nj->ni", frame, sweep.axis)
@@ -221,7 +221,7 @@ def _starts(scene: Scene, sweep: Sweep, frame: Array, height: float) -> tuple[Ar
     return np.stack([s, w], -1), free
 
 
-def _arc(scene: Scene, line: Line, x: Array) -> Array:
+def _arc(scene: StripScene, line: CurveFamily, x: Array) -> Array:
     """Arc length of sections from the contact to x, by Gauss quadrature."""
     nodes, weights = np.polynomial.legendre.leggauss(12)
     total = np.zeros(len(x))
@@ -230,7 +230,7 @@ def _arc(scene: Scene, line: Line, x: Array) -> Array:
     return total * np.abs(x)
 
 
-def _sweep(scene: Scene, contacts: Array, axes: Array) -> tuple[Sweep, Array, Flags]:
+def _sweep(scene: StripScene, contacts: Array, axes: Array) -> tuple[Sweep, Array, Flags]:
     """Passes and cross curves of rows of contacts, frames (n, 3, 3), and whether there is a feed."""
     d = scene.derivatives(contacts[:, :2])
     n = normals(d, scene.flip)
@@ -241,8 +241,8 @@ def _sweep(scene: Scene, contacts: Array, axes: Array) -> tuple[Sweep, Array, Fl
     sound = size[:, 0] > 1e-9 * np.linalg.norm(feed, axis=1)
     x = x / np.where(size > 0, size, 1.0)
     left = np.cross(n, x)
-    road = Line(code, contacts[:, :2], x, left)
-    cross = Line(2 if code == 2 or contacts[0, 6] else 1 - code, contacts[:, :2], left, x)
+    road = CurveFamily(code, contacts[:, :2], x, left)
+    cross = CurveFamily(2 if code == 2 or contacts[0, 6] else 1 - code, contacts[:, :2], left, x)
     return Sweep(road, cross, axes), np.stack([x, left, n], 1), sound
 
 
@@ -268,7 +268,7 @@ def half_widths_numpy(geometry: tuple[SurfaceData, float, Array], contacts: Arra
     if len(contacts) == 0:
         return np.zeros((0, 2)), np.zeros(0, dtype=bool)
     h, lift, radius = heights
-    scene = Scene(geometry[0], geometry[1] < 0, geometry[2])
+    scene = StripScene(geometry[0], geometry[1] < 0, geometry[2])
     widths = np.zeros((len(contacts), 2))
     with np.errstate(all="ignore"):
         sweep, frame, found = _sweep(scene, contacts, axes)

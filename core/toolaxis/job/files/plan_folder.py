@@ -13,7 +13,7 @@ from typing import Any
 
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, about, fault, piece_of
-from toolaxis.job.planning.failures import failed_after, failure_text, fault_text
+from toolaxis.job.planning.failures import fail_operation, failure_text, fault_text
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan
@@ -31,7 +31,7 @@ OF_VERDICT = ("verdict.json", "verdict-maps.npz", "op*-verdict.png")
 
 
 @dataclass(frozen=True)
-class Stage:
+class StagingFolder:
     """A folder in the making.
 
     Attributes
@@ -65,7 +65,7 @@ class Stage:
 
 
 @contextmanager
-def staged(target: Path) -> Iterator[Stage]:
+def stage_folder(target: Path) -> Iterator[StagingFolder]:
     """A stage for a folder; what was not published when the block ends disappears.
 
     Parameters
@@ -83,14 +83,14 @@ def staged(target: Path) -> Iterator[Stage]:
         raise InvalidInput(f"output folder {target} is a file: give another folder")
     made: list[Path] = []
     try:
-        made = made_folders(above)
+        made = make_folders(above)
         folder = Path(tempfile.mkdtemp(prefix=f".{target.name or 'plan'}-", dir=above))
         folder.chmod(0o755)
     except OSError as reason:
         remove_empty(made)
         raise InvalidInput(f"output folder {target} cannot be written ({reason.strerror}): give another") from reason
     try:
-        yield Stage(folder, target)
+        yield StagingFolder(folder, target)
     finally:
         try:
             shutil.rmtree(folder, ignore_errors=True)
@@ -101,7 +101,7 @@ def staged(target: Path) -> Iterator[Stage]:
             remove_empty(made)
 
 
-def made_folders(folder: Path) -> list[Path]:
+def make_folders(folder: Path) -> list[Path]:
     """Make a folder and those above it; the ones that were made, the innermost first.
 
     Parameters
@@ -150,15 +150,15 @@ def write_plan(plan: Plan, folder: Path) -> Plan:
     ----------
     plan : Plan
     folder : Path
-        Of a `Stage`.
+        Of a `StagingFolder`.
 
     Returns
     -------
     Plan
         The plan as it was written: an operation that cannot be written has failed, and keeps no other from the disk.
     """
-    part = _written_part(plan.part, folder, "part")
-    obstacles = [_written_part(body, folder, f"obstacle-{k}") for k, body in enumerate(plan.obstacles, 1)]
+    part = _write_part(plan.part, folder, "part")
+    obstacles = [_write_part(body, folder, f"obstacle-{k}") for k, body in enumerate(plan.obstacles, 1)]
     while True:
         try:
             files = _write_operations(plan, folder)
@@ -193,7 +193,7 @@ def _write_operations(plan: Plan, folder: Path) -> dict[str, Any]:
 
 def _without(plan: Plan, reason: Exception, folder: Path) -> Plan:
     """A plan without the operation that cannot be written."""
-    lost = {op.number: failed_after(op, fault(reason)) for op in plan.operations
+    lost = {op.number: fail_operation(op, fault(reason)) for op in plan.operations
             if op.face.label == piece_of(reason) and not op.failed}
     if not lost:
         raise reason
@@ -214,7 +214,7 @@ def write_json(document: Any, path: Path) -> None:
     path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def _written_part(part: Part, folder: Path, stem: str) -> dict[str, str]:
+def _write_part(part: Part, folder: Path, stem: str) -> dict[str, str]:
     """Copy the file that a part came from, or write its faces, none joined, where there is none (any more)."""
     part = part.original or part
     source = Path(part.source) if part.source and part.sha256 else None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.inputs.tool_file import load_holder, load_tool
-from toolaxis.plan.plan import Inputs
+from toolaxis.plan.plan import PlanInputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
@@ -32,7 +32,7 @@ class Spec:
         Path of a STEP file.
     tool : str
         Short form, file, or name from the library.
-    inputs : Inputs
+    inputs : PlanInputs
     faces : str
         "3,5-8", "3+4,7" with faces to be joined, "all", "skins", or empty for the sculptured faces.
     holder : str
@@ -52,7 +52,7 @@ class Spec:
 
     part: str
     tool: str
-    inputs: Inputs
+    inputs: PlanInputs
     faces: str = ""
     holder: str = ""
     stickout: float | None = None
@@ -150,7 +150,7 @@ def offset_from(text: str) -> NDArray[np.float64]:
     return np.array(values)
 
 
-def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[Face, ...]:
+def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[Face, ...]:
     """The faces to machine.
 
     Parameters
@@ -184,7 +184,7 @@ def chosen_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
 
 def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None,
                 corner: float = GREATEST_CORNER) -> tuple[Part, Any]:
-    """The part with the faces joined that are asked for as one, and the list of faces that is left for `chosen_faces`.
+    """The part with the faces joined that are asked for as one, and the list of faces that is left for `choose_faces`.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def _where_apart(reasons: tuple[str, ...]) -> str:
 
 
 def with_rings(part: Part, faces: Any) -> tuple[Part, Any]:
-    """The part with the rings joined in which chosen faces lie, and the list of faces that is left for `chosen_faces`.
+    """The part with the rings joined in which chosen faces lie, and the list of faces that is left for `choose_faces`.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def with_rings(part: Part, faces: Any) -> tuple[Part, Any]:
     """
     left: dict[int, None] = {}
     within: set[int] = set()
-    for face in chosen_faces(part, faces):
+    for face in choose_faces(part, faces):
         if face.number in within:
             continue
         ring = () if face.members else ring_around(part, face.number)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.resources import named_files
+from toolaxis.resources import find_files
 from toolaxis.tools.cutter import BIT_SIZES
 from toolaxis.tools.registry import cutter_named, cutter_of_bit, cutters, short_forms
 from toolaxis.tools.tool import Tool
@@ -25,7 +25,7 @@ def library() -> dict[str, Path]:
     dict of str to Path
         The folder in the environment variable TOOLAXIS_TOOLS, if set, comes first.
     """
-    return named_files("tools", ".toml", ".fctb")
+    return find_files("tools", ".toml", ".fctb")
 
 
 def load_tool(text: str, **body: Any) -> Tool:

@@ -8,14 +8,14 @@ import numpy as np
 
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.job.files.contacts_from_cl import with_contacts
-from toolaxis.job.files.plan_folder import read_plan, sha256_of, staged
+from toolaxis.job.files.plan_folder import read_plan, sha256_of, stage_folder
 from toolaxis.job.files.verdict_maps import read_views
 from toolaxis.plan.plan import Plan
 
 if TYPE_CHECKING:
     import trimesh
 
-    from toolaxis.verify.axis_view import View
+    from toolaxis.verify.axis_view import MaterialView
     from toolaxis.verify.verdict import Verdict
 
 STEP, GLTF = (".step", ".stp"), (".glb",)
@@ -68,7 +68,7 @@ def export(plan: Plan | str | PathLike[str], file: str | PathLike[str], *, colou
         plan, name, views = with_contacts(read_plan(folder)), folder.resolve().name, read_views(folder)
     else:
         views = _views(plan, verdict)
-    with staged(target.absolute().parent) as stage:
+    with stage_folder(target.absolute().parent) as stage:
         made = stage.folder / target.name
         if ending in STEP:
             _write_step(plan, made, name)
@@ -105,7 +105,7 @@ def to_trimesh(plan: Plan, *, colour: str = "sub-surface", verdict: "Verdict | N
     return _scene(plan, colour, _views(plan, verdict))
 
 
-def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, View]":
+def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, MaterialView]":
     from toolaxis.verify.axis_view import view_along
 
     frames = {op.name: op.frame for op in plan.operations if op.frame is not None}
@@ -114,7 +114,7 @@ def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, View]":
             if (frame := frames.get(found.name)) is not None}
 
 
-def _scene(plan: Plan, colour: str, views: "dict[str, View]") -> Any:
+def _scene(plan: Plan, colour: str, views: "dict[str, MaterialView]") -> Any:
     if colour not in COLOURINGS:
         raise InvalidInput(f"colour is {colour!r}: use {', '.join(COLOURINGS[:-1])} or {COLOURINGS[-1]}")
     if colour != COLOURINGS[0] and not views:
@@ -126,7 +126,7 @@ def _scene(plan: Plan, colour: str, views: "dict[str, View]") -> Any:
     return plan_scene(plan, colour, views)
 
 
-def _gltf(plan: Plan, colour: str, views: "dict[str, View]", name: str) -> bytes:
+def _gltf(plan: Plan, colour: str, views: "dict[str, MaterialView]", name: str) -> bytes:
     scene = _scene(plan, colour, views)
     made = type(scene)(base_frame="world")
     made.graph.update(frame_from="world", frame_to=name, matrix=_GLTF_FROM_PART)

@@ -7,7 +7,7 @@ import numpy as np
 
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_json
-from toolaxis.job.planning.sequencing import arranged
+from toolaxis.job.planning.sequencing import sequence_operations
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.library import machine_to_toml
 from toolaxis.machine.setup import Mounting
@@ -20,8 +20,8 @@ from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
 from toolaxis.post.tcp_program import moves, moving_text
 
 
-def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,
-           *, name: str = "toolaxis", verdict: str = "not judged yet") -> dict[str, str]:
+def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,
+              *, name: str = "toolaxis", verdict: str = "not judged yet") -> dict[str, str]:
     """The files of a plan in a dialect, by name.
 
     Parameters
@@ -53,7 +53,7 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
     found = dialect_named(dialect)
     if mounting is None:
         raise InvalidInput(f"dialect {dialect} writes rotary angles and the plan names no machine: give --machine")
-    arranged_for = _arranged(plan, mounting)
+    arranged_for = _choose_angles(plan, mounting)
     for op, stood in zip(plan.operations, arranged_for.operations, strict=True):
         if op.done and not stood.done:
             raise InvalidInput(f"{op.name}: {stood.orientation.reasons[0].removeprefix('infeasible: ')}; move the part "
@@ -73,14 +73,14 @@ def posted(plan: Plan, dialect: str, mounting: Mounting | None = None, options: 
     return {file: program_text(program, found), f"setup-{dialect}.md": sheet_text(program, found, file, verdict)}
 
 
-def _arranged(plan: Plan, mounting: Mounting) -> Plan:
+def _choose_angles(plan: Plan, mounting: Mounting) -> Plan:
     """The plan at the rotary angles that it was made with on its own machine, else at the best ones in its order."""
     own = plan.machine
     same = own is not None and machine_to_toml(own.machine) == machine_to_toml(mounting.machine) and np.array_equal(
         placement(own.table_from_part), placement(mounting.table_from_part))
     if same and all(op.rotary or op.orientation.lead is not None for op in plan.operations if op.done):
         return plan
-    return arranged(replace(plan, machine=mounting))
+    return sequence_operations(replace(plan, machine=mounting))
 
 
 def verdict_of(folder: Path) -> str:

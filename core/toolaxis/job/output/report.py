@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.job.files.contacts_from_cl import widths_along, with_contacts
-from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, sha256_of, staged
+from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, sha256_of, stage_folder
 from toolaxis.job.files.verdict_maps import NAME as MAPS
 from toolaxis.job.files.verdict_maps import read_views
 from toolaxis.job.planning.timing import feeds_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 
 if TYPE_CHECKING:
     from toolaxis.report.html.page import Curve
@@ -65,11 +65,11 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
     target = folder / PAGE if file is None else file
     if target.is_dir():
         raise InvalidInput(f"the page {target} is a folder: give a file name with --out")
-    with heard(progress):
+    with activate_progress(progress):
         plan = read_plan(folder)
-        plan = with_contacts(plan, frozenset(op.number for op in _drawn(plan)))
+        plan = with_contacts(plan, frozenset(op.number for op in _operations_drawn(plan)))
         text = page(plan, _beside(plan, folder, progress), folder.resolve().name)
-    with staged(target.parent) as stage:
+    with stage_folder(target.parent) as stage:
         (stage.folder / target.name).write_text(text, encoding="utf-8")
         stage.publish()
     return target
@@ -77,12 +77,12 @@ def report(folder: Path, file: Path | None = None, progress: Progress = NO_PROGR
 
 def _beside(plan: Plan, folder: Path, progress: Progress) -> Any:
     """Everything that the page shows besides the plan."""
-    from toolaxis.report.html.page import Beside
+    from toolaxis.report.html.page import PlanFiles
 
     verdict = read_verdict(folder)
     names = {op.name for op in plan.operations}
     views = {} if verdict is None else {name: view for name, view in read_views(folder).items() if name in names}
-    fixed = [op for op in _drawn(plan) if op.done and op.orientation.lead is None]
+    fixed = [op for op in _operations_drawn(plan) if op.done and op.orientation.lead is None]
     widths: dict[str, Any] = {}
     feeds: dict[str, Curve] = {}
     for index, op in enumerate(fixed):
@@ -96,10 +96,10 @@ def _beside(plan: Plan, folder: Path, progress: Progress) -> Any:
             feeds[op.name] = found
     progress.report("page", 0, 1)
     source = read_json(folder / PLAN)["part"]["source"] or ""
-    return Beside(verdict, views, widths, feeds, _files(folder), source, _still(plan))
+    return PlanFiles(verdict, views, widths, feeds, _files(folder), source, _still(plan))
 
 
-def _drawn(plan: Plan) -> list[Operation]:
+def _operations_drawn(plan: Plan) -> list[Operation]:
     """The operations whose passes are drawn: no turned copies."""
     copies = {} if plan.blades is None else plan.blades.copies
     return [op for op in plan.operations if op.number not in copies]

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.setup import Mounting
-from toolaxis.plan.plan import Inputs
+from toolaxis.plan.plan import PlanInputs
 from toolaxis.post.cl_points import CutterLocations
 from toolaxis.post.context import Options
 from toolaxis.post.dialects.registry import dialect_named, tip_control_of
@@ -17,9 +17,9 @@ from toolaxis.post.tcp_program import course_of, courses_text
 _ANY = 0.01
 
 
-def reposted(found: CutterLocations, dialect: str, mounting: Mounting, options: Options | None = None, *,
-             name: str = "toolaxis", feedrate: float | None = None, spindle: float | None = None,
-             rapid: float = 10000.0) -> dict[str, str]:
+def repost_locations(found: CutterLocations, dialect: str, mounting: Mounting, options: Options | None = None, *,
+                     name: str = "toolaxis", feedrate: float | None = None, spindle: float | None = None,
+                     rapid: float = 10000.0) -> dict[str, str]:
     """Program and setup sheet of cutter locations that were read, by name of their files.
 
     Parameters
@@ -54,7 +54,7 @@ def reposted(found: CutterLocations, dialect: str, mounting: Mounting, options: 
     speed = found.spindle if spindle is None else spindle
     if spindle is None and not speed > 0:
         raise InvalidInput("the CL data tells no spindle speed: give --spindle, rev/min")
-    inputs = Inputs(_ANY, feedrate=float(rates[np.isfinite(rates)].max(initial=1.0)), spindle=speed, rapid=rapid)
+    inputs = PlanInputs(_ANY, feedrate=float(rates[np.isfinite(rates)].max(initial=1.0)), spindle=speed, rapid=rapid)
     program = setting_of(inputs, mounting, control.dialect, options, name)
     control.check(program)
     course = course_of(name, found.path, rates, mounting)

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.feasibility.violations import CUTTER, GOUGE, Witness
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
+from toolaxis.feasibility.violations import CUTTER, GOUGE, Violation
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.setup import Mounting
 from toolaxis.post.cl_points import CutterLocations
@@ -16,9 +16,9 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
 from toolaxis.search.path_check import COMPONENTS
 from toolaxis.shape.face import Face
-from toolaxis.strategies.blade.reschedule import Rescheduled, reschedule_path
-from toolaxis.strategies.blade.schedule import CLEARANCE, Swing
-from toolaxis.strategies.common.path_check import kept, prove_moving, spans_of
+from toolaxis.strategies.blade.reschedule import RescheduledPath, reschedule_path
+from toolaxis.strategies.blade.schedule import CLEARANCE, SwivelAxis
+from toolaxis.strategies.common.path_check import keeps_distance, prove_moving, spans_of
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
@@ -31,7 +31,7 @@ _STILL = 1e-6
 
 
 @dataclass(frozen=True)
-class Turning:
+class RotaryMotion:
     """How the rotary axis turns along the cuts.
 
     Attributes
@@ -56,16 +56,16 @@ class NewAngles:
     Attributes
     ----------
     locations : CutterLocations
-    made : Rescheduled
-    before, after : Turning
+    made : RescheduledPath
+    before, after : RotaryMotion
     clear : bool
         Whether they were held against a part.
     """
 
     locations: CutterLocations
-    made: Rescheduled
-    before: Turning
-    after: Turning
+    made: RescheduledPath
+    before: RotaryMotion
+    after: RotaryMotion
     clear: bool
 
 
@@ -114,38 +114,38 @@ def reschedule(found: CutterLocations, tool: Tool, *, curve: str = "least", dire
     return NewAngles(replace(found, tip=made.path.cl, axis=made.path.axis), made, before, after, bool(faces))
 
 
-def _turning(path: ToolPath, tool: Tool, swing: Swing) -> Turning:
+def _turning(path: ToolPath, tool: Tool, swing: SwivelAxis) -> RotaryMotion:
     cut = np.flatnonzero(path.kind == Motion.CUT)
     centre, angle = path.cl + tool.corner_radius * path.axis, swing.angles(path.axis)
     turn = np.diff(angle)[cut[cut > 0] - 1]
     way = np.linalg.norm(np.diff(centre, axis=0), axis=1)[cut[cut > 0] - 1]
     sense = np.sign(turn[np.abs(turn) > _STILL])
     steep = np.abs(turn[way > 0]) / way[way > 0]
-    return Turning(float(steep.max(initial=0.0)), int((np.diff(sense) != 0).sum()), float(np.abs(turn).sum()))
+    return RotaryMotion(float(steep.max(initial=0.0)), int((np.diff(sense) != 0).sum()), float(np.abs(turn).sum()))
 
 
 def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, progress: Progress) -> None:
     """Refuse a path that meets the part: cutter below it, shank or holder too near, or links too near."""
     tolerance = Tolerance()
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
-    proof = prove_moving(path, tool, (Group(SKIN, faces, np.array([-depth, *far])),), progress=progress)
+    proof = prove_moving(path, tool, (CheckSurfaces(SKIN, faces, np.array([-depth, *far])),), progress=progress)
     if proof.witness is not None:
         raise InvalidInput(f"the new tool angles are refused: {_said(proof.witness)}; take a slimmer or longer tool, "
                            "another --curve, or a rotary axis that leans away")
     # links between cuts: those that leave a cut or lead to one begin or end on the part and were judged above
-    free = Group(OTHER, faces, np.array([tolerance.cutter_clearance, *far]))
+    free = CheckSurfaces(OTHER, faces, np.array([tolerance.cutter_clearance, *far]))
     cut = path.kind == Motion.CUT
     on = np.flatnonzero((path.kind[1:] == Motion.LINK) & ~cut[:-1] & ~np.append(cut[2:], False))
     if len(on):
         spans = spans_of(path).rows(on)
-        bad = on[~kept(tool, free, spans, free.required)]
+        bad = on[~keeps_distance(tool, free, spans, free.required)]
         if len(bad):
             at = np.round(path.cl[bad[0] + 1], 2).tolist()
             raise InvalidInput(f"the new tool angles are refused: on the rapid motion to point {bad[0] + 1}, at {at}, "
                                "the tool comes too near to the part; retract farther between the cuts")
 
 
-def _said(witness: Witness) -> str:
+def _said(witness: Violation) -> str:
     where = f"face {witness.label} at {place(witness.point)}" if witness.label else "the part"
     name = "cutter" if witness.reason == GOUGE else COMPONENTS[max(witness.reason - CUTTER, 0)]
     if witness.distance < 0:

@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import Cancelled, InvalidInput, fault
-from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, grouped
+from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, group_surroundings
 from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.machine.kinematics import placement
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.smooth_skins import own_pieces
 from toolaxis.verify.component_clearance import Clearance
-from toolaxis.verify.maps import Place, Zone
-from toolaxis.verify.task import Task
-from toolaxis.verify.turned_copies import Measured, TurnedCopies, measured_on_copy
+from toolaxis.verify.maps import MapPoint, MapZone
+from toolaxis.verify.task import VerificationTask
+from toolaxis.verify.turned_copies import OperationMeasurement, TurnedCopies, transfer_measurement
 from toolaxis.verify.verdict import OperationVerdict, Verdict, measure, not_measured, verdict_on
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
     if not isinstance(plan, Plan):
         raise InvalidInput(f"verify takes the Plan that toolaxis.plan made, not a {type(plan).__name__}: the command "
                            "toolaxis verify judges a folder")
-    with heard(progress), tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
+    with activate_progress(progress), tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         write_plan(plan, Path(folder))
         return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, progress=progress)
 
@@ -75,12 +75,12 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     copies = {} if plan.blades is None or plan.obstacles else plan.blades.copies
     turned = TurnedCopies()
     # By the operation of which others are turned copies, what was measured of it, or of the first of them.
-    known: dict[int, tuple[Task, Measured]] = {}
+    known: dict[int, tuple[VerificationTask, OperationMeasurement]] = {}
     found: list[OperationVerdict] = []
     for index, op in enumerate(done):
         name = f"{op.name} ({index + 1} of {len(done)})"
         try:
-            with heard(progress):
+            with activate_progress(progress):
                 task = _task(plan, op, done[index - 1] if index else None)
                 within = progress.within(name)
                 family = copies.get(op.number, op.number)
@@ -100,20 +100,20 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     return Verdict(tuple(found))
 
 
-def _as_copy(turned: TurnedCopies, task: Task, source: tuple[Task, Measured],
+def _as_copy(turned: TurnedCopies, task: VerificationTask, source: tuple[VerificationTask, OperationMeasurement],
              progress: Progress) -> OperationVerdict | None:
     """The verdict on a turned copy of an operation that was measured; None where it is none, or would not pass so."""
     copy = turned.find(source[0], task)
-    measured = None if copy is None else measured_on_copy(task, source[1], copy)
+    measured = None if copy is None else transfer_measurement(task, source[1], copy)
     found = None if measured is None else verdict_on(task, measured, progress)
     return found if found is not None and found.passed else None
 
 
-def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Task:
+def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
-    around = grouped(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
-                     obstacles=[face for body in plan.obstacles for face in body.faces])
+    around = group_surroundings(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
+                                obstacles=[face for body in plan.obstacles for face in body.faces])
 
     def _of(*roles: str) -> tuple[Face, ...]:
         return tuple(own for group in around if group.role in roles for face in group.faces
@@ -122,12 +122,13 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Task:
     left = tuple(own for zone in op.zones if zone.at_wall for own in own_pieces(op.face.trimmed(zone.loops)))
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
-    return Task(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, own_pieces(op.face),
-                plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER), plan.tool.outlines,
-                plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,
-                machine=None if machine is None else machine.machine, place=on_table,
-                tool_length=plan.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                before=_end_of(last))
+    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, own_pieces(op.face),
+                            plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER),
+                            plan.tool.outlines,
+                            plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,
+                            machine=None if machine is None else machine.machine, place=on_table,
+                            tool_length=plan.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
+                            before=_end_of(last))
 
 
 def _end_of(op: Operation | None) -> tuple[Array, Array, tuple[float, ...]] | None:
@@ -186,12 +187,12 @@ def _number(value: float) -> float | None:
     return float(value) if abs(value) < float("inf") else None
 
 
-def _place(place: Place) -> dict[str, Any]:
+def _place(place: MapPoint) -> dict[str, Any]:
     return {"face": place.face, "uv": list(place.uv), "point": list(place.point), "value": _number(place.value),
             "cl_point": place.motion + 1}
 
 
-def _zone(zone: Zone) -> dict[str, Any]:
+def _zone(zone: MapZone) -> dict[str, Any]:
     return {"face": zone.face, "area": zone.area, "low": list(zone.low), "high": list(zone.high),
             "largest": _number(zone.largest), "reason": zone.reason, "at_border": zone.at_border}
 

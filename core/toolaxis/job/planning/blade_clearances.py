@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import Found, bounded, motions, segment_motions
-from toolaxis.feasibility.surroundings import OTHER, Group, grouped
-from toolaxis.plan.blades import Blades, Room
+from toolaxis.contact.clearance.queries import NearestFound, lower_bounds, motions, segment_motions
+from toolaxis.feasibility.surroundings import OTHER, CheckSurfaces, group_surroundings
+from toolaxis.plan.blades import BladeClearance, Blades
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -23,7 +23,7 @@ _BATCH, _STEPS = 400, 400
 
 
 @dataclass(frozen=True, eq=False)
-class Tightest:
+class ClosestMotion:
     """The motion in which a component of the tool comes nearest to what it must keep clear of.
 
     Attributes
@@ -69,13 +69,13 @@ def with_rooms(plan: Plan, progress: Progress = NO_PROGRESS) -> Plan:
     return replace(plan, blades=replace(blades, room=tuple(rooms)))
 
 
-def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iterator[Room]:
+def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iterator[BladeClearance]:
     known = [c for c, name in enumerate(COMPONENTS) if name in {"cutter", *plan.tool.outlines}]
-    best = {c: Room(to, COMPONENTS[c], MOST) for c in known}
+    best = {c: BladeClearance(to, COMPONENTS[c], MOST) for c in known}
     own = [op for op in plan.operations if op.done and blades.blade_of(op.face.number) == 1]
     if not faces or not own:
         return
-    group = Group(OTHER, faces, np.zeros(3))
+    group = CheckSurfaces(OTHER, faces, np.zeros(3))
     for op in own:
         machined = {op.face.number, *plan.part.neighbours(op.face.number, "tangent")}
         joined = to == "hub" and bool(machined & set(blades.hub))
@@ -84,11 +84,11 @@ def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iter
                                      blades.apart(plan.part, op.face.number).skin(op.face.number))
         for c, (value, face, _, _) in _nearest(plan, op, group, {c: best[c].distance for c in asked}).items():
             proven = -op.orientation.gouge if c == 0 and grazed else op.orientation.clearance[COMPONENTS[c]]
-            best[c] = Room(to, COMPONENTS[c], max(value, proven), op.number, face)
+            best[c] = BladeClearance(to, COMPONENTS[c], max(value, proven), op.number, face)
     yield from (best[c] for c in known)
 
 
-def _nearest(plan: Plan, op: Operation, group: Group,
+def _nearest(plan: Plan, op: Operation, group: CheckSurfaces,
              below: dict[int, float]) -> dict[int, tuple[float, int, Array, Array]]:
     """Where components come nearer to a group than a distance each: how near, to which face, its place, the motion."""
     assert op.path is not None
@@ -98,7 +98,7 @@ def _nearest(plan: Plan, op: Operation, group: Group,
     best = np.array([below.get(c, 0.0) for c in range(3)])
     found: dict[int, tuple[float, int, Array, Array]] = {}
     for first in range(0, len(moves), _BATCH):
-        some: Found = bounded(group.cells, plan.tool, moves[first:first + _BATCH], best, ROUGH, asked)
+        some: NearestFound = lower_bounds(group.cells, plan.tool, moves[first:first + _BATCH], best, ROUGH, asked)
         for c in below:
             i = int(some.lower[:, c].argmin())
             k = int(some.face[i, c])
@@ -108,18 +108,18 @@ def _nearest(plan: Plan, op: Operation, group: Group,
     return found
 
 
-def _standing(plan: Plan, group: Group, move: Array, component: int) -> tuple[Array, Array]:
+def _standing(plan: Plan, group: CheckSurfaces, move: Array, component: int) -> tuple[Array, Array]:
     """Where on a motion a component is nearest to a group: the place that it is near to, and the tip."""
     share = np.linspace(-1.0, 1.0, _STEPS)[:, None]
     asked = np.full((len(group.faces), 3), -np.inf)
     asked[:, component] = 0.0
     tips = move[0] + share * move[1]
-    found = bounded(group.cells, plan.tool, motions(tips, move[2]), 2 * MOST, ROUGH / 10, asked)
+    found = lower_bounds(group.cells, plan.tool, motions(tips, move[2]), 2 * MOST, ROUGH / 10, asked)
     k = int(found.lower[:, component].argmin())
     return found.point[k, component], tips[k]
 
 
-def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> Tightest | None:
+def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> ClosestMotion | None:
     """Where a component comes nearest to what it must keep clear of; None where nothing is nearer than `MOST`.
 
     The cutter's distance to the machined skin and to what meets it harmlessly does not count.  Of turned copies only
@@ -140,13 +140,13 @@ def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> Tightest | None:
     value, c, number = table[0]
     op = next(op for op in plan.operations if op.number == number)
     obstacles = [face for body in plan.obstacles for face in body.faces]
-    best: Tightest | None = None
-    for group in grouped(op.face, plan.inputs.tolerance, plan.inputs.allowance,
-                         part=plan.part_around(op.face.number), obstacles=obstacles):
+    best: ClosestMotion | None = None
+    for group in group_surroundings(op.face, plan.inputs.tolerance, plan.inputs.allowance,
+                                    part=plan.part_around(op.face.number), obstacles=obstacles):
         if c == 0 and group.role != OTHER:
             continue
         limit = value + 10 * ROUGH if best is None else best.distance
         for distance, face, _, move in _nearest(plan, op, group, {c: limit}).values():  # rougher than what is proven
             place, tip = _standing(plan, group, move, c)
-            best = Tightest(op, COMPONENTS[c], max(distance, value), face, place, tip)
+            best = ClosestMotion(op, COMPONENTS[c], max(distance, value), face, place, tip)
     return best

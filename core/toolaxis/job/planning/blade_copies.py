@@ -7,25 +7,25 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.bladed.counterparts import moved, turned_piece
+from toolaxis.bladed.counterparts import apply_motion, turn_piece
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
-from toolaxis.contact.clearance.queries import judged as decided
+from toolaxis.contact.clearance.queries import keeps_limits as decided
 from toolaxis.contact.clearance.queries import segment_motions
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, fault
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.job.planning.blade_pattern import Pattern, Share
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
+from toolaxis.job.planning.blade_pattern import BladeFaces, Pattern
 from toolaxis.job.planning.clean_up_zones import with_zones
-from toolaxis.job.planning.edit_axis import frame_of, judged
-from toolaxis.job.planning.failures import failed, failed_after
+from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
+from toolaxis.job.planning.failures import fail_face, fail_operation
 from toolaxis.job.planning.parallel import Outcome, abreast
 from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
-from toolaxis.progress import NO_PROGRESS, Progress, heard
-from toolaxis.search.fixed_axis import Task
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.search.path_check import COMPONENTS, prove
 from toolaxis.shape.face import Face
@@ -41,28 +41,28 @@ SAME = 1e-4
 _SLACK, _FINER = 0.01, 1e-4
 
 
-class Planner(Protocol):
+class FacePlanner(Protocol):
     """What plans faces of a part."""
 
     @property
     def workers(self) -> int:
         """Processes to work with."""
 
-    def task(self, part: Part, face: Face, progress: Progress) -> Task:
+    def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
         """What decides about an axis for a face of a part."""
 
     def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
         """The operation of a face of a part, its axis searched."""
 
 
-def with_refused(first: Plan, pattern: Pattern, share: Share) -> Plan:
+def with_refused(first: Plan, pattern: Pattern, share: BladeFaces) -> Plan:
     """The plan of the first blade with the faces that cannot be machined, or are left to clean-up, at its end.
 
     Parameters
     ----------
     first : Plan
     pattern : Pattern
-    share : Share
+    share : BladeFaces
     """
     faces = [(pattern.face(number), "infeasible", why) for number, why in share.refused.items()]
     faces += [(pattern.face(number), "not_found", why) for number, why in share.left.items()]
@@ -72,7 +72,7 @@ def with_refused(first: Plan, pattern: Pattern, share: Share) -> Plan:
     return replace(first, operations=first.operations + made)
 
 
-def followed(plan: Plan, other: Plan) -> Plan:
+def append_operations(plan: Plan, other: Plan) -> Plan:
     """A plan with the operations of another one after its own.
 
     Parameters
@@ -84,7 +84,7 @@ def followed(plan: Plan, other: Plan) -> Plan:
     return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults))
 
 
-def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progress) -> Plan:
+def spread_out(pattern: Pattern, first: Plan, planner: FacePlanner, progress: Progress) -> Plan:
     """The plan of the first blade carried over to all blades.
 
     Parameters
@@ -92,7 +92,7 @@ def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progre
     pattern : Pattern
     first : Plan
         Operations of the first blade.
-    planner : Planner
+    planner : FacePlanner
     progress : Progress
 
     Returns
@@ -103,21 +103,21 @@ def spread_out(pattern: Pattern, first: Plan, planner: Planner, progress: Progre
     count = len(pattern.blades.blades)
     done = abreast(lambda k, inner: _on_blade(pattern, k, first, planner, inner.within(f"blade {k + 2} of {count}")),
                    count - 1, planner.workers, progress)
-    with heard(NO_PROGRESS):  # what is finished is put together, whoever wants to stop
+    with activate_progress(NO_PROGRESS):  # what is finished is put together, whoever wants to stop
         made = _with_blades(pattern, first, done)
     if not done.cancelled:
         assert made.blades is not None
         own = {op.number for op in made.operations[len(first.operations):] if op.done}
-        made = _zoned_anew(made, own - _exact(made), progress)
-    with heard(NO_PROGRESS):
+        made = _add_zones_anew(made, own - _exact(made), progress)
+    with activate_progress(NO_PROGRESS):
         assert made.blades is not None
-        measured = tuple(_measured(pattern, k, made.operations) for k in range(count))
+        measured = tuple(_measure_blade(pattern, k, made.operations) for k in range(count))
         return replace(made, blades=replace(made.blades, blades=measured))
 
 
 def _with_blades(pattern: Pattern, first: Plan, done: Outcome[_OnBlade]) -> Plan:
     """The plan of the first blade with what came of the others."""
-    every = {**done.results, **{k: _failed_blade(pattern, k, first, why) for k, why in done.faults.items()}}
+    every = {**done.results, **{k: _fail_blade(pattern, k, first, why) for k, why in done.faults.items()}}
     operations, copies, searched = list(first.operations), {}, []
     for k in sorted(every):
         for op, source in zip(*every[k], strict=True):
@@ -133,12 +133,12 @@ def _with_blades(pattern: Pattern, first: Plan, done: Outcome[_OnBlade]) -> Plan
     return replace(first, part=pattern.part, operations=tuple(operations), outcome=outcome, blades=blades)
 
 
-def _failed_blade(pattern: Pattern, k: int, first: Plan, why: Fault) -> _OnBlade:
+def _fail_blade(pattern: Pattern, k: int, first: Plan, why: Fault) -> _OnBlade:
     """Operations of blade k + 2, on which the program failed."""
     lost = []
     for op in first.operations:
         other = pattern.matching[k].get(op.face.number)
-        lost.append(failed(op.number, op.face if other is None else pattern.part.face(other.face.number), why))
+        lost.append(fail_face(op.number, op.face if other is None else pattern.part.face(other.face.number), why))
     return lost, [0] * len(lost)
 
 
@@ -148,29 +148,29 @@ def _exact(plan: Plan) -> set[int]:
     return {n for n in plan.blades.copies if plan.operations[n - 1].orientation.evaluations == 1}
 
 
-def _zoned_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
+def _add_zones_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
     """The plan with the clean-up zones of those operations whose passes are not turned copies."""
     made = []
     try:
         for op in plan.operations:
-            made.append(_zoned(plan, op, progress) if op.number in numbers else op)
+            made.append(_add_zones(plan, op, progress) if op.number in numbers else op)
     except Cancelled:
         return replace(plan, outcome="cancelled")
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(made, plan.blades)
     return replace(plan, operations=tuple(made), outcome=outcome)
 
 
-def _zoned(plan: Plan, op: Operation, progress: Progress) -> Operation:
+def _add_zones(plan: Plan, op: Operation, progress: Progress) -> Operation:
     """An operation with its zones; a failed one where the program fails on them."""
     try:
         return with_zones(plan, op, progress)
     except Cancelled:
         raise
     except Exception as reason:
-        return failed_after(op, fault(reason))
+        return fail_operation(op, fault(reason))
 
 
-def _measured(pattern: Pattern, k: int, operations: Sequence[Operation]) -> PlannedBlade:
+def _measure_blade(pattern: Pattern, k: int, operations: Sequence[Operation]) -> PlannedBlade:
     """A blade with the areas that are machined and left."""
     blade = pattern.blades.blades[k]
     own = [op for op in operations if pattern.blades.blade_of(op.face.number) == k + 1]
@@ -179,9 +179,9 @@ def _measured(pattern: Pattern, k: int, operations: Sequence[Operation]) -> Plan
     return replace(blade, area=float(area), left=float(left))
 
 
-def _on_blade(pattern: Pattern, k: int, first: Plan, planner: Planner, progress: Progress) -> _OnBlade:
+def _on_blade(pattern: Pattern, k: int, first: Plan, planner: FacePlanner, progress: Progress) -> _OnBlade:
     """Operations of blade k + 2, and for each the number of the one it copies; 0 where its axis was searched anew."""
-    known: dict[frozenset[int], tuple[Group, ...]] = {}
+    known: dict[frozenset[int], tuple[CheckSurfaces, ...]] = {}
     found, taken = [], []
     for index, op in enumerate(first.operations):
         progress.report("proof of turned operations", index, len(first.operations))
@@ -190,13 +190,13 @@ def _on_blade(pattern: Pattern, k: int, first: Plan, planner: Planner, progress:
         except Cancelled:
             raise
         except Exception as reason:
-            made, copied = _failed_blade(pattern, k, replace(first, operations=(op,)), fault(reason))[0][0], False
+            made, copied = _fail_blade(pattern, k, replace(first, operations=(op,)), fault(reason))[0][0], False
         found.append(made)
         taken.append(op.number if copied else 0)
     return found, taken
 
 
-_Means = tuple[Planner, dict[frozenset[int], tuple[Group, ...]], Progress]
+_Means = tuple[FacePlanner, dict[frozenset[int], tuple[CheckSurfaces, ...]], Progress]
 
 
 def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[Operation, bool]:
@@ -210,7 +210,7 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
         reason = f"no face where the turn puts face {number}: plan the faces of this blade ({beside} ...) by hand"
         return Operation(op.number, op.face, Orientation(None, reasons=(reason,))), False
     suffix = op.face.label.removeprefix(str(number))
-    piece, away = turned_piece(op.face, pattern.face(number), other, matrix, f"{other.face.number}{suffix}")
+    piece, away = turn_piece(op.face, pattern.face(number), other, matrix, f"{other.face.number}{suffix}")
     apart = pattern.blades.apart(pattern.part, piece.number)
     if not op.done:
         whole = tuple(Zone(piece.outline, piece.area) for _ in op.zones)
@@ -221,12 +221,12 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
     swapped = other.chart.swapped if other.chart is not None else None
     if away <= SAME and swapped is not None:
         assert other.chart is not None
-        turned = _turned(op, piece, matrix, swapped)
+        turned = _turn_operation(op, piece, matrix, swapped)
         chart = other.chart
         zones = tuple(replace(zone, loops=tuple(chart(loop) for loop in zone.loops)) for zone in op.zones)
         made, why = _proven(replace(turned, zones=zones), task, _groups(task, means), first_datum(op))
     else:
-        made, why = _judged(op, piece, task, axis, swapped)
+        made, why = _replan_turned(op, piece, task, axis, swapped)
     if made is not None:
         return made, True
     anew = planner.search(apart, piece, op.number, progress)
@@ -246,14 +246,14 @@ def first_datum(op: Operation) -> Array:
     return op.frame.origin
 
 
-def _turned(op: Operation, piece: Face, matrix: Array, swapped: bool) -> Operation:
+def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) -> Operation:
     """An operation with everything turned, not yet proven."""
     assert op.path is not None and op.orientation.axis is not None
     turn, path, found = matrix[:3, :3], op.path, op.orientation
     assert found.axis is not None
     axis = turn @ found.axis
     axis /= np.linalg.norm(axis)
-    carried = ToolPath(moved(matrix, path.cc), moved(matrix, path.cl), np.tile(axis, (len(path.cl), 1)),
+    carried = ToolPath(apply_motion(matrix, path.cc), apply_motion(matrix, path.cl), np.tile(axis, (len(path.cl), 1)),
                        path.normal @ turn.T, path.kind, path.breaks)
     feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
     left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
@@ -261,14 +261,15 @@ def _turned(op: Operation, piece: Face, matrix: Array, swapped: bool) -> Operati
                                                reasons=(f"turned copy of {op.name}", *left)), carried)
 
 
-def _groups(task: Task, means: _Means) -> tuple[Group, ...]:
+def _groups(task: FaceProblem, means: _Means) -> tuple[CheckSurfaces, ...]:
     """The surroundings of a task's face; those of one skin share their cells."""
     known = means[1]
     key = frozenset(face.number for face in task.groups[0].faces)
     return known.setdefault(key, task.groups)
 
 
-def _proven(op: Operation, task: Task, groups: tuple[Group, ...], datum: Array) -> tuple[Operation | None, str]:
+def _proven(op: Operation, task: FaceProblem, groups: tuple[CheckSurfaces, ...],
+            datum: Array) -> tuple[Operation | None, str]:
     """A turned operation with what is proven of it on the real faces, or why it is refused.
 
     It is decided first whether nothing is worse than on the first blade but for rounding; measured only where it is.
@@ -281,7 +282,8 @@ def _proven(op: Operation, task: Task, groups: tuple[Group, ...], datum: Array) 
     moves = segment_motions(path.cl, path.axis[0])
     least = {name: value - _SLACK for name, value in found.clearance.items()}
     depth = found.gouge + _FINER
-    same = all((decided(group.cells, tool, moves, np.tile(_asked(group, least, least_distance(tool, depth, allowance)),
+    same = all((decided(group.cells, tool, moves, np.tile(_distances_to_keep(group, least,
+                                                                             least_distance(tool, depth, allowance)),
                                                            (len(group.faces), 1))).blocked < 0).all()
                for group in groups)
     if same:
@@ -297,7 +299,7 @@ def _proven(op: Operation, task: Task, groups: tuple[Group, ...], datum: Array) 
     return replace(op, orientation=made, frame=frame_of(op.face, made, datum)), ""
 
 
-def _asked(group: Group, least: dict[str, float], depth: float) -> Array:
+def _distances_to_keep(group: CheckSurfaces, least: dict[str, float], depth: float) -> Array:
     """Distances to decide by: those to keep, or the first blade's where these are greater, (3,)."""
     wanted = np.array([least.get(name, -np.inf) for name in COMPONENTS])
     if group.role == SKIN:
@@ -307,11 +309,12 @@ def _asked(group: Group, least: dict[str, float], depth: float) -> Array:
     return np.maximum(group.required, wanted)
 
 
-def _judged(op: Operation, piece: Face, task: Task, axis: Array, swapped: bool | None) -> tuple[Operation | None, str]:
+def _replan_turned(op: Operation, piece: Face, task: FaceProblem, axis: Array,
+                   swapped: bool | None) -> tuple[Operation | None, str]:
     """The turned axis with passes of its own on the real face, or why it is refused."""
     feeds = {None: None, False: op.orientation.feed, True: "v" if op.orientation.feed == "u" else "u"}
     try:
-        found, path = judged(task, axis, feeds[swapped])
+        found, path = evaluate_given_axis(task, axis, feeds[swapped])
     except Cancelled:
         raise
     except ToolAxisError as reason:

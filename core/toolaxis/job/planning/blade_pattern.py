@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.bladed.blade_gap import Nearness, ahead, nearness, reach_along_normal, widest
+from toolaxis.bladed.blade_gap import NearestOnBlades, ahead, nearness, reach_along_normal, widest
 from toolaxis.bladed.counterparts import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.bladed.find_blades import Bladed, NoPattern, blades_of
 from toolaxis.bladed.strips import strips
-from toolaxis.bladed.trim_buried import uncovered
+from toolaxis.bladed.trim_buried import cut_back_covered
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.job.planning.sub_surfaces import faceted
+from toolaxis.job.planning.sub_surfaces import why_faceted
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import tight_fillet
@@ -95,7 +95,7 @@ class Pattern:
         return tuple(found)
 
 
-def recognised(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | None, tuple[str, ...]]:
+def find_pattern(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | None, tuple[str, ...]]:
     """The blades of a part; where it has none that can be planned as one, a warning that says why, if it needs one.
 
     Parameters
@@ -108,10 +108,11 @@ def recognised(part: Part, progress: Progress = NO_PROGRESS) -> tuple[Pattern | 
     try:
         rotor = blades_of(part)
         numbers = {face.number for face in part.sculptured}.union(*(blade.faces for blade in rotor.blades))
-        bare, pieces = uncovered(part, numbers, progress)
+        bare, pieces = cut_back_covered(part, numbers, progress)
         # tools keep clear of whole faces: only what is machined is cut back
-        return _told(replace(pattern_of(bare, rotor), part=part.with_warnings(*bare.warnings[len(part.warnings):]),
-                             pieces=pieces)), ()
+        return _add_warnings(replace(pattern_of(bare, rotor),
+                                     part=part.with_warnings(*bare.warnings[len(part.warnings):]),
+                                     pieces=pieces)), ()
     except NoPattern:
         return None, ()
     except UnsupportedGeometry as reason:
@@ -128,7 +129,7 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
         From `toolaxis.bladed.find_blades.blades_of`.
     """
     count = len(rotor.blades)
-    own = [{**_named(blade), "hub": ()} for blade in rotor.blades]
+    own = [{**_name_faces(blade), "hub": ()} for blade in rotor.blades]
     matching: list[dict[int, Counterpart]] = []
     motions: list[Array] = []
     floor = [part.face(n) for n in rotor.hub if part.face(n).kind not in PLAIN_KINDS]
@@ -152,7 +153,7 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
     return Pattern(part, Blades(rotor.point, rotor.axis, rotor.hub, bare, gap, {}), tuple(matching), tuple(motions))
 
 
-def _told(pattern: Pattern) -> Pattern:
+def _add_warnings(pattern: Pattern) -> Pattern:
     """The pattern with warnings: blades that differ, and pieces of a blade's faces that are too many to be planned."""
     far, number = max((off(pattern.face(n), other, matrix), other.face.number)
                       for matrix, found in zip(pattern.motions, pattern.matching, strict=True)
@@ -172,7 +173,7 @@ def _told(pattern: Pattern) -> Pattern:
     return replace(pattern, part=pattern.part.with_warnings(*notes))
 
 
-def _named(blade: object) -> dict[str, tuple[int, ...]]:
+def _name_faces(blade: object) -> dict[str, tuple[int, ...]]:
     """Faces of a blade by what they are."""
     names = {"suction": "suction", "pressure": "pressure", "leading": "leading", "trailing": "trailing",
              "fillet": "fillets", "tip": "tip", "other": "others"}
@@ -216,7 +217,7 @@ def too_narrow(pattern: Pattern, tool: Tool, clearance: float) -> dict[int, str]
     return found
 
 
-def _refusal(name: str, number: int, gap: Nearness, tool: Tool, clearance: float) -> str:
+def _refusal(name: str, number: int, gap: NearestOnBlades, tool: Tool, clearance: float) -> str:
     here, there = (", ".join(f"{x:.2f}" for x in place) for place in (gap.here, gap.there))
     passes = widest(gap, clearance)
     return (f"infeasible: the {name} side, face {number}, comes within {gap.distance:.3f} mm of face {gap.number} of "
@@ -225,7 +226,7 @@ def _refusal(name: str, number: int, gap: Nearness, tool: Tool, clearance: float
             f"passes, {clearance:g} mm kept, is {max(passes, 0.0):.2f} mm in diameter")
 
 
-class Share(NamedTuple):
+class BladeFaces(NamedTuple):
     """The faces of the first blade as they go into planning.
 
     divided : to be divided as asked for;  whole : not to be divided any more: strips of edges and fillets, and what
@@ -239,7 +240,7 @@ class Share(NamedTuple):
     left: dict[int, str]
 
 
-def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
+def group_blade_faces(pattern: Pattern, tool: Tool, clearance: float) -> BladeFaces:
     """Sides to be divided along span and chord; edges and fillets in strips in which normals turn little.
 
     Parameters
@@ -251,7 +252,7 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
     """
     refused = too_narrow(pattern, tool, clearance)
     left = {face.number: why for face in pattern.first
-            for why in [faceted(face, tool) or _tight(face, pattern.blades.side_of(face.number), tool)] if why}
+            for why in [why_faceted(face, tool) or _tight(face, pattern.blades.side_of(face.number), tool)] if why}
     divided: list[Face] = []
     whole: list[Face] = []
     for face in pattern.first:
@@ -264,7 +265,7 @@ def shared_out(pattern: Pattern, tool: Tool, clearance: float) -> Share:
             whole += strips(face, _NOSE)
         else:
             whole += strips(face, _FILLET) if name == "fillet" else (face,)
-    return Share(tuple(divided), tuple(whole), refused, left)
+    return BladeFaces(tuple(divided), tuple(whole), refused, left)
 
 
 def _tight(face: Face, side: str, tool: Tool) -> str:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from toolaxis.errors import Cancelled, fault
 from toolaxis.job.planning.edit_axis import search_task
-from toolaxis.job.planning.failures import failed_after
+from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.path.rest_material import FACTOR, Excess, also_machined
 from toolaxis.path.unmachined_ends import beyond_layers
@@ -24,7 +24,7 @@ from toolaxis.tools.tool import Tool
 WHOLLY = 0.9
 
 
-def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Plan:
+def add_clean_up_zones(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Plan:
     """A plan with the clean-up zones of its operations.
 
     Parameters
@@ -45,17 +45,17 @@ def zoned(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Pla
         return plan
     stage = progress.within("clean-up zones")
     plan = _without_fillets(plan, stage)
-    asked = [op for op in plan.operations if op.done and _outlined(plan, op)]
+    asked = [op for op in plan.operations if op.done and _can_be_outlined(plan, op)]
     while asked:
         found = abreast(lambda k, inner: with_zones(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
         if found.cancelled:
             return replace(plan, outcome="cancelled")
         made = {op.number: replace(op, face=asked[k].face) for k, op in found.results.items()}
-        made |= {asked[k].number: failed_after(asked[k], why) for k, why in found.faults.items()}
+        made |= {asked[k].number: fail_operation(asked[k], why) for k, why in found.faults.items()}
         plan = replace(plan, operations=tuple(made.get(op.number, op) for op in plan.operations))
         # What operations lose would have machined stays, for others too.
         lost = {op.face.number for op in made.values() if not op.done}
-        asked = [op for op in plan.operations if op.done and op.face.number in lost and _outlined(plan, op)]
+        asked = [op for op in plan.operations if op.done and op.face.number in lost and _can_be_outlined(plan, op)]
     some = any(op.done for op in plan.operations)
     return replace(plan, outcome=outcome_of(plan.operations, plan.blades) if some else "incomplete")
 
@@ -73,7 +73,7 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
         except Cancelled:
             raise
         except Exception as reason:
-            made.append(failed_after(op, fault(reason)))
+            made.append(fail_operation(op, fault(reason)))
     return replace(plan, operations=tuple(made))
 
 
@@ -85,7 +85,7 @@ def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
     return corner_too_large(search_task(plan, op, progress).feasibility)
 
 
-def _outlined(plan: Plan, op: Operation) -> bool:
+def _can_be_outlined(plan: Plan, op: Operation) -> bool:
     """Whether what an operation leaves can be outlined: of a fixed axis, and of layers around a blade."""
     return op.orientation.lead is None or strategy_of(plan.inputs.method).in_layers
 
@@ -118,7 +118,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
 
 
 def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Operation:
-    """An operation of a plan with the zones that it leaves; see `zones_of` and `told`.
+    """An operation of a plan with the zones that it leaves; see `zones_of` and `describe_zones`.
 
     Parameters
     ----------
@@ -132,10 +132,10 @@ def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> O
     Cancelled
         When the user asked to stop.
     """
-    return told(op, zones_of(plan, op, progress), plan.tool)
+    return describe_zones(op, zones_of(plan, op, progress), plan.tool)
 
 
-def told(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
+def describe_zones(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
     """An operation with its zones, their share, the width of its strips over the rest, and what is to be said of them.
 
     Parameters

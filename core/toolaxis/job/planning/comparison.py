@@ -15,7 +15,7 @@ BY_SUB_SURFACE = ("sectors", "roman", "normal")
 WHOLE = ("one", "ball")
 
 
-def compared(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
+def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
     """A plan with what other methods come to.
 
     Sectors, Roman's rule and mean normals on the same sub-surfaces; one fixed axis for all faces; and a ball end of the

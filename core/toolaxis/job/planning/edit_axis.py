@@ -8,19 +8,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.job.planning.timing import feeds_of, timed
+from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.work_coordinates import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.fixed_axis import Task, finished, task
-from toolaxis.search.local_search import counted
-from toolaxis.search.machine_limits import combined, held_axis
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.fixed_axis import FaceProblem, check_candidate, task
+from toolaxis.search.local_search import count_row
+from toolaxis.search.machine_limits import intersect_limits, nearest_held_axis
 from toolaxis.search.messages import sentence
 from toolaxis.search.sectors import roman_axis
 from toolaxis.shape.face import Face
@@ -36,10 +36,10 @@ def _limits(plan: Plan) -> AxisLimits | None:
     InvalidInput
         When they were of a class that has no short form: leaving them out could call a forbidden axis free.
     """
-    return combined(plan.machine, plan.inputs.limits or None)
+    return intersect_limits(plan.machine, plan.inputs.limits or None)
 
 
-def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Task:
+def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> FaceProblem:
     """What the search for an operation's axis went by.
 
     Parameters
@@ -64,7 +64,7 @@ def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -
     progress : Progress
     """
     job = search_task(plan, op, progress)
-    return roman_axis(Ledger(job.feasibility, job.worth, progress))
+    return roman_axis(AxisTable(job.feasibility, job.worth, progress))
 
 
 def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinates:
@@ -110,21 +110,22 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
     Cancelled
         When the user asked to stop.
     """
-    with heard(progress):
+    with activate_progress(progress):
         job = search_task(plan, op, progress)
-        found, path = judged(job, axis, feed)
+        found, path = evaluate_given_axis(job, axis, feed)
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if path is None:
         return Operation(op.number, op.face, found)
     return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum), job.left_by(path))
 
 
-def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation, ToolPath | None]:
+def evaluate_given_axis(task: FaceProblem, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation,
+                                                                                              ToolPath | None]:
     """What a given axis comes to, and the passes that were proven; none where the axis may not be used.
 
     Parameters
     ----------
-    task : Task
+    task : FaceProblem
     axis : (3,) array_like
     feed : "u" or "v", optional
         The better one unless given.
@@ -134,13 +135,13 @@ def judged(task: Task, axis: ArrayLike, feed: str | None = None) -> tuple[Orient
     Cancelled
         When the user asked to stop.
     """
-    t = held_axis(task.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
+    t = nearest_held_axis(task.feasibility.limits, unit(as_rows(axis, 3, "axis")[0]))
     witness = task.feasibility.witness(t)
     found, path = Orientation(None, outcome="infeasible"), None
     if witness is None:
-        ledger = Ledger(task.feasibility, task.worth, task.progress)
+        ledger = AxisTable(task.feasibility, task.worth, task.progress)
         ledger.look(t[None])
-        done = finished(task, counted(ledger, 0, None if feed is None else FEEDS.index(feed)))
+        done = check_candidate(task, count_row(ledger, 0, None if feed is None else FEEDS.index(feed)))
         found, path, witness = done.orientation, done.path, done.proof.witness
     task.progress.check()
     if witness is not None:
@@ -175,4 +176,4 @@ def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
     if blades is not None:
         kept = {copy: source for copy, source in blades.copies.items() if not {copy, source} & set(chosen)}
         blades = replace(blades, copies=kept)
-    return timed(replace(plan, operations=operations, outcome=outcome, blades=blades))
+    return add_times(replace(plan, operations=operations, outcome=outcome, blades=blades))

@@ -11,7 +11,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
 
 
-def failed(number: int, face: Face, fault: Fault, notes: tuple[str, ...] = ()) -> Operation:
+def fail_face(number: int, face: Face, fault: Fault, notes: tuple[str, ...] = ()) -> Operation:
     """The operation of a face on which the program failed.
 
     Parameters
@@ -26,7 +26,7 @@ def failed(number: int, face: Face, fault: Fault, notes: tuple[str, ...] = ()) -
     return Operation(number, face, none, traceback=fault.traceback)
 
 
-def failed_after(op: Operation, fault: Fault) -> Operation:
+def fail_operation(op: Operation, fault: Fault) -> Operation:
     """An operation that was planned, and on which the program failed afterwards: nothing of it may be machined.
 
     Parameters
@@ -34,7 +34,7 @@ def failed_after(op: Operation, fault: Fault) -> Operation:
     op : Operation
     fault : Fault
     """
-    return failed(op.number, op.face, fault, op.orientation.reasons)
+    return fail_face(op.number, op.face, fault, op.orientation.reasons)
 
 
 def failure_text(plan: Plan, op: Operation) -> str:

@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 
 from toolaxis.collision.index_moves import Stop, trouble_at_the_ends, trouble_between
-from toolaxis.collision.machine_collision import Surroundings, words
+from toolaxis.collision.machine_collision import MachineSurroundings, words
 from toolaxis.errors import InvalidInput, about
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
-from toolaxis.strategies.common.passes import met
+from toolaxis.strategies.common.passes import machine_violation
 
 
-def refused(op: Operation, why: str) -> Operation:
+def refuse_operation(op: Operation, why: str) -> Operation:
     """An operation that the machine cannot carry out.
 
     Parameters
@@ -28,7 +28,7 @@ def refused(op: Operation, why: str) -> Operation:
     return replace(op, path=None, frame=None, time=None, rotary=(), orientation=none)
 
 
-def kept_clear(plan: Plan, mounting: Mounting, around: Surroundings) -> Plan:
+def check_machine_collisions(plan: Plan, mounting: Mounting, around: MachineSurroundings) -> Plan:
     """A plan without operations on which, while the axis moves, the machine meets something; what is in the way between
     others is told.
 
@@ -37,7 +37,7 @@ def kept_clear(plan: Plan, mounting: Mounting, around: Surroundings) -> Plan:
     plan : Plan
         Operations with one axis stand at their rotary angles.
     mounting : Mounting
-    around : Surroundings
+    around : MachineSurroundings
 
     Notes
     -----
@@ -47,7 +47,7 @@ def kept_clear(plan: Plan, mounting: Mounting, around: Surroundings) -> Plan:
     if not (moving and mounting.judges_bodies):
         return plan
     while True:
-        operations, troubles = _walked(plan, mounting, around)
+        operations, troubles = _walk_operations(plan, mounting, around)
         if operations is plan.operations:
             break
         outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(operations, plan.blades)
@@ -56,7 +56,8 @@ def kept_clear(plan: Plan, mounting: Mounting, around: Surroundings) -> Plan:
     return replace(plan, outcome=outcome, in_the_way=(*plan.in_the_way, *troubles))
 
 
-def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple[Operation, ...], list[str]]:
+def _walk_operations(plan: Plan, mounting: Mounting, around: MachineSurroundings) -> tuple[tuple[Operation, ...],
+                                                                                           list[str]]:
     """The operations, the first one that meets something refused, and what is in the way between those so far."""
     stand, last, after_moving, troubles = np.zeros(len(mounting.machine.rotary)), None, False, list[str]()
     for k, op in enumerate(plan.operations):
@@ -71,7 +72,7 @@ def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple
             except InvalidInput as reason:
                 return _but(plan, k, str(reason)), []
             with about(op.face.label):
-                found = met(mounting, along, around)
+                found = machine_violation(mounting, along, around)
             if found is not None:
                 return _but(plan, k, f"{words(mounting, found[1], found[0], around.required)}, at point "
                                      f"{found[0].motion} of the path"), []
@@ -93,4 +94,4 @@ def _walked(plan: Plan, mounting: Mounting, around: Surroundings) -> tuple[tuple
 
 
 def _but(plan: Plan, k: int, why: str) -> tuple[Operation, ...]:
-    return tuple(refused(op, why) if i == k else op for i, op in enumerate(plan.operations))
+    return tuple(refuse_operation(op, why) if i == k else op for i, op in enumerate(plan.operations))

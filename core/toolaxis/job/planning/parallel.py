@@ -17,7 +17,7 @@ from multiprocessing.process import BaseProcess
 from typing import IO, Generic, NamedTuple, TypeVar
 
 from toolaxis.errors import Cancelled, Fault, InvalidInput, fault, process_fault
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 
 Result = TypeVar("Result")
 
@@ -46,7 +46,7 @@ class Outcome(Generic[Result]):
     cancelled: bool
 
 
-def checked_workers(workers: int | None) -> int:
+def check_workers(workers: int | None) -> int:
     """How many processes to work with.
 
     Parameters
@@ -278,7 +278,7 @@ def _labour(work: Callable[[int, Progress], object], pipe: Connection, others: t
             pipe.send(("report", (stage, done, total)))
 
     progress = Progress(_report)
-    with heard(progress), suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the parent is gone
+    with activate_progress(progress), suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the parent is gone
         while True:
             index = pipe.recv()
             try:

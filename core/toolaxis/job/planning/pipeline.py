@@ -12,26 +12,26 @@ from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
-from toolaxis.job.inputs.spec import chosen_faces, with_joined, with_rings
+from toolaxis.job.inputs.spec import choose_faces, with_joined, with_rings
 from toolaxis.job.inputs.tool_file import load_tool
-from toolaxis.job.planning.blade_pattern import recognised
-from toolaxis.job.planning.comparison import compared
-from toolaxis.job.planning.failures import failed_after
-from toolaxis.job.planning.parallel import checked_workers
-from toolaxis.job.planning.planner import Job, went_on
+from toolaxis.job.planning.blade_pattern import find_pattern
+from toolaxis.job.planning.comparison import compare_methods
+from toolaxis.job.planning.failures import fail_operation
+from toolaxis.job.planning.parallel import check_workers
+from toolaxis.job.planning.planner import PlanningJob, went_on
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
-from toolaxis.job.planning.timing import timed
-from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, written
+from toolaxis.job.planning.timing import add_times
+from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.partition.partition import checked_count
-from toolaxis.plan.plan import Inputs, Plan
+from toolaxis.partition.partition import check_count
+from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
-from toolaxis.progress import NO_PROGRESS, Progress, heard
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.fixed_axis import METHODS
-from toolaxis.search.machine_limits import combined
-from toolaxis.search.time_estimate import known_machine
+from toolaxis.search.machine_limits import intersect_limits
+from toolaxis.search.time_estimate import require_machine_limits
 from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
@@ -134,8 +134,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     UnsupportedGeometry
         When faces cannot be joined.
     """
-    checked_count(regions)
-    checked_count(orientations, "orientations")
+    check_count(regions)
+    check_count(orientations, "orientations")
     mounting, allowed = _machine(machine, limits, offset)
     cutter = load_tool(tool) if isinstance(tool, str) else tool
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
@@ -144,12 +144,12 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         None if roughness is None else float(roughness), orientations, held_in(given)))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
-    words = short if isinstance(short, str) else written(allowed)
-    inputs = Inputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                    float(spindle), Tolerance.of(tolerance), float(rapid),
-                    chosen.roughness if roughness is None else float(roughness), float(limit))
+    words = short if isinstance(short, str) else format_limits(allowed)
+    inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
+                        float(spindle), Tolerance.of(tolerance), float(rapid),
+                        chosen.roughness if roughness is None else float(roughness), float(limit))
     if objective == "time":
-        known_machine(mounting)
+        require_machine_limits(mounting)
     inputs.check_tool(cutter)
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER)
@@ -157,37 +157,37 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
     bodies = tuple(load(body) for body in _listed(obstacles))
-    job = Job(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
-              checked_workers(workers), machine=mounting, division=given)
+    job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
+                      check_workers(workers), machine=mounting, division=given)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
-    return _ordered(_carried_out(job, chosen_faces(loaded, numbers), (whole, compare), progress), progress)
+    return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
 
 
-def _carried_out(job: Job, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
+def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
     """The plan of a job: blade by blade where the whole of a bladed part is asked for, else face by face, and compared
     with other methods where that is asked for."""
     whole, compare = asked
     try:
-        with heard(progress):
+        with activate_progress(progress):
             if job.workers > 1:
                 _in_cells(job, progress)
             if whole:
                 progress.report("looking for blades", 0, 1)
-                made, refusal = _bladed(job, compare, progress)
+                made, refusal = _plan_bladed(job, compare, progress)
                 if made is not None:
                     return made
                 job = replace(job, part=job.part.with_warnings(*refusal))
             made = job.by(job.inputs.method).zoned_out(faces, progress)
-            return _compared(job, made, faces, progress) if compare else made
+            return _compare_methods(job, made, faces, progress) if compare else made
     except Cancelled:
         return job.empty()
 
 
-def _bladed(job: Job, compare: bool, progress: Progress) -> tuple[Plan | None, tuple[str, ...]]:
+def _plan_bladed(job: PlanningJob, compare: bool, progress: Progress) -> tuple[Plan | None, tuple[str, ...]]:
     """The plan of a part with blades; none where it has none that can be planned as one, and a warning that says why.
     """
     try:
-        pattern, refusal = recognised(job.part, progress)
+        pattern, refusal = find_pattern(job.part, progress)
         if pattern is None:
             return None, refusal
         return replace(job, part=pattern.part).bladed(pattern, compare, progress), ()
@@ -197,11 +197,11 @@ def _bladed(job: Job, compare: bool, progress: Progress) -> tuple[Plan | None, t
         return None, (f"blades are not told apart, every face is planned by itself: {fault(reason).sentence}",)
 
 
-def _compared(job: Job, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
+def _compare_methods(job: PlanningJob, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
     """A plan with what other methods come to."""
     plain = replace(job, regions=None, orientations=None, division=())
     pieces = [target.face for target in smooth_pieces(faces, job.tool) if target.ended is None]
-    return went_on(went_on(made, _in_time), lambda plan: compared(
+    return went_on(went_on(made, _in_time), lambda plan: compare_methods(
         plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))
 
 
@@ -209,11 +209,11 @@ def _in_time(plan: Plan) -> Plan:
     """A plan in the order that takes least time, with times; operations on which the program fails lose their axis."""
     while True:
         try:
-            return timed(plan, reorder=True)
+            return add_times(plan, reorder=True)
         except ToolAxisError:  # Cancelled among them
             raise
         except Exception as reason:
-            lost = {op.number: failed_after(op, fault(reason)) for op in plan.operations
+            lost = {op.number: fail_operation(op, fault(reason)) for op in plan.operations
                     if op.done and op.face.label == piece_of(reason)}
             if not lost:
                 raise
@@ -221,18 +221,18 @@ def _in_time(plan: Plan) -> Plan:
                            outcome="cancelled" if plan.outcome == "cancelled" else "incomplete")
 
 
-def _ordered(plan: Plan, progress: Progress) -> Plan:
+def _order_operations(plan: Plan, progress: Progress) -> Plan:
     """A plan in the order that takes least time; a stopped one as it stands, but judged on its machine as the others.
     """
-    with heard(progress):
+    with activate_progress(progress):
         found = went_on(plan, _in_time)
     if found.outcome != "cancelled":
         return found
-    with heard(NO_PROGRESS):  # what is finished is kept
-        return replace(went_on(replace(found, outcome="incomplete"), timed), outcome="cancelled")
+    with activate_progress(NO_PROGRESS):  # what is finished is kept
+        return replace(went_on(replace(found, outcome="incomplete"), add_times), outcome="cancelled")
 
 
-def _in_cells(job: Job, progress: Progress) -> None:
+def _in_cells(job: PlanningJob, progress: Progress) -> None:
     """Make the cells of all faces before processes are forked, which then share them."""
     every = [face for part in (job.part, *job.bodies) for face in part.faces]
     for k, face in enumerate(every):
@@ -259,7 +259,7 @@ def _machine(machine: MachineLike | None, limits: AxisLimits | str | None,
     found = machine_limits(machine, offset) if machine else None
     if found is None and offset is not None:
         raise InvalidInput("a place of the part on the table is given without a machine: name the machine too")
-    others = combined(None, limits or None)
+    others = intersect_limits(None, limits or None)
     if isinstance(found, Mounting):
         return found, others
-    return None, combined(found, others)
+    return None, intersect_limits(found, others)

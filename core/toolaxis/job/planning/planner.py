@@ -10,31 +10,39 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault, piece_of
 from toolaxis.job.planning.blade_clearances import with_rooms
-from toolaxis.job.planning.blade_copies import followed, spread_out, with_refused
-from toolaxis.job.planning.blade_pattern import Pattern, shared_out
-from toolaxis.job.planning.clean_up_zones import zoned
-from toolaxis.job.planning.comparison import compared
-from toolaxis.job.planning.edit_axis import frame_of, judged
-from toolaxis.job.planning.failures import failed
+from toolaxis.job.planning.blade_copies import append_operations, spread_out, with_refused
+from toolaxis.job.planning.blade_pattern import Pattern, group_blade_faces
+from toolaxis.job.planning.clean_up_zones import add_clean_up_zones
+from toolaxis.job.planning.comparison import compare_methods
+from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
+from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.parallel import abreast
-from toolaxis.job.planning.sub_surfaces import Target, by_axis, given_targets, held, lost, smooth_pieces, with_given
-from toolaxis.job.planning.timing import feeds_of, timed
+from toolaxis.job.planning.sub_surfaces import (
+    Target,
+    by_axis,
+    lost_face,
+    plan_locked,
+    smooth_pieces,
+    targets_of_given,
+    with_given,
+)
+from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances
 from toolaxis.partition.face_division import MOST, Divider, Regions
-from toolaxis.partition.partition import checked_count
+from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
-from toolaxis.partition.shared_axes import shared, trade
+from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Inputs, Option, Plan
+from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.fixed_axis import task as search_task
-from toolaxis.search.machine_limits import combined
+from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
@@ -42,7 +50,7 @@ from toolaxis.shape.part import Part
 from toolaxis.strategies.registry import strategy_of
 from toolaxis.strategies.strategy import Strategy
 from toolaxis.tools.tool import Tool
-from toolaxis.work import MOVING, Budget, OutOfWork, limited
+from toolaxis.work import MOVING, Budget, OutOfWork, limit_work
 
 Array = NDArray[np.float64]
 
@@ -92,7 +100,7 @@ def quicker(divided: Plan, whole: Plan) -> Plan:
     divided, whole : Plan
         The first one's options are kept; that with as many axes is marked where faces stay whole.
     """
-    times = [timed(one, reorder=True).seconds if one.outcome == "complete" else np.inf for one in (divided, whole)]
+    times = [add_times(one, reorder=True).seconds if one.outcome == "complete" else np.inf for one in (divided, whole)]
     if whole.outcome == "cancelled" or times[0] <= times[1]:
         return divided
     marked = tuple(replace(one, chosen=one.orientations == whole.orientations) for one in divided.options)
@@ -100,14 +108,14 @@ def quicker(divided: Plan, whole: Plan) -> Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class PlanningJob:
     """One plan in the making.
 
     Attributes
     ----------
     part : Part
     tool : Tool
-    inputs : Inputs
+    inputs : PlanInputs
     limits : AxisLimits or None
         Of the axis, besides the machine's.
     bodies : tuple of Part
@@ -126,7 +134,7 @@ class Job:
 
     part: Part
     tool: Tool
-    inputs: Inputs
+    inputs: PlanInputs
     limits: AxisLimits | None
     bodies: tuple[Part, ...]
     datum: Array
@@ -137,7 +145,7 @@ class Job:
     machine: Mounting | None = None
     division: tuple[SubSurface, ...] = ()
 
-    def by(self, method: str) -> "Job":
+    def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
         return replace(self, inputs=replace(self.inputs, method=method),
                        tool=self.tool.with_ball_end() if method == "ball" else self.tool)
@@ -147,7 +155,7 @@ class Job:
 
         Where other methods are asked for too, they plan the same blade between its neighbours.
         """
-        share = shared_out(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
+        share = group_blade_faces(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
         apart = pattern.blades.apart(self.part, pattern.first[0].number)
         regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
         one = replace(self, part=apart, regions=regions, whole=share.whole)
@@ -155,19 +163,19 @@ class Job:
         found = went_on(replace(first, part=pattern.part),
                         lambda plan: spread_out(pattern, plan, _Planner(self), progress))
         if found.outcome != "cancelled" and pattern.rest:
-            found = followed(found, self.zoned_out(pattern.rest, progress))
+            found = append_operations(found, self.zoned_out(pattern.rest, progress))
         if compare:
             plain = replace(one, regions=None, orientations=None, whole=(), division=())
             done = tuple(op for op in first.operations if op.done)
             own = [face for face in (*share.divided, *share.whole) if face.number in {op.face.number for op in done}]
-            found = went_on(found, lambda plan: replace(plan, baselines=compared(
+            found = went_on(found, lambda plan: replace(plan, baselines=compare_methods(
                 replace(first, operations=done), own,
                 lambda name, some: plain.by(name).carried_out(some, progress.within(name))).baselines))
         return went_on(found, lambda plan: plan if plan.blades is None else with_rooms(plan, progress))
 
     def zoned_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces with the clean-up zones of its operations."""
-        return went_on(self.carried_out(faces, progress), lambda plan: zoned(plan, self.workers, progress))
+        return went_on(self.carried_out(faces, progress), lambda plan: add_clean_up_zones(plan, self.workers, progress))
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
@@ -184,7 +192,7 @@ class Job:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
         order = [face.number for face in (*faces, *self.whole)]
-        given = given_targets(self.part, self.division, order)
+        given = targets_of_given(self.part, self.division, order)
         pieces = smooth_pieces((face for face in faces if face.number not in given), self.tool)
         faces = [target.face for target in pieces if target.ended is None]
         try:
@@ -206,7 +214,7 @@ class Job:
         """The plan for sub-surfaces as they are."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
-        made = {**done.results, **{k: failed(k + 1, targets[k].face, why) for k, why in done.faults.items()}}
+        made = {**done.results, **{k: fail_face(k + 1, targets[k].face, why) for k, why in done.faults.items()}}
         operations = tuple(replace(made[k], face=targets[k].face) for k in sorted(made))
         complete = "complete" if all(op.done for op in operations) else "incomplete"
         return self._plan(operations, "cancelled" if done.cancelled else complete, options)
@@ -273,9 +281,9 @@ class Job:
         for k, face in enumerate(faces):
             one = found.results.get(k)
             if one is None:
-                targets.append(lost(face, found.faults[k]))
+                targets.append(lost_face(face, found.faults[k]))
             elif isinstance(one, ToolAxisError):  # this face cannot be divided so; the others can
-                targets.append(Target(face, ended=_refused(1, face, one)))
+                targets.append(Target(face, ended=_refuse_face(1, face, one)))
             else:
                 targets += [Target(piece, axis) for piece, axis in zip_longest(one.faces, one.axes)]
         return targets
@@ -285,7 +293,7 @@ class Job:
 
         A face for which no division was found stays whole with an axis of its own, unless that is so of all.
         """
-        most = MOST if self.regions is None else checked_count(self.regions) or MOST
+        most = MOST if self.regions is None else check_count(self.regions) or MOST
         every: list[Divider] = []
         ended: list[Target] = []
         for face in faces:
@@ -296,7 +304,7 @@ class Job:
             except ToolAxisError:  # Cancelled among them
                 raise
             except Exception as reason:
-                ended.append(lost(face, fault(reason)))
+                ended.append(lost_face(face, fault(reason)))
         dividers = [one for one in every if len(one.best.known)] or every
         ended += [Target(one.job.worth.face) for one in every if one not in dividers]
         while dividers:
@@ -314,14 +322,14 @@ class Job:
     def _in_common(self, dividers: list[Divider], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
         """Sub-surfaces of faces with the few axes that they share, and the numbers of axes to choose from."""
         options: tuple[Option, ...] = ()
-        count = checked_count(self.orientations, "orientations")
+        count = check_count(self.orientations, "orientations")
         if count is None:
             found, knee = trade(dividers, progress=progress)
             options = tuple(Option(one.orientations, one.pieces, one.length, k == knee, one.seconds)
                             for k, one in enumerate(found))
             chosen = found[knee]
         else:
-            chosen = shared(dividers, count, progress=progress)
+            chosen = divide_with_shared_axes(dividers, count, progress=progress)
         axes = np.unique(np.concatenate([one.axes for one in chosen.regions]), axis=0)
         rows = [(piece, axis) for one in chosen.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
         return by_axis([Target(piece, axis, True, tuple(other for other in axes if (other != axis).any()))
@@ -330,7 +338,7 @@ class Job:
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
         times = MOVING if self._strategy.moves else 1.0
-        with limited(Budget(self.inputs.limit, times)):
+        with limit_work(Budget(self.inputs.limit, times)):
             return self._with_axis(target, place, progress)
 
     def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
@@ -344,7 +352,8 @@ class Job:
             found, path = Orientation(None), None
             given = target.given if target.given is not None and target.given.held else None
             if given is not None and not self._strategy.moves and self.inputs.method != "one":
-                found, path = held(self._task(face, inner), given, lambda task: self._strategy.plan(task, self.inputs))
+                found, path = plan_locked(self._task(face, inner), given,
+                                          lambda task: self._strategy.plan(task, self.inputs))
             elif axis is not None and target.shared:
                 found, path = self._shared(target, inner)
             if found.axis is None and self.inputs.method == "one":
@@ -359,7 +368,7 @@ class Job:
         except OutOfWork as reason:
             return Operation(number, face, Orientation(None, outcome="not_found", reasons=(str(reason),)))
         except ToolAxisError as reason:  # this face cannot be done; the others can
-            return _refused(number, face, reason)
+            return _refuse_face(number, face, reason)
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
@@ -368,10 +377,10 @@ class Job:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
         assert target.axis is not None
         job = self._task(target.face, progress)
-        found, path = judged(job, target.axis)
+        found, path = evaluate_given_axis(job, target.axis)
         if found.axis is not None:
             return found, path
-        rest = [one for one in (judged(job, other) for other in target.others) if one[0].axis is not None]
+        rest = [one for one in (evaluate_given_axis(job, other) for other in target.others) if one[0].axis is not None]
         if not rest:
             return found, path
         other, path = min(rest, key=lambda one: _price(job, one[0]))
@@ -391,20 +400,20 @@ class Job:
 
     @property
     def _limits(self) -> AxisLimits | None:
-        return combined(self.machine, self.limits)
+        return intersect_limits(self.machine, self.limits)
 
     @property
     def _obstacles(self) -> tuple[Face, ...]:
         return tuple(face for body in self.bodies for face in body.faces)
 
-    def _task(self, face: Face, progress: Progress) -> Task:
+    def _task(self, face: Face, progress: Progress) -> FaceProblem:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
                            allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, progress=progress)
 
 
-def _refused(number: int, face: Face, reason: ToolAxisError) -> Operation:
+def _refuse_face(number: int, face: Face, reason: ToolAxisError) -> Operation:
     """The operation of a face that cannot be done, in the words of an exception."""
     return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
 
@@ -414,11 +423,11 @@ def _without(targets: list[Target], reason: Exception) -> list[Target]:
     why, piece = fault(reason), piece_of(reason)
     guilty = {target.face.label for target in targets if target.face.label == piece} or {
         target.face.label for target in targets}
-    return [lost(target.face, why) if target.ended is None and target.face.label in guilty else target
+    return [lost_face(target.face, why) if target.ended is None and target.face.label in guilty else target
             for target in targets]
 
 
-def _price(job: Task, found: Orientation) -> float:
+def _price(job: FaceProblem, found: Orientation) -> float:
     """What an axis that serves costs by the objective, what it leaves charged."""
     assert found.axis is not None
     value = job.worth.value(found.axis, FEEDS.index(found.feed), found.passes, found.length)
@@ -429,14 +438,14 @@ def _price(job: Task, found: Orientation) -> float:
 class _Planner:
     """What plans a face of a part whose blades are told apart."""
 
-    job: Job
+    job: PlanningJob
 
     @property
     def workers(self) -> int:
         """Processes to work with."""
         return self.job.workers
 
-    def task(self, part: Part, face: Face, progress: Progress) -> Task:
+    def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
         """What decides about an axis."""
         return replace(self.job, part=part)._task(face, progress)
 

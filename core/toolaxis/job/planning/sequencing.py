@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.collision.index_moves import RETRACT, Stop, trouble_at_the_ends, trouble_between
-from toolaxis.collision.machine_collision import FLAT, Surroundings, free_solutions
+from toolaxis.collision.machine_collision import FLAT, MachineSurroundings, free_solutions
 from toolaxis.errors import about
 from toolaxis.feed.jerk_profile import travel_time
-from toolaxis.job.planning.moving_axis_collisions import kept_clear, refused
+from toolaxis.job.planning.moving_axis_collisions import check_machine_collisions, refuse_operation
 from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting
-from toolaxis.numeric.sequencing import EXACT, Steps, Tour, in_order, shortest
+from toolaxis.numeric.sequencing import EXACT, TransitionCosts, VisitingOrder, in_order, shortest
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
 from toolaxis.plan.timing import Order
@@ -39,7 +39,7 @@ class _State:
     ends: Array
 
 
-def arranged(plan: Plan, reorder: bool = False) -> Plan:
+def sequence_operations(plan: Plan, reorder: bool = False) -> Plan:
     """A plan whose operations stand at rotary angles that its machine can take, and in the quickest order if asked for.
 
     Operations with one axis follow each other.  Where bodies of the machine are known, angles at which they meet part,
@@ -65,16 +65,18 @@ def arranged(plan: Plan, reorder: bool = False) -> Plan:
     found: list[tuple[list[_State], str]] = []
     for op in plan.operations:
         with about(op.face.label):
-            found.append(_states(mounting, op, around) if _fixed(op) else ([], ""))
-    kept = tuple(refused(op, why) if why and not states else op
+            found.append(_states(mounting, op, around) if _has_fixed_axis(op) else ([], ""))
+    kept = tuple(refuse_operation(op, why) if why and not states else op
                  for op, (states, why) in zip(plan.operations, found, strict=True))
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(kept, plan.blades)
     plan = replace(plan, operations=kept, outcome=outcome, in_the_way=())
     rows = [states for states, _ in found if states]
-    return kept_clear(_in_order(plan, mounting, rows, around, reorder) if rows else plan, mounting, around)
+    return check_machine_collisions(_in_order(plan, mounting, rows, around, reorder) if rows else plan, mounting,
+                                    around)
 
 
-def _in_order(plan: Plan, mounting: Mounting, rows: list[list[_State]], around: Surroundings, reorder: bool) -> Plan:
+def _in_order(plan: Plan, mounting: Mounting, rows: list[list[_State]], around: MachineSurroundings,
+              reorder: bool) -> Plan:
     """The plan at those of the operations' states, and in that order, that cost least."""
     steps = _steps(mounting, rows)
     listed = np.arange(len(rows))
@@ -96,11 +98,11 @@ def _in_order(plan: Plan, mounting: Mounting, rows: list[list[_State]], around: 
 class _Way:
     """A tour through states, and what is in the way on it nevertheless."""
 
-    tour: Tour
+    tour: VisitingOrder
     troubles: tuple[str, ...]
 
 
-def _at_the_ends(mounting: Mounting, rows: Sequence[list[_State]], way: _Way, around: Surroundings) -> list[str]:
+def _at_the_ends(mounting: Mounting, rows: Sequence[list[_State]], way: _Way, around: MachineSurroundings) -> list[str]:
     """What is in the way before the first and after the last operation."""
     if not mounting.judges_index_moves:
         return []
@@ -113,20 +115,20 @@ def _at_the_ends(mounting: Mounting, rows: Sequence[list[_State]], way: _Way, ar
             zip(("before", "after"), (first, last), told, strict=True) if why]
 
 
-def _fixed(op: Operation) -> bool:
+def _has_fixed_axis(op: Operation) -> bool:
     """Whether an operation has a path whose axis stands still."""
     return op.path is not None and len(op.path.cl) > 0 and bool(np.ptp(op.path.axis, axis=0).max() < 1e-9)
 
 
-def _around(plan: Plan) -> Surroundings:
+def _around(plan: Plan) -> MachineSurroundings:
     """Part and obstacles, and the distance that machine bodies keep."""
     bodies = [plan.part, *plan.obstacles]
     judged = plan.machine is not None and plan.machine.machine.bodies
     faces = tuple(forest(body.faces, FLAT / 10) for body in bodies if len(body.faces)) if judged else ()
-    return Surroundings(plan.tool, faces, plan.inputs.tolerance.holder_clearance)
+    return MachineSurroundings(plan.tool, faces, plan.inputs.tolerance.holder_clearance)
 
 
-def _states(mounting: Mounting, op: Operation, around: Surroundings) -> tuple[list[_State], str]:
+def _states(mounting: Mounting, op: Operation, around: MachineSurroundings) -> tuple[list[_State], str]:
     """All rotary angles at which an operation can be carried out, whole turns inside finite ranges told apart, and what
     is in the way at others."""
     assert op.path is not None
@@ -142,7 +144,7 @@ def _states(mounting: Mounting, op: Operation, around: Surroundings) -> tuple[li
     return found, why
 
 
-def _steps(mounting: Mounting, rows: Sequence[list[_State]]) -> Steps:
+def _steps(mounting: Mounting, rows: Sequence[list[_State]]) -> TransitionCosts:
     """What goes between all states, s; radians of the largest turn where the machine's limits are not known."""
     states = [state for some in rows for state in some]
     owner = np.repeat(np.arange(len(rows)), [len(some) for some in rows])
@@ -150,15 +152,16 @@ def _steps(mounting: Mounting, rows: Sequence[list[_State]]) -> Steps:
     angles = np.array([state.rotary for state in states]).reshape(len(states), -1)
     cost, machine = np.zeros((len(states), len(states))), mounting.machine
     for k, axis in enumerate(machine.rotary):
-        turn = np.abs(_turned(axis, angles[:, k][:, None], angles[:, k]))
+        turn = np.abs(_shortest_turn(axis, angles[:, k][:, None], angles[:, k]))
         cost = np.maximum(cost, _turning_time(axis, turn, bool(machine.unstated)))
     if not machine.unstated:
         cost = cost + _over(mounting, np.array([state.ends for state in states]))
     cost[owner[:, None] == owner] = inf
-    return Steps(cost, owner, np.array([names.index(name) for name in names]), _TIE * np.abs(angles).sum(axis=1))
+    return TransitionCosts(cost, owner, np.array([names.index(name) for name in names]),
+                           _TIE * np.abs(angles).sum(axis=1))
 
 
-def _turned(axis: RotaryAxis, start: Array, end: Array) -> Array:
+def _shortest_turn(axis: RotaryAxis, start: Array, end: Array) -> Array:
     """The turn from angles to angles, the shorter way where the axis turns without end."""
     turn = end - start
     endless = not (isfinite(axis.low) and isfinite(axis.high))
@@ -185,7 +188,7 @@ def _over(mounting: Mounting, ends: Array) -> Array:
     return np.asarray(up[:, None] + np.maximum(*aside) + down)
 
 
-def _without_trouble(steps: Steps, rows: Sequence[list[_State]], known: tuple[Mounting, Surroundings],
+def _without_trouble(steps: TransitionCosts, rows: Sequence[list[_State]], known: tuple[Mounting, MachineSurroundings],
                      order: NDArray[np.int64] | None) -> _Way:
     """The cheapest tour on which nothing is in the way: what is turns that step out, until nothing is.
 
@@ -227,7 +230,7 @@ def _named(op: Operation) -> str:
 
 
 def _trouble(mounting: Mounting, before: tuple[_State, Array], after: tuple[_State, Array],
-             around: Surroundings) -> str:
+             around: MachineSurroundings) -> str:
     (a, turned_a), (b, turned_b) = before, after
     assert a.op.path is not None and b.op.path is not None
     return trouble_between(mounting, Stop(a.op.path.cl[-1], turned_a), Stop(b.op.path.cl[0], turned_b), around)
@@ -237,7 +240,8 @@ def _unwound(mounting: Mounting, stops: Sequence[_State]) -> list[Array]:
     """Angles along a tour, axes without end going on from one to the next."""
     stand, found = np.zeros(len(mounting.machine.rotary)), []
     for stop in stops:
-        stand = np.array([now + _turned(axis, np.asarray(now), np.asarray(angle)) if not isfinite(axis.high - axis.low)
+        stand = np.array([now + _shortest_turn(axis, np.asarray(now), np.asarray(angle))
+                          if not isfinite(axis.high - axis.low)
                           else angle for axis, now, angle in zip(mounting.machine.rotary, stand, stop.rotary,
                                                                  strict=True)], dtype=float).reshape(stand.shape)
         found.append(stand)

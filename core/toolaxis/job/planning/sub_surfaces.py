@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
-from toolaxis.job.planning.edit_axis import judged
-from toolaxis.job.planning.failures import failed
+from toolaxis.job.planning.edit_axis import evaluate_given_axis
+from toolaxis.job.planning.failures import fail_face
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
 from toolaxis.plan.zone import Zone
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part
@@ -80,7 +80,7 @@ def read_division(path: str | Path) -> tuple[SubSurface, ...]:
     return division_from(document)
 
 
-def given_targets(part: Part, division: Sequence[SubSurface], numbers: Iterable[int]) -> dict[int, list[Target]]:
+def targets_of_given(part: Part, division: Sequence[SubSurface], numbers: Iterable[int]) -> dict[int, list[Target]]:
     """Targets for the faces whose division is given, by the faces' numbers.
 
     Parameters
@@ -110,11 +110,11 @@ def given_targets(part: Part, division: Sequence[SubSurface], numbers: Iterable[
         except ToolAxisError:
             raise
         except Exception as reason:
-            found[number] = [lost(whole, fault(reason))]
+            found[number] = [lost_face(whole, fault(reason))]
     return found
 
 
-def lost(face: Face, why: Fault) -> Target:
+def lost_face(face: Face, why: Fault) -> Target:
     """A face on which the program failed before an axis was looked for.
 
     Parameters
@@ -122,10 +122,10 @@ def lost(face: Face, why: Fault) -> Target:
     face : Face
     why : Fault
     """
-    return Target(face, ended=failed(1, face, why))
+    return Target(face, ended=fail_face(1, face, why))
 
 
-def faceted(face: Face, tool: Tool) -> str:
+def why_faceted(face: Face, tool: Tool) -> str:
     """Why a face is left to clean-up: kinks cut it into facets, too many and too small for axes; empty where not.
 
     Parameters
@@ -151,12 +151,12 @@ def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:
     found: list[Target] = []
     for face in faces:
         try:
-            why = faceted(face, tool)
+            why = why_faceted(face, tool)
             found += [_left_whole(face, why)] if why else map(Target, split_at_kinks(face))
         except Cancelled:
             raise
         except Exception as reason:
-            found.append(lost(face, fault(reason)))
+            found.append(lost_face(face, fault(reason)))
     return found
 
 
@@ -228,13 +228,14 @@ def with_given(targets: Sequence[Target], given: dict[int, list[Target]], order:
     return sorted(every, key=lambda one: place.get(one.face.number, len(place))) if given else list(targets)
 
 
-def held(task: Task, given: SubSurface, search: Callable[[Task], tuple[Orientation, ToolPath | None]],
-         ) -> tuple[Orientation, ToolPath | None]:
+def plan_locked(task: FaceProblem, given: SubSurface, search: Callable[[FaceProblem],
+                                                                       tuple[Orientation, ToolPath | None]],
+                ) -> tuple[Orientation, ToolPath | None]:
     """The orientation of a sub-surface of which axis or feed are given, and the passes that were proven.
 
     Parameters
     ----------
-    task : Task
+    task : FaceProblem
     given : SubSurface
     search : callable
         What searches an axis where none is given, or the one that is given may not be used and is not locked.
@@ -248,7 +249,7 @@ def held(task: Task, given: SubSurface, search: Callable[[Task], tuple[Orientati
     notes = (f"{LOCKED}feed {feed}",) if feed else ()
     bound = task if feed is None else replace(task, worth=replace(task.worth, feed=feed))
     if given.axis is not None:
-        found, path = judged(bound, given.axis, feed)
+        found, path = evaluate_given_axis(bound, given.axis, feed)
         if given.locked:
             words = f"{LOCKED}axis" + (f" and feed {feed}" if feed else "")
             refused = tuple(f"{REFUSED_LOCK}{one}" for one in found.reasons)

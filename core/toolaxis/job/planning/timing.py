@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, about
-from toolaxis.feed.feed_drop import SLOW, Crawl
+from toolaxis.feed.feed_drop import SLOW, FeedDrop
 from toolaxis.feed.fixed_axis_time import Feeds, index_time, machining_time
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.moving_axis_time import FiveAxisMotion, five_axis_motion
-from toolaxis.job.planning.sequencing import arranged
+from toolaxis.job.planning.sequencing import sequence_operations
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import INDEX_SECONDS, Inputs, Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Plan, PlanInputs
 from toolaxis.plan.timing import CRAWLING, MOTION_WARNINGS, UNTIMED, MachiningTime
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 _SAME = 1e-6
 
 
-def timed(plan: Plan, reorder: bool = False) -> Plan:
+def add_times(plan: Plan, reorder: bool = False) -> Plan:
     """A plan with the rotary angles of each operation on its machine, and the time where that states all limits.
 
     Paths are what a control takes that follows cuts as smooth curves within their chord tolerance and goes as fast
@@ -40,7 +40,7 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
     reorder : bool
         Whether operations may be put in the order that takes least time between them, see `sequencing`.
     """
-    plan = plan if reorder and plan.order is not None else arranged(plan, reorder)
+    plan = plan if reorder and plan.order is not None else sequence_operations(plan, reorder)
     plain = replace(plan, operations=tuple(replace(op, time=None) for op in plan.operations))
     if plan.machine is None or plan.machine.machine.unstated:
         return plain
@@ -56,9 +56,10 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
                     moved = _moving(mounting, op, stand, plan.inputs)
             except InvalidInput as reason:
                 return replace(plain, operations=tuple(
-                    _told(one, f"{UNTIMED} {reason}") if one.number == op.number else one for one in plain.operations))
+                    _replace_time_warning(one, f"{UNTIMED} {reason}") if one.number == op.number else one
+                                                       for one in plain.operations))
             time, angles, end = moved.time, moved.begin, moved.end
-            op = _told(op, _crawls(moved.crawl, plan.inputs))
+            op = _replace_time_warning(op, _crawls(moved.crawl, plan.inputs))
             index = 0.0 if last is None else _between(mounting, (last, stand), (op, angles))
             done.append(replace(op, time=time.at(tuple(angles.tolist()), index)))
             stand, last = end, op
@@ -74,25 +75,25 @@ def timed(plan: Plan, reorder: bool = False) -> Plan:
     return replace(plan, operations=tuple(done))
 
 
-def feeds_of(inputs: Inputs) -> Feeds:
+def feeds_of(inputs: PlanInputs) -> Feeds:
     """What a plan's inputs mean to the control of a machine that knows its own rapid traverse.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : PlanInputs
     """
     return Feeds(inputs.feedrate / 60, rapid=inf, crossing=inputs.rapid / 60, tolerance=inputs.chord,
                  smooth=True)
 
 
-def _moving(mounting: Mounting, op: Operation, stand: Array, inputs: Inputs) -> FiveAxisMotion:
+def _moving(mounting: Mounting, op: Operation, stand: Array, inputs: PlanInputs) -> FiveAxisMotion:
     """Time of a path with a moving axis, and where the rotary axes stand at its ends."""
     assert op.path is not None
     return five_axis_motion(mounting.machine, op.path, feeds_of(inputs), mounting.table_from_part,
                             float(mounting.tool_length or 0.0), stand)
 
 
-def _crawls(found: Crawl | None, inputs: Inputs) -> str:
+def _crawls(found: FeedDrop | None, inputs: PlanInputs) -> str:
     """A sentence on where the tip crawls; empty where it does so nowhere."""
     if found is None:
         return ""
@@ -101,13 +102,13 @@ def _crawls(found: Crawl | None, inputs: Inputs) -> str:
             "there; take another machine, offset or strategy")
 
 
-def _told(op: Operation, sentence: str) -> Operation:
+def _replace_time_warning(op: Operation, sentence: str) -> Operation:
     """An operation with a sentence on its motion in place of that of an earlier timing."""
     before = tuple(why for why in op.orientation.reasons if not why.startswith(MOTION_WARNINGS))
     return replace(op, orientation=replace(op.orientation, reasons=(*before, sentence) if sentence else before))
 
 
-def _path_time(mounting: Mounting, op: Operation, angles: Array, inputs: Inputs) -> MachiningTime:
+def _path_time(mounting: Mounting, op: Operation, angles: Array, inputs: PlanInputs) -> MachiningTime:
     """Time of an operation's path; the known one where the axes stood at the same place, whole turns aside."""
     assert op.path is not None
     if op.time is not None and len(op.time.rotary) == len(angles):

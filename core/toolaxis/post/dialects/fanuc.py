@@ -9,10 +9,10 @@ cancelled by G49.
 
 from typing import ClassVar
 
-from toolaxis.post.context import Program, Setting
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.context import Program, ProgramContext
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, Lines
-from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
+from toolaxis.post.tcp_program import FIRST_MOTION, TcpPath, TipControl, rotary_words
 
 
 class Fanuc(Dialect):
@@ -26,7 +26,7 @@ class Fanuc(Dialect):
         "G54 has its origin at the datum, rotary axes at zero there.",
         "G0 may bend rapid motion: where the spindle is tilted, links are G1 at the rapid rate.")
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Number, modes, plane off, Z to its reference point, tool, spindle."""
         return ["%", "O0001", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", *self.cancelled(),
                 *self.retracted(program), "T1 M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
@@ -35,20 +35,20 @@ class Fanuc(Dialect):
         """The block that cancels the plane."""
         return ["G69"]
 
-    def retracted(self, program: Setting) -> Lines:
+    def retracted(self, program: ProgramContext) -> Lines:
         """Z to its reference point, length compensation off."""
         return ["G91 G28 Z0.", "G90 G49"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane."""
         i, j, k = self.euler(station)
         return [*self.index(program, station), f"G68.2 X0. Y0. Z0. I{i} J{j} K{k}", "G53.1"]
 
-    def leave(self, program: Program, station: Station) -> Lines:
+    def leave(self, program: Program, station: IndexedPosition) -> Lines:
         """Plane off, retract."""
         return [*self.cancelled(), *self.retracted(program)]
 
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Spindle off, rotary axes to zero, end."""
         zero = " ".join(f"{axis.name}0." for axis in program.machine.rotary if not axis.by_hand)
         return ["M5", *([*program.unclamp, f"G0 {zero}", *program.clamp] if zero else []), "M30", "%"]
@@ -72,11 +72,11 @@ class Iso(Fanuc):
         """Nothing to cancel."""
         return []
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, by hand where the axes are, and the work offset."""
         return [*self.index(program, station), self.offsets[station.orientation]]
 
-    def index(self, program: Program, station: Station) -> Lines:
+    def index(self, program: Program, station: IndexedPosition) -> Lines:
         """Turn the axes, or stop for them to be set by hand."""
         if any(axis.by_hand for axis in program.machine.rotary):
             return ["M5", self.comment(f"SET {self.rotary(program, station)}"), "M0",
@@ -94,15 +94,15 @@ class FanucTip(TipControl):
         FIRST_MOTION, "G43.4 is programmed in the coordinate system that is fixed to the table with the rotary axes at "
         "zero; check the parameter that says so.")
 
-    def begin(self, program: Setting, course: Course) -> Lines:
+    def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then control of the tip."""
         return [*program.unclamp, f"G0 {self.orientation(program, course, 0)}", "G43.4 H1"]
 
-    def leave(self, program: Setting, course: Course) -> Lines:
+    def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Control of the tip off, retract."""
         return ["G49", "G91 G28 Z0.", "G90"]
 
-    def orientation(self, program: Setting, course: Course, k: int) -> str:
+    def orientation(self, program: ProgramContext, course: TcpPath, k: int) -> str:
         """Positions of the rotary axes."""
         return " ".join(rotary_words(program, course, k, self.axis_digits, True))
 

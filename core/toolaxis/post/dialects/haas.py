@@ -7,9 +7,9 @@ it was not possible to read that page again, so that the meaning of Q321 (Z firs
 the work coordinate system) is not verified: `notes` says so on every setup sheet.
 """
 
-from toolaxis.post.context import Program, Setting
+from toolaxis.post.context import Program, ProgramContext
 from toolaxis.post.dialects.fanuc import Fanuc
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Lines
 
 
@@ -29,11 +29,11 @@ class HaasPlane(Fanuc):
         """The block that cancels the plane."""
         return ["G269"]
 
-    def retracted(self, program: Setting) -> Lines:
+    def retracted(self, program: ProgramContext) -> Lines:
         """Z to the top in machine coordinates, which G53 is for."""
         return ["G53 G0 Z0.", "G49"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane."""
         i, j, k = self.euler(station)
         return [*self.index(program, station), f"G268 X0. Y0. Z0. I{i} J{j} K{k} Q321"]
@@ -54,7 +54,7 @@ class HaasOffset(HaasPlane):
         """The block that cancels the dynamic work offset."""
         return ["G255"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the dynamic work offset."""
         return [*self.index(program, station), "G254"]
 

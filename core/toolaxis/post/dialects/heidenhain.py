@@ -11,10 +11,10 @@ keeps its place on the workpiece, M129 resets it.
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.post.context import Program, Setting
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.context import Program, ProgramContext
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, Lines, number
-from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
+from toolaxis.post.tcp_program import FIRST_MOTION, TcpPath, TipControl, rotary_words
 
 
 class Heidenhain(Dialect):
@@ -30,33 +30,33 @@ class Heidenhain(Dialect):
     notes = ("The preset that is active has its origin at the datum, without a basic rotation.",
              "The tool retracts along its axis by M140 MB MAX before the axes turn.")
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Plane off, tool, spindle, retract."""
         return ["PLANE RESET STAY", f"TOOL CALL 1 Z S{program.inputs.spindle:.0f}", "L M3", "L M140 MB MAX"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane."""
-        c, b, a = (signed(text) for text in self.euler(station))
+        c, b, a = (format_signed(text) for text in self.euler(station))
         return [*self.index(program, station), f"PLANE SPATIAL SPA{a} SPB{b} SPC{c} TURN FMAX COORD ROT"]
 
-    def index(self, program: Program, station: Station) -> Lines:
+    def index(self, program: Program, station: IndexedPosition) -> Lines:
         """Turn the axes."""
         held = [f"L {word}" for word in program.clamp]
         return [*(f"L {word}" for word in program.unclamp), f"L {self.rotary(program, station)} R0 FMAX", *held]
 
-    def rotary(self, program: Program, station: Station) -> str:
+    def rotary(self, program: Program, station: IndexedPosition) -> str:
         """The rotary words of a station, with their signs."""
         words = super().rotary(program, station).split()
-        return " ".join(word[0] + signed(word[1:]) for word in words)
+        return " ".join(word[0] + format_signed(word[1:]) for word in words)
 
-    def approach(self, program: Program, station: Station) -> Lines:
+    def approach(self, program: Program, station: IndexedPosition) -> Lines:
         """Across, then down; in one block where the spindle is tilted."""
         first, down = self.point(station.tips[0]).rsplit(" ", 1)
         if station.tilt:
             return [f"L {first} {down} R0 FMAX"]
         return [f"L {first} R0 FMAX", f"L {down} R0 FMAX"]
 
-    def rapid(self, program: Program, station: Station, point: NDArray[np.float64]) -> str:
+    def rapid(self, program: Program, station: IndexedPosition, point: NDArray[np.float64]) -> str:
         """A rapid motion, always straight."""
         return f"L {self.point(point)} FMAX"
 
@@ -66,13 +66,13 @@ class Heidenhain(Dialect):
 
     def point(self, point: NDArray[np.float64]) -> str:
         """The coordinates of a tip, with their signs."""
-        return " ".join(word[0] + signed(word[1:]) for word in super().point(point).split())
+        return " ".join(word[0] + format_signed(word[1:]) for word in super().point(point).split())
 
-    def leave(self, program: Program, station: Station) -> Lines:
+    def leave(self, program: Program, station: IndexedPosition) -> Lines:
         """Retract along the tool axis, plane off."""
         return ["L M140 MB MAX", "PLANE RESET STAY"]
 
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Spindle off, end."""
         return ["L M5", "L M30"]
 
@@ -86,7 +86,7 @@ class Heidenhain(Dialect):
         return [f"{k} {line}" for k, line in enumerate(whole)]
 
 
-def signed(text: str) -> str:
+def format_signed(text: str) -> str:
     """A number with its sign, as Klartext wants it.
 
     Parameters
@@ -106,18 +106,18 @@ class HeidenhainTip(TipControl):
     notes = (FIRST_MOTION, "The tool retracts along its axis by M140 MB MAX before the axes turn.",
              "M128 keeps the tip in its place: the tool length in the table is that to the tip.")
 
-    def begin(self, program: Setting, course: Course) -> Lines:
+    def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then control of the tip."""
         free = [f"L {word}" for word in program.unclamp]
         return [*free, f"L {self.orientation(program, course, 0)} R0 FMAX", "L M128"]
 
-    def leave(self, program: Setting, course: Course) -> Lines:
+    def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Control of the tip off, retract along the tool axis."""
         return ["L M129", "L M140 MB MAX"]
 
-    def orientation(self, program: Setting, course: Course, k: int) -> str:
+    def orientation(self, program: ProgramContext, course: TcpPath, k: int) -> str:
         """Positions of the rotary axes with their signs."""
-        return " ".join(word[0] + signed(word[1:]) for word in
+        return " ".join(word[0] + format_signed(word[1:]) for word in
                         rotary_words(program, course, k, self.axis_digits, True))
 
 

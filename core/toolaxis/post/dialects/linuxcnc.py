@@ -8,9 +8,9 @@ in G54 and for spindles that turn about C and then A or B, G53.1 turns them, G69
 from typing import ClassVar
 
 from toolaxis.errors import InvalidInput
-from toolaxis.post.context import Program, Setting
+from toolaxis.post.context import Program, ProgramContext
 from toolaxis.post.dialects.fanuc import Iso
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, Lines
 
 
@@ -26,13 +26,13 @@ class LinuxCnc(Iso):
     rolls_over = False
     told_retract = True
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Modes with the passes' chord tolerance as that of the path, retract, tool, spindle."""
         return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{program.inputs.chord:.4f}",
                 *self.cancelled(),
                 "G54", *self.retracted(program), "T1 M6", f"S{program.inputs.spindle:.0f} M3"]
 
-    def retracted(self, program: Setting) -> Lines:
+    def retracted(self, program: ProgramContext) -> Lines:
         """Z to the machine coordinate at which rotary axes may turn."""
         return [f"G53 G0 Z{program.retract:.3f}"]
 
@@ -54,7 +54,7 @@ class LinuxCncPlane(LinuxCnc):
         """The block that cancels the plane."""
         return ["G69"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane, which must be defined in G54."""
         i, j, k = self.euler(station)
         return ["G54", *self.index(program, station), f"G68.2 P0 Q313 X0 Y0 Z0 I{i} J{j} K{k}", "G53.1"]

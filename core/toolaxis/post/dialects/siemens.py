@@ -15,10 +15,10 @@ from math import degrees
 import numpy as np
 
 from toolaxis.errors import InvalidInput
-from toolaxis.post.context import Program, Setting
-from toolaxis.post.indexed_positions import Station
+from toolaxis.post.context import Program, ProgramContext
+from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, Lines, number
-from toolaxis.post.tcp_program import FIRST_MOTION, Course, TipControl, rotary_words
+from toolaxis.post.tcp_program import FIRST_MOTION, TcpPath, TipControl, rotary_words
 
 
 class Siemens(Dialect):
@@ -35,21 +35,21 @@ class Siemens(Dialect):
              "takes the one by _DIR, whose reference axis the machine's maker has set; the program supposes the axis "
              "that tilts. Compare with the angles of this sheet when the axes have turned.")
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Modes, swivel frames deleted, straight rapids, tool, spindle."""
         return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", "T1 D1", "M6", "G54",
                 f"S{program.inputs.spindle:.0f} M3"]
 
-    def orient(self, program: Program, station: Station) -> Lines:
+    def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
         return [self.comment(f"AXES {self.rotary(program, station)}"), *program.unclamp,
                 _swivel(*self.euler(station), _direction(program, station)), *program.clamp]
 
-    def leave(self, program: Program, station: Station) -> Lines:
+    def leave(self, program: Program, station: IndexedPosition) -> Lines:
         """Nothing: the next CYCLE800 retracts Z before it swivels, in one call that a swivel data record stands for."""
         return []
 
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Retract, axes to zero, frames deleted, spindle off, end."""
         zero = number(0.0, self.angle_digits)
         home = [f"{axis.name}{zero}" for axis in program.machine.rotary]
@@ -74,7 +74,7 @@ def _swivel(a: str, b: str, c: str, direction: int) -> str:
     return f'CYCLE800(1,"",0,57,0,0,0,{a},{b},{c},0,0,0,{direction},0,0)'
 
 
-def _direction(program: Program, station: Station) -> int:
+def _direction(program: Program, station: IndexedPosition) -> int:
     """+1 where the axis that tilts stands at the higher of its two values, -1 where at the lower."""
     rotary = program.machine.rotary
     tilting = max(range(len(rotary)), key=lambda k: (round(float(np.linalg.norm(rotary[k].direction[:2])), 6), -k))
@@ -93,32 +93,32 @@ class SiemensTip(TipControl):
     notes = (FIRST_MOTION, "The rotary axes are turned to the first axis before TRAORI; the control goes on from there "
              "in the same solution. The program is for those angles, in the comments.")
 
-    def start(self, program: Setting) -> Lines:
+    def start(self, program: ProgramContext) -> Lines:
         """Modes, transformations and frames off, tool, spindle, retract."""
         return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", "T1 D1", "M6", "G54",
                 f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
 
-    def begin(self, program: Setting, course: Course) -> Lines:
+    def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then the transformation and its work offset."""
         words = [f"{word[0]}=DC({word[1:]})" if endless else word for word, endless in
                  zip(rotary_words(program, course, 0, self.dialect.angle_digits, True),
                      (axis.high == float("inf") for axis in program.machine.rotary), strict=True)]
         return [*program.unclamp, f"G0 {' '.join(words)}", "D1", "TRAORI", "G54", "ORIWKS ORIVECT"]
 
-    def leave(self, program: Setting, course: Course) -> Lines:
+    def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Transformation off, retract."""
         return ["TRAFOOF", self._retract(program)]
 
-    def end(self, program: Setting) -> Lines:
+    def end(self, program: ProgramContext) -> Lines:
         """Spindle off, end."""
         return ["M5", "M30"]
 
-    def orientation(self, program: Setting, course: Course, k: int) -> str:
+    def orientation(self, program: ProgramContext, course: TcpPath, k: int) -> str:
         """The axis as a vector."""
         return " ".join(f"{name}={number(value, self.axis_digits)}" for name, value in
                         zip(("A3", "B3", "C3"), course.axes[k], strict=True))
 
-    def check(self, program: Setting) -> None:
+    def check(self, program: ProgramContext) -> None:
         """Refuse a retract that nobody told.
 
         Raises
@@ -131,7 +131,7 @@ class SiemensTip(TipControl):
                                "machine coordinate at which the rotary axes may turn")
 
     @staticmethod
-    def _retract(program: Setting) -> str:
+    def _retract(program: ProgramContext) -> str:
         assert program.retract is not None
         return f"SUPA G0 Z{number(program.retract, 3)} D0"
 

@@ -29,7 +29,7 @@ _FINE, _COARSE, _MOST = 160, 33, 1600
 Window = tuple[float, float, float, float]
 
 
-class Place(Protocol):
+class ToolPlace(Protocol):
     """Where a tool stands, and what it is near to."""
 
     @property
@@ -53,7 +53,7 @@ class Place(Protocol):
         """Where the tool's tip is, (3,) mm."""
 
 
-def tightest_picture(plan: Plan, op: Operation, at: Place) -> Figure:
+def tightest_picture(plan: Plan, op: Operation, at: ToolPlace) -> Figure:
     """The part, cut by the plane through the tool's axis and the nearest place, with the tool in it; whole and close.
 
     Parameters
@@ -61,7 +61,7 @@ def tightest_picture(plan: Plan, op: Operation, at: Place) -> Figure:
     plan : Plan
     op : Operation
         With a path.
-    at : Place
+    at : ToolPlace
     """
     assert op.orientation.axis is not None
     axis = np.asarray(op.orientation.axis, dtype=float)
@@ -90,13 +90,13 @@ def tightest_picture(plan: Plan, op: Operation, at: Place) -> Figure:
     return made
 
 
-def _open_side(plan: Plan, back: Array, at: Place) -> Array:
+def _open_side(plan: Plan, back: Array, at: ToolPlace) -> Array:
     """Of the two directions to look from, the one with less of the part in front of the plane."""
     points = np.concatenate([face.evaluate(face.grid(4, 4)).point for face in plan.part.faces])
     return back if ((points - at.tip) @ back > 0).mean() <= 0.5 else -back
 
 
-_Scene = tuple[Place, dict[str, Array], Camera]
+_Scene = tuple[ToolPlace, dict[str, Array], Camera]
 
 
 def _draw(ax: Axes, plan: Plan, op: Operation, scene: _Scene) -> None:
@@ -183,7 +183,7 @@ def window_splats(face: Face, window: Window, seen: Camera) -> tuple[Array, Arra
     return dense.point, normals(dense, face.flip)
 
 
-def _section(face: Face, window: Window, where: tuple[Place, Camera]) -> list[Array]:
+def _section(face: Face, window: Window, where: tuple[ToolPlace, Camera]) -> list[Array]:
     """Where a face meets the plane through the tip that the picture lies in, as short lines in the picture."""
     (at, seen), (u0, u1, v0, v1) = where, window
     uv = np.stack(np.meshgrid(np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE), indexing="ij"), axis=-1)

@@ -37,7 +37,7 @@ def hatch_lines(face: Face, pitch: float, lift: float = 0.0) -> list[Array]:
     turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2.0)
     loops = [loop for loop in outline_loops(face, lift / 2 if lift > 0 else 1e-3 * face.diagonal) if len(loop) > 2]
     turned = tuple((loop * scale) @ turn.T for loop in loops)
-    made = [_lifted(face, np.concatenate([loop, loop[:1]]), lift) for loop in loops]
+    made = [_lift_points(face, np.concatenate([loop, loop[:1]]), lift) for loop in loops]
     if not made:
         return []
     low, high = (f(np.concatenate(turned)[:, 1]) for f in (np.min, np.max))
@@ -46,11 +46,11 @@ def hatch_lines(face: Face, pitch: float, lift: float = 0.0) -> list[Array]:
     for y in np.arange(low + step / 2, high, step):
         for x0, x1 in chords(turned, float(y)):
             row = np.stack([x0 + share * (x1 - x0), np.full(_POINTS, y)], axis=1)
-            made.append(_lifted(face, (row @ turn) / scale, lift))
+            made.append(_lift_points(face, (row @ turn) / scale, lift))
     return made
 
 
-def _lifted(face: Face, uv: Array, lift: float) -> Array:
+def _lift_points(face: Face, uv: Array, lift: float) -> Array:
     """Points above parameters of a face, (n, 3)."""
     (u0, u1), (v0, v1) = face.surface.domain
     rows = np.clip(uv, (u0, v0), (u1, v1))

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.feed.jerk_profile import profile
-from toolaxis.feed.velocity_ramps import Ramps
+from toolaxis.feed.velocity_ramps import VelocityRamps
 from toolaxis.machine.feed_polytopes import Level, best_along, box, pole_zone
 from toolaxis.machine.kinematics import part_from_machine
 from toolaxis.machine.setup import Mounting
@@ -89,7 +89,7 @@ def reach_figure(mounting: Mounting, level: Level) -> Figure:
     return made
 
 
-def feed_figure(passes: Mapping[str, Ramps], feed: float) -> Figure:
+def feed_figure(passes: Mapping[str, VelocityRamps], feed: float) -> Figure:
     """The speed along one pass with several set-ups.
 
     Parameters
@@ -114,12 +114,12 @@ def feed_figure(passes: Mapping[str, Ramps], feed: float) -> Figure:
     return made
 
 
-def speeds_along(found: Ramps) -> tuple[Array, Array]:
+def speeds_along(found: VelocityRamps) -> tuple[Array, Array]:
     """Ways, mm, and speeds, mm/s, all along.
 
     Parameters
     ----------
-    found : Ramps
+    found : VelocityRamps
     """
     places: list[Array] = []
     speeds: list[Array] = []

@@ -10,15 +10,22 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.machine.bodies import Body
-from toolaxis.machine.body_poses import bed_from_body, beside_part, carried_by, part_from_bed
+from toolaxis.machine.bodies import MachineBody
+from toolaxis.machine.body_poses import axes_carrying, bed_from_body, beside_part, part_from_bed
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import bare, figure, scale_bar
-from toolaxis.report.figures.splat_renderer import Camera, Canvas, camera, face_splats, revolved_splats, tool_outlines
+from toolaxis.report.figures.splat_renderer import (
+    Camera,
+    Canvas,
+    camera,
+    face_splats,
+    splats_of_revolution,
+    tool_outlines,
+)
 
 Array = NDArray[np.float64]
 
@@ -131,7 +138,7 @@ def _panel(plan: Plan, mounting: Mounting, group: Sequence[Operation]) -> tuple[
         points, ways = face_splats(face, seen)
         canvas.splat(_moved(points, bed_from_part), ways @ bed_from_part[:3, :3].T, colour)
     for name, line in tool_outlines(plan.tool, 0.0).items():
-        points, ways = revolved_splats(line, foot, axis, seen.pixel)
+        points, ways = splats_of_revolution(line, foot, axis, seen.pixel)
         canvas.splat(points, ways, _TOOL[name])
     for one in (canvas, head):
         one.close()
@@ -145,7 +152,7 @@ _WAYS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 def _place(mounting: Mounting, name: str, rotary: Array, at: Array) -> Array:
     """Where what an axis carries stands, (4, 4), machine coordinates."""
     matrix = bed_from_body(mounting.machine, name, rotary)
-    matrix[:3, 3] += mounting.machine.directions @ carried_by(mounting.machine, name) @ at
+    matrix[:3, 3] += mounting.machine.directions @ axes_carrying(mounting.machine, name) @ at
     return matrix
 
 
@@ -153,12 +160,12 @@ def _moved(points: Array, matrix: Array) -> Array:
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 
-def body_splats(body: Body, pixel: float) -> Iterator[tuple[Array, Array]]:
+def body_splats(body: MachineBody, pixel: float) -> Iterator[tuple[Array, Array]]:
     """Points and normals of the surface of a body, dense enough to leave no gap in a picture, machine coordinates.
 
     Parameters
     ----------
-    body : Body
+    body : MachineBody
     pixel : float
         mm
     """
@@ -166,7 +173,7 @@ def body_splats(body: Body, pixel: float) -> Iterator[tuple[Array, Array]]:
         low, high = body.points
         length = float(np.linalg.norm(high - low))
         outline = np.array([[0.0, 0.0], [body.radius, 0.0], [body.radius, length], [0.0, length]])
-        yield revolved_splats(outline, low, unit(high - low), pixel)
+        yield splats_of_revolution(outline, low, unit(high - low), pixel)
         return
     points = body.points
     if body.kind == "box":

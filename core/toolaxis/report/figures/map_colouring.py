@@ -25,7 +25,7 @@ COLOURS = tuple(map(_pale, _NAMES))
 _NO_AXIS = (0.56, 0.56, 0.56)
 
 
-def coloured(operations: Sequence[Operation]) -> list[int]:
+def colour_map(operations: Sequence[Operation]) -> list[int]:
     """A number for each sub-surface, below 7, so that those that touch have different ones where that many allow it.
 
     Parameters
@@ -65,5 +65,5 @@ def colours_of(plan: Plan) -> dict[int, tuple[float, float, float]]:
     """
     copies = {} if plan.blades is None else plan.blades.copies
     own = [op for op in plan.operations if op.number not in copies]
-    found = {op.number: COLOURS[k] for op, k in zip(own, coloured(own) if own else (), strict=True)}
+    found = {op.number: COLOURS[k] for op, k in zip(own, colour_map(own) if own else (), strict=True)}
     return {op.number: found[copies.get(op.number, op.number)] if op.done else _NO_AXIS for op in plan.operations}

@@ -12,7 +12,7 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.figures.hatch_fill import hatch, hatch_patch, zone_faces
-from toolaxis.report.figures.map_colouring import COLOURS, coloured
+from toolaxis.report.figures.map_colouring import COLOURS, colour_map
 from toolaxis.report.figures.plots import bare, cutting_lines, figure, scale_bar
 from toolaxis.report.figures.splat_renderer import Canvas, camera, face_splats, mean_direction, visible_runs
 from toolaxis.shape.face import Face
@@ -50,7 +50,7 @@ def overview_picture(plan: Plan) -> Figure:
     for face in plan.part.faces:
         if face.number not in whole:
             canvas.splat(*face_splats(face, seen), _PART)
-    colours = {op.number: COLOURS[k] for op, k in zip(operations, coloured(operations), strict=True)}
+    colours = {op.number: COLOURS[k] for op, k in zip(operations, colour_map(operations), strict=True)}
     for op in plan.operations:
         canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()

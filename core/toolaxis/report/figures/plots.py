@@ -25,7 +25,7 @@ from toolaxis.report.figures.splat_renderer import (
     camera,
     face_splats,
     mean_direction,
-    revolved_splats,
+    splats_of_revolution,
     tool_outlines,
     visible_runs,
 )
@@ -182,7 +182,7 @@ def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -
     canvas.splat(points + 4 * seen.pixel * seen.back, directions, _FACE)  # in front of the face that it is a piece of
     colours = {"cutter": _CUTTER, "shank": _SHANK, "holder": _HOLDER, "shank (not given)": _SHANK}
     for name, line in outlines.items():
-        tool.splat(*revolved_splats(line, tip, axis, seen.pixel), colours[name])
+        tool.splat(*splats_of_revolution(line, tip, axis, seen.pixel), colours[name])
     canvas.close()
     tool.close()
     hidden = canvas.depth.copy()

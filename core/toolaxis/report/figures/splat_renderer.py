@@ -179,7 +179,7 @@ def face_splats(face: Face, seen: Camera) -> tuple[Array, Array]:
     return dense.point, normals(dense, face.flip)
 
 
-def revolved_splats(outline: Array, tip: Array, axis: Array, pixel: float) -> tuple[Array, Array]:
+def splats_of_revolution(outline: Array, tip: Array, axis: Array, pixel: float) -> tuple[Array, Array]:
     """Points and normals of a solid of revolution.
 
     Parameters

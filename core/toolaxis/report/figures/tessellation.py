@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.polygons import inside, slabs, stations, walk
-from toolaxis.numeric.simplify_polyline import thinned_loop
+from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -104,7 +104,7 @@ def outline_loops(face: Face, bound: float) -> list[Array]:
     for loop in face.outline:
         dense = walk(loop, stations(loop, step))
         # In space and in the parameters too: the two sides of a seam are one line in space.
-        loops.append(dense[thinned_loop(np.hstack([face.evaluate(dense).point, dense * scale]), bound)])
+        loops.append(dense[simplify_loop(np.hstack([face.evaluate(dense).point, dense * scale]), bound)])
     return loops
 
 

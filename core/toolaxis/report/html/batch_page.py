@@ -19,7 +19,7 @@ _LEVELS = ("stop", "mind", "note")
 
 
 @dataclass(frozen=True)
-class Leaf:
+class JobPage:
     """The page of a job.
 
     Attributes
@@ -37,7 +37,7 @@ class Leaf:
     missing: str = ""
 
 
-def batch_page(name: str, records: Sequence[Mapping[str, Any]], leaves: Mapping[str, Leaf]) -> str:
+def batch_page(name: str, records: Sequence[Mapping[str, Any]], leaves: Mapping[str, JobPage]) -> str:
     """The page of a batch.
 
     Parameters
@@ -54,7 +54,7 @@ def batch_page(name: str, records: Sequence[Mapping[str, Any]], leaves: Mapping[
     str
         HTML that fetches nothing; the same for the same batch.
     """
-    jobs = [_job(record, leaves.get(record["job"], Leaf())) for record in records]
+    jobs = [_job(record, leaves.get(record["job"], JobPage())) for record in records]
     outcomes = [record["outcome"] for record in records]
     counts = [(outcome, outcomes.count(outcome)) for outcome in ("complete", "incomplete", "failed", "not done")
               if outcome in outcomes]
@@ -78,7 +78,7 @@ def _figures(records: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
     return [*found, ("judged", f"{len(judged)} of {len(records)} jobs")]
 
 
-def _job(record: Mapping[str, Any], leaf: Leaf) -> dict[str, Any]:
+def _job(record: Mapping[str, Any], leaf: JobPage) -> dict[str, Any]:
     """What the template needs of a job."""
     ended = ", ".join(filter(None, (record["outcome"], record["cause"])))
     troubles = [] if record["outcome"] == "complete" else [": ".join(filter(None, (ended, record["reason"])))]

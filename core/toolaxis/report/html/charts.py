@@ -21,7 +21,7 @@ from toolaxis.plan.orientation import REASONS, AxisMap
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from toolaxis.report.figures.splat_renderer import tool_outlines
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.axis_view import View
+from toolaxis.verify.axis_view import MaterialView
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ _TOOL = {"cutter": "#F5CC59", "shank": "#BFBFC7", "holder": "#8C94A3", "shank (n
 
 
 @dataclass(frozen=True, eq=False)
-class Chart:
+class PageFigure:
     """A figure for the page.
 
     Attributes
@@ -80,7 +80,8 @@ def _cells(index: NDArray[Any], traces: Sequence[int], values: Sequence[Sequence
             "bytes": size, "values": [list(row) for row in values], "texts": None if texts is None else list(texts)}
 
 
-def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike], name: str) -> Chart:
+def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike],
+                     name: str) -> PageFigure:
     """All axes that were looked at on an equal-area map, each standing for the directions nearest to it.
 
     Under the pointer: the axis, and its strip width or the reason why it is forbidden, and by how much.
@@ -135,7 +136,7 @@ def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mappin
            shapes=rings, xaxis=axis, yaxis={**axis, "scaleanchor": "x"}, height=560,
            margin={"l": 10, "r": 10, "t": 40, "b": 10}, legend={"orientation": "h", "y": -0.02, "yanchor": "top"})
     widths = [None if not ok else round(float(w), 4) for ok, w in zip(free, width, strict=True)]
-    return Chart(made, (_cells(index, (0, 1), ([*forbidden, None], [*widths, None]), [*texts, ""]),))
+    return PageFigure(made, (_cells(index, (0, 1), ([*forbidden, None], [*widths, None]), [*texts, ""]),))
 
 
 def _axis_said(found: AxisMap, k: int, width: float, pole: Array) -> str:
@@ -148,12 +149,12 @@ def _axis_said(found: AxisMap, k: int, width: float, pole: Array) -> str:
             f"{away:.1f}° from the mean normal")
 
 
-def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
+def map_chart(view: MaterialView, what: str, limit: float, name: str) -> PageFigure:
     """Scallop height left or depth of gouges, seen along the axis, in the work coordinate system.
 
     Parameters
     ----------
-    view : View
+    view : MaterialView
     what : str
         "scallop" or "gouge".
     limit : float
@@ -189,7 +190,7 @@ def map_chart(view: View, what: str, limit: float, name: str) -> Chart:
               "yaxis": {"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"}}
     none: list[float | None] = [None] * len(values)
     tables = ([*values, None, None], [*none, 1, None])
-    return Chart({"data": traces, "layout": layout}, (_cells(index, (0, 1), tables),))
+    return PageFigure({"data": traces, "layout": layout}, (_cells(index, (0, 1), tables),))
 
 
 def _scale() -> list[list[Any]]:
@@ -198,7 +199,8 @@ def _scale() -> list[list[Any]]:
     return [*([round(edge * k / 6, 5), tone] for k, tone in enumerate(SCALE)), [edge, VERMILION], [1.0, VERMILION]]
 
 
-def widths_chart(lines: Sequence[tuple[Array, Array]], frame: tuple[Array, Array], origin: Array, name: str) -> Chart:
+def widths_chart(lines: Sequence[tuple[Array, Array]], frame: tuple[Array, Array], origin: Array,
+                 name: str) -> PageFigure:
     """Strip width along the passes, seen along the axis.
 
     Parameters
@@ -228,10 +230,10 @@ def widths_chart(lines: Sequence[tuple[Array, Array]], frame: tuple[Array, Array
                         **_TITLE}, height=520,
            xaxis={"title": {"text": "X of the work coordinate system, mm"}, "constrain": "domain"},
            yaxis={"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"})
-    return Chart(made)
+    return PageFigure(made)
 
 
-def feed_chart(places: Array, speeds: Array, programmed: float, name: str) -> Chart:
+def feed_chart(places: Array, speeds: Array, programmed: float, name: str) -> PageFigure:
     """The feed along one pass.
 
     Parameters
@@ -251,10 +253,10 @@ def feed_chart(places: Array, speeds: Array, programmed: float, name: str) -> Ch
     _plain(made, title={"text": f"{escape(name)}: feed along the longest pass", **_TITLE}, height=340,
            xaxis={"title": {"text": "way along the pass, mm"}, "zeroline": False}, showlegend=False,
            yaxis={"title": {"text": "mm/min"}, "rangemode": "tozero"})
-    return Chart(made)
+    return PageFigure(made)
 
 
-def times_chart(operations: Sequence[Operation], seconds: Sequence[Mapping[str, float]]) -> Chart:
+def times_chart(operations: Sequence[Operation], seconds: Sequence[Mapping[str, float]]) -> PageFigure:
     """Where the time of each operation goes.
 
     Parameters
@@ -272,10 +274,10 @@ def times_chart(operations: Sequence[Operation], seconds: Sequence[Mapping[str, 
     _plain(made, barmode="stack", height=130 + 26 * len(names),
            xaxis={"title": {"text": "s"}}, yaxis={"autorange": "reversed", "automargin": True},
            legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "traceorder": "normal"})
-    return Chart(made)
+    return PageFigure(made)
 
 
-def tool_chart(tool: Tool) -> Chart:
+def tool_chart(tool: Tool) -> PageFigure:
     """Cutter, shank and holder in section, to scale, with their sizes.
 
     Parameters
@@ -303,7 +305,7 @@ def tool_chart(tool: Tool) -> Chart:
     _plain(made, height=560, title={"text": f"{escape(tool.name)}: {_sizes(tool)}", **_TITLE},
            xaxis={"title": {"text": "radius, mm"}, "constrain": "domain", "zeroline": False},
            yaxis={"title": {"text": "height above the tip, mm"}, "scaleanchor": "x", "constrain": "domain"})
-    return Chart(made)
+    return PageFigure(made)
 
 
 def _heights(tool: Tool, outlines: Mapping[str, Array]) -> list[tuple[str, float, float]]:

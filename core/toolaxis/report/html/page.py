@@ -22,7 +22,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
 from toolaxis.report.figures.splat_renderer import mean_direction
 from toolaxis.report.html import charts
-from toolaxis.report.html.charts import Chart
+from toolaxis.report.html.charts import PageFigure
 from toolaxis.report.html.page_tables import (
     Rows,
     file_rows,
@@ -36,7 +36,7 @@ from toolaxis.report.html.page_tables import (
 from toolaxis.report.html.scene_3d import scene
 from toolaxis.report.tables import baselines_table, number, options_table, plan_table, reckoning
 from toolaxis.report.warnings import warnings_of
-from toolaxis.verify.axis_view import View, coarser
+from toolaxis.verify.axis_view import MaterialView, coarser
 
 Array = NDArray[np.float64]
 Curve = tuple[Array, Array]
@@ -48,7 +48,7 @@ _CELLS, _MOST_CELLS = 1_200_000, 90_000
 
 
 @dataclass(frozen=True, eq=False)
-class Beside:
+class PlanFiles:
     """What stands beside a plan, or follows from it.
 
     Attributes
@@ -70,7 +70,7 @@ class Beside:
     """
 
     verdict: Mapping[str, Any] | None = None
-    views: Mapping[str, View] = field(default_factory=dict)
+    views: Mapping[str, MaterialView] = field(default_factory=dict)
     widths: Mapping[str, Sequence[Curve]] = field(default_factory=dict)
     feeds: Mapping[str, Curve] = field(default_factory=dict)
     files: Sequence[tuple[str, int, str]] = ()
@@ -78,13 +78,13 @@ class Beside:
     still: bytes = b""
 
 
-def page(plan: Plan, beside: Beside, name: str) -> str:
+def page(plan: Plan, beside: PlanFiles, name: str) -> str:
     """The page of a plan.
 
     Parameters
     ----------
     plan : Plan
-    beside : Beside
+    beside : PlanFiles
     name : str
         Of the plan, for the title.
 
@@ -94,7 +94,7 @@ def page(plan: Plan, beside: Beside, name: str) -> str:
         HTML that fetches nothing; the same for the same plan.
     """
     made = scene(plan, _worst(beside.verdict))
-    common = {"scene": Chart(made.figure), "tool": charts.tool_chart(plan.tool)}
+    common = {"scene": PageFigure(made.figure), "tool": charts.tool_chart(plan.tool)}
     done = [op for op in plan.operations if op.done]
     copies = {} if plan.blades is None else plan.blades.copies
     originals = [op for op in done if op.number not in copies]
@@ -143,7 +143,7 @@ def template(name: str) -> jinja2.Template:
     return world.from_string(page_text(name))
 
 
-def _json(chart: Chart) -> str:
+def _json(chart: PageFigure) -> str:
     """A chart as JSON that may stand in a script element."""
     figure = json.loads(plotly.io.to_json(chart.figure, validate=False, engine="json", remove_uids=True))
     text = json.dumps({"figure": figure, "cells": chart.cells}, separators=(",", ":"), allow_nan=False)
@@ -162,9 +162,9 @@ def _worst(verdict: Mapping[str, Any] | None) -> dict[str, list[dict[str, Any]]]
     return found
 
 
-def _operation_charts(plan: Plan, op: Operation, beside: Beside) -> dict[str, Chart]:
+def _operation_charts(plan: Plan, op: Operation, beside: PlanFiles) -> dict[str, PageFigure]:
     """The charts of one operation by what they show."""
-    found: dict[str, Chart] = {}
+    found: dict[str, PageFigure] = {}
     copies = {} if plan.blades is None else plan.blades.copies
     if op.number not in copies and op.orientation.map is not None and len(op.orientation.map.axis):
         normal = mean_direction(op.face.normal(grid if len(grid := op.face.grid(24, 24)) else op.face.outline[0]))
@@ -245,7 +245,7 @@ def _figures(plan: Plan) -> list[tuple[str, str]]:
             ("gouge at most", f"{number(max((op.orientation.gouge for op in done), default=None), 4)} mm")]
 
 
-def _tables(plan: Plan, beside: Beside, times: tuple[list[Operation], list[dict[str, float]]]) -> dict[str, Rows]:
+def _tables(plan: Plan, beside: PlanFiles, times: tuple[list[Operation], list[dict[str, float]]]) -> dict[str, Rows]:
     found = {"operations": rows_of(plan_table(plan)), "orientations": orientation_rows(plan)}
     if beside.verdict is not None:
         found["verdict"] = verdict_rows(plan, beside.verdict)
@@ -261,7 +261,7 @@ def _tables(plan: Plan, beside: Beside, times: tuple[list[Operation], list[dict[
     return found | {"settings": setting_rows(plan, beside.source), "files": file_rows(beside.files)}
 
 
-def _bounds(off: float, apart: float, beside: Beside, copies: bool) -> list[str]:
+def _bounds(off: float, apart: float, beside: PlanFiles, copies: bool) -> list[str]:
     """What the drawings leave out, in sentences."""
     said = [f"In three dimensions faces are drawn as triangles, at most {off:.3f} mm off where that was measured, and "
             f"passes as lines within {apart:.3f} mm of their points."]

@@ -10,12 +10,12 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.numeric.simplify_polyline import thinned
+from toolaxis.numeric.simplify_polyline import simplify_polyline
 from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.figures.hatch_fill import zone_faces
-from toolaxis.report.figures.map_colouring import coloured
+from toolaxis.report.figures.map_colouring import colour_map
 from toolaxis.report.figures.plan_overview import root_of, view_onto
 from toolaxis.report.figures.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, cutting_lines
 from toolaxis.report.figures.splat_renderer import mean_direction
@@ -39,7 +39,7 @@ _DIGITS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class PageScene:
     """The figure, and what it leaves out.
 
     Attributes
@@ -56,7 +56,7 @@ class Scene:
     apart: float
 
 
-def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene:
+def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> PageScene:
     """The plan as a figure to be turned.
 
     Turned copies of operations on the other blades have the colour of their original and go with it; their passes are
@@ -78,7 +78,7 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene
     back, up = view_onto(mean_direction(np.array(normals)) if normals else np.array([0.0, 0.0, 1.0]))
     drawn = _Meshes(_COARSE * size, unit(unit(back) + 0.5 * unit(up)))
     traces = [drawn.mesh(rest, "part", _PART)] if rest else []
-    for op, colour in zip(originals, coloured(originals) if originals else (), strict=True):
+    for op, colour in zip(originals, colour_map(originals) if originals else (), strict=True):
         turned = [one.face for one in plan.operations if copies.get(one.number) == op.number]
         said = f"{op.number}: face {op.face.label}" + (f" and {len(turned)} turned" if turned else "")
         left = outcome_of([op], plan.blades) == "complete"
@@ -99,7 +99,7 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> Scene
     traces.append(_datum(plan.datum, 0.08 * size))
     made = go.Figure([trace for trace in traces if trace is not None])
     made.update_layout(_layout(unit(back), up, _ranges(made)))
-    return Scene(made, drawn.off, apart)
+    return PageScene(made, drawn.off, apart)
 
 
 def _ranges(made: go.Figure) -> Array:
@@ -178,11 +178,11 @@ def _ways(operations: Sequence[Operation], bound: float) -> tuple[list[Array], l
     passes = [line for path in paths for line in cutting_lines(path)]
     links = [line for path in paths for line in _linking(path.cl, path.kind)]
     while True:
-        shown = [line[thinned(line, bound)] for line in passes]
+        shown = [line[simplify_polyline(line, bound)] for line in passes]
         if sum(map(len, shown)) <= _MOST_POINTS:
             break
         bound *= 2
-    return shown, [line[thinned(line, bound)] for line in links], bound
+    return shown, [line[simplify_polyline(line, bound)] for line in links], bound
 
 
 def _linking(tips: Array, kind: NDArray[np.int8]) -> list[Array]:

@@ -26,7 +26,7 @@ def grid_lines(knots: Array, degree: int, low: float, high: float) -> Array:
     return np.concatenate([*pieces, [high]])
 
 
-def graded(face: Face, lines: tuple[Array, Array], across: int, fineness: float) -> Array:
+def grade_lines(face: Face, lines: tuple[Array, Array], across: int, fineness: float) -> Array:
     """Lines of one direction, with more of them towards a border that shrinks to a point (the pole of a sphere).
 
     Second derivatives along such a border vanish at it, but their bound over a cell is that of the cell's far side:

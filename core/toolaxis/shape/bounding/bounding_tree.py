@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.shape.bounding.build import subdivided
+from toolaxis.shape.bounding.build import build_tree
 from toolaxis.shape.face import Face
 from toolaxis.shape.seams import Mismatch
 
@@ -30,7 +30,7 @@ ForestData: TypeAlias = tuple[Array, Indices, Array, Indices, Array, Array, Arra
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
+class BoundingTree:
     """The tree of one face, or the trees of several under one root; node 0 is the root.
 
     Attributes
@@ -95,7 +95,7 @@ class Cells:
         return int(np.diff(self.edge_start).max(initial=0))
 
 
-    def missing(self, mismatch: Mismatch | None) -> "Cells":
+    def missing(self, mismatch: Mismatch | None) -> "BoundingTree":
         """The same cells with a mismatch of their faces; the arrays are shared.
 
         Parameters
@@ -107,17 +107,17 @@ class Cells:
         return replace(self, mismatch=mismatch)
 
 
-_known: "WeakKeyDictionary[Face, dict[float, Cells]]" = WeakKeyDictionary()
+_known: "WeakKeyDictionary[Face, dict[float, BoundingTree]]" = WeakKeyDictionary()
 
 
-def cells(face: Face, fineness: float = FINENESS) -> Cells:
+def cells(face: Face, fineness: float = FINENESS) -> BoundingTree:
     """The tree of one face; made once for each face and kept while the face lives.
 
     Parameters
     ----------
     face : Face
     fineness : float
-        As for `toolaxis.shape.bounding.build.subdivided`, mm.
+        As for `toolaxis.shape.bounding.build.build_tree`, mm.
 
     Raises
     ------
@@ -126,18 +126,18 @@ def cells(face: Face, fineness: float = FINENESS) -> Cells:
     """
     found = _known.setdefault(face, {})
     if fineness not in found:
-        tree = subdivided(face, fineness)
+        tree = build_tree(face, fineness)
         added = np.where(tree.link[:, 3] >= 0, tree.leaf[tree.link[:, 3], 7], 0.0)
-        found[fineness] = Cells((), np.column_stack([tree.shape, added, tree.bend]), *tree[2:])
+        found[fineness] = BoundingTree((), np.column_stack([tree.shape, added, tree.bend]), *tree[2:])
     return replace(found[fineness], faces=(face,))
 
 
-def joined(parts: Sequence[Cells]) -> Cells:
+def merge_trees(parts: Sequence[BoundingTree]) -> BoundingTree:
     """Several trees under one root.
 
     Parameters
     ----------
-    parts : sequence of Cells
+    parts : sequence of BoundingTree
 
     Raises
     ------
@@ -156,19 +156,19 @@ def joined(parts: Sequence[Cells]) -> Cells:
     top = np.column_stack([top_shape, np.zeros((len(top_shape), 10)), np.full(len(top_shape), np.inf)])
     links = [_shifted(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
     start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
-    return Cells(tuple(f for p in parts for f in p.faces), np.vstack([top, *(p.nodes for p in parts)]),
-                 np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
-                 np.vstack([p.edges for p in parts]))
+    return BoundingTree(tuple(f for p in parts for f in p.faces), np.vstack([top, *(p.nodes for p in parts)]),
+                        np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
+                        np.vstack([p.edges for p in parts]))
 
 
-def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
+def forest(faces: Sequence[Face], fineness: float = FINENESS) -> BoundingTree:
     """The trees of several faces under one root.
 
     Parameters
     ----------
     faces : sequence of Face
     fineness : float
-        As for `toolaxis.shape.bounding.build.subdivided`, mm.
+        As for `toolaxis.shape.bounding.build.build_tree`, mm.
 
     Raises
     ------
@@ -179,8 +179,8 @@ def forest(faces: Sequence[Face], fineness: float = FINENESS) -> Cells:
 
 
 @lru_cache(maxsize=3)
-def _grown(faces: tuple[Face, ...], fineness: float) -> Cells:
-    return joined([cells(face, fineness) for face in faces])
+def _grown(faces: tuple[Face, ...], fineness: float) -> BoundingTree:
+    return merge_trees([cells(face, fineness) for face in faces])
 
 
 def _shifted(link: Indices, node: int, face: int, leaf: int) -> Indices:

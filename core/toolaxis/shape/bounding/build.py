@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.progress import breathe
-from toolaxis.shape.bounding.base_cells import graded, grid_lines
+from toolaxis.shape.bounding.base_cells import grade_lines, grid_lines
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -30,8 +30,8 @@ _CORNERS = ((0, 2), (0, 3), (1, 2), (1, 3))
 _REFERENCE = np.array([0.4876237, 0.5312345])
 
 
-class Tree(NamedTuple):
-    """The arrays of `toolaxis.shape.bounding.bounding_tree.Cells`, for one face."""
+class TreeArrays(NamedTuple):
+    """The arrays of `toolaxis.shape.bounding.bounding_tree.BoundingTree`, for one face."""
 
     shape: Array
     bend: Array
@@ -83,7 +83,7 @@ def margin_of(face: Face) -> Array:
     return np.asarray(_MARGIN * np.array([u1 - u0, v1 - v0]) + rounding)
 
 
-def clipped(rect: Array, edges: Array, margin: Array) -> tuple[Flags, Array]:
+def clip_edges(rect: Array, edges: Array, margin: Array) -> tuple[Flags, Array]:
     """Whether edges run through the inner part of rectangles, and what is left of them.
 
     Parameters
@@ -114,7 +114,7 @@ def clipped(rect: Array, edges: Array, margin: Array) -> tuple[Flags, Array]:
     return ~outside & (enter < leave), ends
 
 
-def reached(face: Face, uv: Array, margin: Array) -> Flags:
+def is_near_face(face: Face, uv: Array, margin: Array) -> Flags:
     """Whether parameters lie on the face or so near to it that rounding and left-out edges could decide, (n,).
 
     Parameters
@@ -170,7 +170,7 @@ class _Builder:
                                f"its surface's domain {d0:g} to {d1:g}, {e0:g} to {e1:g}: trim it inside")
         ku, kv, _, pu, pv, _ = face.surface.data
         lines = (grid_lines(ku, pu, *self.rect[0, :2]), grid_lines(kv, pv, *self.rect[0, 2:]))
-        self.lines = (graded(face, lines, 0, fineness), graded(face, lines, 1, fineness))
+        self.lines = (grade_lines(face, lines, 0, fineness), grade_lines(face, lines, 1, fineness))
         self.bounds = self._derivatives()
         self.edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in face.trims]
                                     or [np.empty((0, 4))])
@@ -197,7 +197,7 @@ class _Builder:
         """
         if not len(self.edges):
             return level
-        through, ends = clipped(level.rect[level.owner], self.edges[level.edge], self.margin)
+        through, ends = clip_edges(level.rect[level.owner], self.edges[level.edge], self.margin)
         owner, edge, ends = level.owner[through], level.edge[through], ends[through]
         crossed = np.zeros(len(level.rect), dtype=bool)
         crossed[owner] = True
@@ -210,7 +210,7 @@ class _Builder:
         for corner in _CORNERS:
             point = level.rect[:, corner]
             within = crossed.copy()
-            within[crossed] = reached(self.face, point[crossed], self.margin)
+            within[crossed] = is_near_face(self.face, point[crossed], self.margin)
             low[within], high[within] = np.minimum(low, point)[within], np.maximum(high, point)[within]
         box = np.stack([np.maximum(low - self.margin / 2, level.rect[:, 0::2]),
                         np.minimum(high + self.margin / 2, level.rect[:, 1::2])], axis=2).reshape(-1, 4)
@@ -254,9 +254,9 @@ class _Builder:
             size = np.stack([np.linalg.norm(centre[:, 3:6], axis=1), np.linalg.norm(centre[:, 6:9], axis=1)], axis=1)
             level = self.trimmed(_halved(level, np.flatnonzero(~ready), size, self.lines))
 
-    def tree(self) -> Tree:
+    def tree(self) -> TreeArrays:
         """Enclosures from the leaves up, numbered from the root down."""
-        alive, radius = enclosed(self.levels, self.centres, self.ready)
+        alive, radius = enclose_parents(self.levels, self.centres, self.ready)
         counts = np.array([a.sum() for a in alive])
         offset = np.concatenate([[0], np.cumsum(counts)])
         number = [np.where(a, np.cumsum(a) - 1 + o, -1) for a, o in zip(alive, offset[:-1], strict=True)]
@@ -277,7 +277,7 @@ class _Builder:
         crossed = [np.bincount(level.owner, minlength=len(a))[a] > 0
                    for level, a in zip(self.levels, alive, strict=True)]
         link[:, 4] = self.face.contains(middle) * np.where(np.concatenate(crossed), 1, 2)
-        return Tree(shape, bend, link, *self._leaves())
+        return TreeArrays(shape, bend, link, *self._leaves())
 
     def _leaves(self) -> tuple[Array, Indices, Array]:
         rows, edges, counts = [], [], []
@@ -323,7 +323,7 @@ def second_remainder(bounds: Array, half: Array) -> Array:
                        + bounds[:, 3] * dv**3) / 6)
 
 
-def enclosed(levels: list[_Level], centres: list[Array], ready: list[Flags]) -> tuple[list[Flags], list[Array]]:
+def enclose_parents(levels: list[_Level], centres: list[Array], ready: list[Flags]) -> tuple[list[Flags], list[Array]]:
     """Write what is left of the parents into ``centres``; which nodes hold something, the radius of each around its q.
 
     Parameters
@@ -382,7 +382,7 @@ def _add_children(levels: list[_Level], centres: list[Array], depth: int,
     np.maximum.at(around, p, np.linalg.norm(gap, axis=1) + radius[k])
 
 
-def subdivided(face: Face, fineness: float) -> Tree:
+def build_tree(face: Face, fineness: float) -> TreeArrays:
     """The tree of cells that encloses a face.
 
     Parameters

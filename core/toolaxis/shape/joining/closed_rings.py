@@ -3,7 +3,7 @@
 from contextlib import suppress
 
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.shape.joining.shared_boundary import Meeting, meeting_along
+from toolaxis.shape.joining.shared_boundary import SharedBoundary, meeting_along
 from toolaxis.shape.part import Part
 
 
@@ -48,7 +48,7 @@ def _walked(part: Part, number: int, axis: int) -> tuple[int, ...]:
         found.append(here)
 
 
-def _next(part: Part, number: int, axis: int, end: int) -> Meeting | None:
+def _next(part: Part, number: int, axis: int, end: int) -> SharedBoundary | None:
     """How a face meets the one beyond a side; None where none continues it smoothly along its own side."""
     for edge in part.edges:
         if edge.kind != "tangent" or number not in edge.faces or edge.faces[0] == edge.faces[1]:

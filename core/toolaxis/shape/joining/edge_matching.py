@@ -18,7 +18,7 @@ NEAR = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Side:
+class OpenEdge:
     """A piece of a face's border that no other face is known to share.
 
     Attributes
@@ -39,7 +39,7 @@ class Side:
     left: bool
 
 
-def sides_of(face: Face) -> list[Side]:
+def sides_of(face: Face) -> list[OpenEdge]:
     """The whole border of a face, one side for each straight line in its parameters and one for each other loop.
 
     Parameters
@@ -53,7 +53,7 @@ def sides_of(face: Face) -> list[Side]:
         pieces = [closed[k:k + 2] for k in range(len(loop))] if len(loop) <= 8 else [closed]
         for piece in pieces:
             uv = _refined(piece)
-            sides.append(Side(face.number, face.evaluate(uv).point, uv, left))
+            sides.append(OpenEdge(face.number, face.evaluate(uv).point, uv, left))
     return sides
 
 
@@ -64,12 +64,12 @@ def _refined(line: Array) -> Array:
     return np.concatenate([*inner, line[-1:]])
 
 
-def matched(sides: Sequence[Side], size: float) -> list[Border]:
+def match_edges(sides: Sequence[OpenEdge], size: float) -> list[Border]:
     """Stretches along which two sides of different faces run together.
 
     Parameters
     ----------
-    sides : sequence of Side
+    sides : sequence of OpenEdge
     size : float
         Diagonal of the part, mm; sides nearer than 1e-4 of it, and of their own length, count as touching.
 
@@ -91,7 +91,7 @@ def _length(points: Array) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _together(one: Side, other: Side, near: float) -> list[Border]:
+def _together(one: OpenEdge, other: OpenEdge, near: float) -> list[Border]:
     """Runs of a side's points that lie on the other side; the finer of the two is walked along."""
     if len(other.points) > len(one.points):
         one, other = other, one
@@ -104,7 +104,7 @@ def _together(one: Side, other: Side, near: float) -> list[Border]:
             if _length(one.points[run]) > 10 * near]
 
 
-def _nearest(points: Array, side: Side) -> tuple[Array, Array, Array]:
+def _nearest(points: Array, side: OpenEdge) -> tuple[Array, Array, Array]:
     """Distance of points from a side's polyline, the side's parameters there, and how far along it, in segments."""
     start, course = side.points[:-1], np.diff(side.points, axis=0)
     square = np.maximum((course**2).sum(axis=1), 1e-300)

@@ -10,12 +10,21 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.bezier import bezier_nets, bezier_rows
-from toolaxis.numeric.polygon_boolean import united
+from toolaxis.numeric.polygon_boolean import unite_polygons
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.joining.patch_grid import Cell, Grid, laid_out
-from toolaxis.shape.joining.patches import SAME, Pair, Patch, alike, knots_along, placed, range_of, surface_over
-from toolaxis.shape.joining.shared_boundary import GAP, Meeting
+from toolaxis.shape.joining.patch_grid import Cell, Grid, arrange_patches
+from toolaxis.shape.joining.patches import (
+    SAME,
+    JoinedPatch,
+    Pair,
+    align_parameters,
+    alike,
+    knots_along,
+    range_of,
+    surface_over,
+)
+from toolaxis.shape.joining.shared_boundary import GAP, SharedBoundary
 from toolaxis.shape.kinks import beside, turn_at
 from toolaxis.shape.nurbs import NurbsSurface
 
@@ -33,15 +42,15 @@ _ROUNDING = 1e-9
 GREATEST_CORNER = radians(30.0)
 
 
-def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float = GAP,
-           corner: float = GREATEST_CORNER) -> Face:
+def join_patches(faces: Sequence[Face], meetings: Sequence[SharedBoundary], tolerance: float = GAP,
+                 corner: float = GREATEST_CORNER) -> Face:
     """One face from patches that continue each other smoothly.
 
     Parameters
     ----------
     faces : sequence of Face
         The first one's directions of u and v, sense and number are those of the result.
-    meetings : sequence of Meeting
+    meetings : sequence of SharedBoundary
         From `toolaxis.shape.joining.shared_boundary.meetings`.
     tolerance : float
         By how much the surface may leave the faces at the joins, mm.
@@ -70,8 +79,8 @@ def joined(faces: Sequence[Face], meetings: Sequence[Meeting], tolerance: float 
     **Properties**: 1. a surface cut at iso-parametric lines and joined again is that surface; 2. every point of a
     member lies within the tolerance at its mapped parameters; 3. areas add up; 4. moving the faces moves the result.
     """
-    grid = laid_out(faces, meetings)
-    patches = placed(grid)
+    grid = arrange_patches(faces, meetings)
+    patches = align_parameters(grid)
     ranges = tuple([range_of(grid, patches, axis, k) for k in range(grid.shape[axis])] for axis in (0, 1))
     surfaces = alike(grid, {cell: surface_over(patches[cell], _box(ranges, cell)) for cell in patches})
     surfaces = _weighed(grid, surfaces, tolerance)
@@ -223,7 +232,7 @@ def _assembled(grid: Grid, surfaces: dict[Cell, NurbsSurface], lines: tuple[Arra
     return NurbsSurface(knots[0], knots[1], total, degree), moved
 
 
-def _member(patch: Patch, box: tuple[Pair, Pair], place: tuple[Pair, Pair]) -> Member:
+def _member(patch: JoinedPatch, box: tuple[Pair, Pair], place: tuple[Pair, Pair]) -> Member:
     """A face with the way from the joined parameters to its own."""
     matrix = np.zeros((2, 3))
     for axis in (0, 1):
@@ -309,7 +318,7 @@ def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
                 uv[close, axis] = line[near[close]]
             own.append(_met(uv, corners, lines, size))
         corners = np.concatenate([corners, *own])
-        loops = united(loops, tuple(own)) if loops else tuple(own)
+        loops = unite_polygons(loops, tuple(own)) if loops else tuple(own)
     order = sorted(loops, key=lambda loop: -float(np.prod(np.ptp(loop, axis=0))))
     return tuple(order)
 

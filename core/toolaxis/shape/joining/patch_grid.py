@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.shared_boundary import Meeting
+from toolaxis.shape.joining.shared_boundary import SharedBoundary
 
 Array = NDArray[np.float64]
 Cell = tuple[int, int]
@@ -32,17 +32,17 @@ class Grid:
 
     faces: dict[Cell, Face]
     turns: dict[Cell, Array]
-    meetings: dict[tuple[Cell, int], Meeting]
+    meetings: dict[tuple[Cell, int], SharedBoundary]
     shape: tuple[int, int]
 
 
-def laid_out(faces: Sequence[Face], meetings: Sequence[Meeting]) -> Grid:
+def arrange_patches(faces: Sequence[Face], meetings: Sequence[SharedBoundary]) -> Grid:
     """Lay faces side by side, the first one as it is.
 
     Parameters
     ----------
     faces : sequence of Face
-    meetings : sequence of Meeting
+    meetings : sequence of SharedBoundary
         Between them.
 
     Returns
@@ -70,7 +70,7 @@ def laid_out(faces: Sequence[Face], meetings: Sequence[Meeting]) -> Grid:
         raise UnsupportedGeometry(f"{name} cannot be joined: {len(cells)} patches do not lie in full rows and columns; "
                                   "join those of a row or of a rectangle")
     of = {face.number: face for face in faces}
-    beside: dict[tuple[Cell, int], Meeting] = {}
+    beside: dict[tuple[Cell, int], SharedBoundary] = {}
     for meeting in meetings:
         for one in (meeting, meeting.turned()):
             cell, other = (cells[number] for number in one.faces)
@@ -94,18 +94,18 @@ def _next(cell: Cell, axis: int) -> Cell:
     return (cell[0] + (axis == 0), cell[1] + (axis == 1))
 
 
-def laid_out_from(face: Face, meetings: Sequence[Meeting]) -> dict[int, Cell]:
+def arrange_from(face: Face, meetings: Sequence[SharedBoundary]) -> dict[int, Cell]:
     """Cells of a face and of all that hang together with it, by number; several may have the same.
 
     Parameters
     ----------
     face : Face
-    meetings : sequence of Meeting
+    meetings : sequence of SharedBoundary
     """
     return _walked(face, meetings)[1]
 
 
-def _walked(face: Face, meetings: Sequence[Meeting]) -> tuple[dict[int, Array], dict[int, Cell]]:
+def _walked(face: Face, meetings: Sequence[SharedBoundary]) -> tuple[dict[int, Array], dict[int, Cell]]:
     """Turns and cells of the faces that hang together with one, by number."""
     turns, places = {face.number: np.eye(2)}, {face.number: np.zeros(2)}
     front = [face.number]
@@ -125,7 +125,7 @@ def _walked(face: Face, meetings: Sequence[Meeting]) -> tuple[dict[int, Array], 
     return turns, cells
 
 
-def _turn(meeting: Meeting, turn: Array) -> Array:
+def _turn(meeting: SharedBoundary, turn: Array) -> Array:
     """The turn of the second face from that of the first."""
     one, other = meeting.sides
     found = np.zeros((2, 2))
@@ -134,8 +134,8 @@ def _turn(meeting: Meeting, turn: Array) -> Array:
     return found
 
 
-def _beside(meeting: Meeting, cell: Cell, other: Cell, turns: dict[int, Array], shape: tuple[int, int],
-            found: dict[tuple[Cell, int], Meeting]) -> bool:
+def _beside(meeting: SharedBoundary, cell: Cell, other: Cell, turns: dict[int, Array], shape: tuple[int, int],
+            found: dict[tuple[Cell, int], SharedBoundary]) -> bool:
     """Whether a meeting whose second face lies in an increasing direction fits the layout; noted if so."""
     a, b = meeting.faces
     axis = int((turns[a] @ meeting.sides[0].outward)[1] > 0.5)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
-from toolaxis.numeric.knots import distinct_inner, elevated, refined, restricted
+from toolaxis.numeric.knots import distinct_inner, elevate_degree, insert_knots, restrict_spline
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.patch_grid import Cell, Grid
 from toolaxis.shape.joining.shared_boundary import GAP
@@ -20,7 +20,7 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class JoinedPatch:
     """A face turned into the joined directions, with the parameters of its column and its row.
 
     Attributes
@@ -74,7 +74,7 @@ class Patch:
         return float(np.linalg.norm((d.su, d.sv)[self.axes[axis]], axis=1).max(initial=0) / abs(self.scale[axis]))
 
 
-def placed(grid: Grid) -> dict[Cell, Patch]:
+def align_parameters(grid: Grid) -> dict[Cell, JoinedPatch]:
     """Patches with parameters that agree in each column and in each row.
 
     Parameters
@@ -94,14 +94,14 @@ def placed(grid: Grid) -> dict[Cell, Patch]:
                 other, gone = maps[before]
                 scale[axis] = other[axis] / meeting.slope
                 shift[axis] = gone[axis] - other[axis] * meeting.shift / meeting.slope
-    return {cell: Patch(face, *maps[cell], _own_axes(grid.turns[cell])) for cell, face in grid.faces.items()}
+    return {cell: JoinedPatch(face, *maps[cell], _own_axes(grid.turns[cell])) for cell, face in grid.faces.items()}
 
 
 def _own_axes(turn: Array) -> tuple[int, int]:
     return int(abs(turn[0, 1]) > 0.5), int(abs(turn[1, 1]) > 0.5)
 
 
-def range_of(grid: Grid, patches: dict[Cell, Patch], axis: int, k: int) -> Pair:
+def range_of(grid: Grid, patches: dict[Cell, JoinedPatch], axis: int, k: int) -> Pair:
     """Range of the parameter of a column or row, in which all its patches are cut out.
 
     Parameters
@@ -134,7 +134,7 @@ def range_of(grid: Grid, patches: dict[Cell, Patch], axis: int, k: int) -> Pair:
     return ends[0], ends[1]
 
 
-def _check_range(line: list[Patch], axis: int, found: tuple[float, int, bool], places: list[float]) -> None:
+def _check_range(line: list[JoinedPatch], axis: int, found: tuple[float, int, bool], places: list[float]) -> None:
     """That the joins of a column's patches lie in one line, and its faces between its outer ends."""
     value, end, inner = found
     for patch, place in zip(line, places, strict=True):
@@ -147,12 +147,12 @@ def _check_range(line: list[Patch], axis: int, found: tuple[float, int, bool], p
                                       "direction: join faces that meet along whole sides")
 
 
-def surface_over(patch: Patch, box: tuple[Pair, Pair]) -> NurbsSurface:
+def surface_over(patch: JoinedPatch, box: tuple[Pair, Pair]) -> NurbsSurface:
     """A patch's surface over its box, in the parameters of its column and its row.
 
     Parameters
     ----------
-    patch : Patch
+    patch : JoinedPatch
     box : pair of (float, float)
         Ranges of the column's and the row's parameter.
     """
@@ -162,8 +162,8 @@ def surface_over(patch: Patch, box: tuple[Pair, Pair]) -> NurbsSurface:
         own = patch.axes[axis]
         start, end = (patch.own(axis, t) for t in box[axis])
         degree = source.degree[own]
-        knots[own], moved = restricted(knots[own], np.moveaxis(control, own, 0), degree, min(start, end),
-                                       max(start, end))
+        knots[own], moved = restrict_spline(knots[own], np.moveaxis(control, own, 0), degree, min(start, end),
+                                            max(start, end))
         mapped = box[axis][0] + (knots[own] - start) * ((box[axis][1] - box[axis][0]) / (end - start))
         if start > end:
             mapped, moved = mapped[::-1], moved[::-1]
@@ -187,12 +187,13 @@ def alike(grid: Grid, surfaces: dict[Cell, NurbsSurface]) -> dict[Cell, NurbsSur
         degree = max(surface.degree[axis] for surface in surfaces.values())
         for k in range(grid.shape[axis]):
             cells = [cell for cell in surfaces if cell[axis] == k]
-            splines = {cell: elevated(knots_along(surfaces[cell], axis), np.moveaxis(surfaces[cell].control, axis, 0),
-                                      surfaces[cell].degree[axis], degree) for cell in cells}
+            splines = {cell: elevate_degree(knots_along(surfaces[cell], axis),
+                                            np.moveaxis(surfaces[cell].control, axis, 0),
+                                            surfaces[cell].degree[axis], degree) for cell in cells}
             target = _common([knots for knots, _ in splines.values()], degree)
             for cell in cells:
                 knots, control = splines[cell]
-                more = refined(_snapped(knots, target), control, degree, target)
+                more = insert_knots(_snapped(knots, target), control, degree, target)
                 surfaces[cell] = _with(surfaces[cell], axis, (target, np.moveaxis(more, 0, axis)), degree)
     return surfaces
 

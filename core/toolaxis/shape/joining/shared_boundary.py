@@ -22,7 +22,7 @@ _SAME = 1e-6
 
 
 @dataclass(frozen=True)
-class Side:
+class FaceSide:
     """A side of a face in its parameters.
 
     Attributes
@@ -48,7 +48,7 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Meeting:
+class SharedBoundary:
     """Two faces that meet along a side of each.
 
     Attributes
@@ -61,16 +61,16 @@ class Meeting:
     """
 
     faces: tuple[int, int]
-    sides: tuple[Side, Side]
+    sides: tuple[FaceSide, FaceSide]
     slope: float
     shift: float
 
-    def turned(self) -> "Meeting":
+    def turned(self) -> "SharedBoundary":
         """The same with the second face first."""
-        return Meeting(self.faces[::-1], self.sides[::-1], 1 / self.slope, -self.shift / self.slope)
+        return SharedBoundary(self.faces[::-1], self.sides[::-1], 1 / self.slope, -self.shift / self.slope)
 
 
-def meetings(part: Part, numbers: Sequence[int]) -> list[Meeting]:
+def meetings(part: Part, numbers: Sequence[int]) -> list[SharedBoundary]:
     """How faces of a part meet each other smoothly.
 
     Parameters
@@ -80,7 +80,7 @@ def meetings(part: Part, numbers: Sequence[int]) -> list[Meeting]:
 
     Returns
     -------
-    list of Meeting
+    list of SharedBoundary
         In the order of the part's edges; pairs that meet along two sides are there twice.
 
     Raises
@@ -89,7 +89,7 @@ def meetings(part: Part, numbers: Sequence[int]) -> list[Meeting]:
         When a common border is no iso-parametric side of a face, or parameters along it do not go together.
     """
     among = set(numbers)
-    found: list[Meeting] = []
+    found: list[SharedBoundary] = []
     for edge in part.edges:
         a, b = edge.faces
         if edge.kind == "tangent" and a != b and {a, b} <= among:
@@ -99,7 +99,7 @@ def meetings(part: Part, numbers: Sequence[int]) -> list[Meeting]:
     return found
 
 
-def meeting_along(first: Face, second: Face, edge: Edge) -> Meeting:
+def meeting_along(first: Face, second: Face, edge: Edge) -> SharedBoundary:
     """How two faces meet along an edge.
 
     Parameters
@@ -129,7 +129,7 @@ def meeting_along(first: Face, second: Face, edge: Edge) -> Meeting:
         raise UnsupportedGeometry(f"{pair}: their parameters along the common edge do not go together, places of equal "
                                   f"shares lie up to {off:.3g} mm apart: machine them face by face, or build them with "
                                   "the same parametrisation")
-    return Meeting(edge.faces, (sides[0], sides[1]), slope, shift)
+    return SharedBoundary(edge.faces, (sides[0], sides[1]), slope, shift)
 
 
 def _inner_points(polyline: Array) -> Array:
@@ -148,7 +148,7 @@ def _speed(face: Face, axis: int) -> float:
     return float(np.linalg.norm((d.su, d.sv)[axis], axis=1).max(initial=1e-300))
 
 
-def _side(face: Face, uv: Array, pair: str) -> Side:
+def _side(face: Face, uv: Array, pair: str) -> FaceSide:
     """The side of a face on which places of its border lie."""
     spread = np.array([np.ptp(uv[:, axis]) * _speed(face, axis) for axis in (0, 1)])
     axis = int(spread[1] < spread[0])
@@ -160,7 +160,7 @@ def _side(face: Face, uv: Array, pair: str) -> Side:
     if abs(bounds[end] - at) * _speed(face, axis) > GAP:
         raise UnsupportedGeometry(f"{pair}: face {face.label} lies on both sides of the common edge, which only "
                                   "runs along a part of it: machine them face by face")
-    return Side(axis, end, bounds[end])
+    return FaceSide(axis, end, bounds[end])
 
 
 def _line(along: tuple[Array, Array], own: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.numeric.clipping import clipped, grouped
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.face import Face, Member
-from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, joined, joins, name_of
-from toolaxis.shape.joining.patch_grid import laid_out_from
-from toolaxis.shape.joining.shared_boundary import GAP, Meeting, meeting_along, meetings
+from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, join_patches, joins, name_of
+from toolaxis.shape.joining.patch_grid import arrange_from
+from toolaxis.shape.joining.shared_boundary import GAP, SharedBoundary, meeting_along, meetings
 from toolaxis.shape.part import Part
 
 Array = NDArray[np.float64]
@@ -50,14 +50,14 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float
     InvalidInput
         When there are fewer than two faces, one of them is named twice, is not there, or is joined already.
     UnsupportedGeometry
-        When they cannot be joined: see `toolaxis.shape.joining.joined_surface.joined`.
+        When they cannot be joined: see `toolaxis.shape.joining.joined_surface.join_patches`.
 
     Notes
     -----
     **Properties**: 1. areas add up; 2. skin and surroundings of a face are the same faces as before.
     """
     numbers = _checked(part, faces)
-    made = joined([part.face(n) for n in numbers], meetings(part, numbers), tolerance, corner)
+    made = join_patches([part.face(n) for n in numbers], meetings(part, numbers), tolerance, corner)
     first = min(k for k, face in enumerate(part.faces) if face.number in numbers)
     kept = [(k, face) for k, face in enumerate(part.faces) if face.number not in numbers]
     order = [face for _, face in sorted([*kept, (first, made)], key=lambda row: row[0])]
@@ -118,8 +118,8 @@ def own_pieces(face: Face) -> tuple[Face, ...]:
     for member in face.members:
         loops = face.outline
         for axis, (low, high) in enumerate(member.box.T):
-            loops = clipped(clipped(loops, axis, float(low), True), axis, float(high), False)
-        own = [tuple(_own(member, loop) for loop in piece) for piece in grouped(loops)]
+            loops = clip_half_plane(clip_half_plane(loops, axis, float(low), True), axis, float(high), False)
+        own = [tuple(_own(member, loop) for loop in piece) for piece in outer_with_holes(loops)]
         if abs(sum(map(_area, own)) - _area(member.face.outline)) <= _WHOLE * _area(member.face.outline):
             pieces.append(member.face)
         else:
@@ -167,7 +167,7 @@ def skins(part: Part) -> Skins:
     **Properties**: 1. every sculptured face is in one of them, or single.
     """
     numbers = [face.number for face in part.sculptured if not face.members]
-    found: list[Meeting] = []
+    found: list[SharedBoundary] = []
     reasons: dict[tuple[int, int], str] = {}
     for edge in part.edges:
         a, b = edge.faces
@@ -176,7 +176,7 @@ def skins(part: Part) -> Skins:
         try:
             meeting = meeting_along(part.face(a), part.face(b), edge)
             if not any(meeting.faces == other.faces and meeting.sides == other.sides for other in found):
-                joined([part.face(a), part.face(b)], [meeting])
+                join_patches([part.face(a), part.face(b)], [meeting])
                 found.append(meeting)
         except UnsupportedGeometry as reason:
             reasons[a, b] = str(reason)
@@ -191,10 +191,10 @@ def skins(part: Part) -> Skins:
                  tuple(group[0] for group in groups if len(group) == 1), tuple(_told(apart, reasons)))
 
 
-def _largest(part: Part, free: Sequence[int], found: list[Meeting]) -> tuple[int, ...]:
+def _largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> tuple[int, ...]:
     """The largest rectangle of free patches around the first of them."""
     own = [m for m in found if set(m.faces) <= set(free)]
-    cells = laid_out_from(part.face(free[0]), own)
+    cells = arrange_from(part.face(free[0]), own)
     by_cell = {cell: number for number, cell in reversed(list(cells.items()))}
     here = cells[free[0]]
     last = [max(cell[axis] for cell in by_cell) for axis in (0, 1)]
@@ -206,7 +206,7 @@ def _largest(part: Part, free: Sequence[int], found: list[Meeting]) -> tuple[int
             continue
         numbers = sorted(n for n in members if n is not None)
         with suppress(UnsupportedGeometry):
-            joined([part.face(n) for n in numbers], [m for m in own if set(m.faces) <= set(numbers)])
+            join_patches([part.face(n) for n in numbers], [m for m in own if set(m.faces) <= set(numbers)])
             return tuple(numbers)
     return (free[0],)
 

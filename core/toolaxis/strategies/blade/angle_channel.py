@@ -23,7 +23,7 @@ _FINE, _TABLE = 40, 400
 
 
 @dataclass(frozen=True, eq=False)
-class Channel:
+class AngleChannel:
     """Least and greatest tool angles along a section.
 
     Attributes
@@ -43,7 +43,7 @@ class Channel:
         """Least width, rad; negative where it closes."""
         return float((self.high - self.low).min())
 
-    def within(self, low: Array, high: Array) -> "Channel":
+    def within(self, low: Array, high: Array) -> "AngleChannel":
         """The rising part of the channel inside further limits.
 
         Parameters
@@ -53,7 +53,7 @@ class Channel:
         """
         return _rising(self.lengths, np.maximum(self.low, low), np.minimum(self.high, high))
 
-    def narrowed(self, clearance: float, place: str = "the section") -> "Channel":
+    def narrowed(self, clearance: float, place: str = "the section") -> "AngleChannel":
         """The channel less a clearance on both sides.
 
         Parameters
@@ -68,7 +68,7 @@ class Channel:
         InvalidInput
             When it closes; with the place and the amount.
         """
-        made = Channel(self.lengths, self.low + clearance, self.high - clearance)
+        made = AngleChannel(self.lengths, self.low + clearance, self.high - clearance)
         if not made.width > 0:
             k = int(np.argmin(made.high - made.low))
             raise InvalidInput(f"the channel of tool angles closes on {place} at S = {self.lengths[k]:.2f} mm: "
@@ -87,15 +87,15 @@ class Channel:
         return np.minimum(theta - low, high - theta)
 
 
-def _rising(lengths: Array, low: Array, high: Array) -> Channel:
+def _rising(lengths: Array, low: Array, high: Array) -> AngleChannel:
     """What a curve that never falls, and gains a turn in each turn around, can use of limits for one turn around."""
     before, after = low - 2 * pi, high + 2 * pi
     top = np.minimum.accumulate(np.concatenate([high, after])[::-1])[::-1][:len(high)]
     bottom = np.maximum.accumulate(np.concatenate([before, low]))[len(low):]
-    return Channel(lengths, bottom, top)
+    return AngleChannel(lengths, bottom, top)
 
 
-def channel(one: Section, tool: Tool | None = None) -> Channel:
+def channel(one: Section, tool: Tool | None = None) -> AngleChannel:
     """The channel of a section, for a tool whose cylinder, taper, shank and holder keep clear of it.
 
     Parameters
@@ -122,7 +122,7 @@ def channel(one: Section, tool: Tool | None = None) -> Channel:
         return made
     low, high = made.low + tool.half_angle, made.high - tool.half_angle
     if _wider(tool):
-        bars = barred(one, tool)
+        bars = clear_angle_range(one, tool)
         low, high = np.maximum(low, bars[0]), np.minimum(high, bars[1])
     return _rising(one.lengths, low, high)
 
@@ -163,7 +163,7 @@ def half_angles(tool: Tool, distances: Array) -> Array:
     return np.where(distances <= tool.corner_radius, pi / 2, np.where(distances > reach.max(), 0.0, found))
 
 
-def barred(one: Section, tool: Tool) -> tuple[Array, Array]:
+def clear_angle_range(one: Section, tool: Tool) -> tuple[Array, Array]:
     """Least and greatest angles at each point of a section at which a whole tool clears the blade inside, (n,) each.
 
     Parameters

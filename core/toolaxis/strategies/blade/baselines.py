@@ -49,7 +49,7 @@ class SmoothSection:
         return np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
 
 
-def unscheduled(one: SmoothSection, lengths: ArrayLike, lead: float = 0.0) -> Array:
+def constant_angles(one: SmoothSection, lengths: ArrayLike, lead: float = 0.0) -> Array:
     """Tool angles at a constant angle from the normal, as systems without re-scheduling give them, (n,) rad.
 
     Parameters
@@ -85,7 +85,7 @@ def by_quaternions(one: SmoothSection, lengths: ArrayLike, keys: int = KEYS, lea
 
     s = np.asarray(lengths, dtype=float)
     fine = np.linspace(0.0, one.length, 4 * len(s) + 1)
-    angle = unscheduled(one, fine, lead)
+    angle = constant_angles(one, fine, lead)
     places = np.linspace(0.0, one.length, keys + 1)
     at = np.interp(places, fine, angle)
     places = np.concatenate([places[:-1] - one.length, places, places[1:] + one.length])

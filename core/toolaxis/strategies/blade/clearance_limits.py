@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import judged, motions
-from toolaxis.feasibility.surroundings import Group
+from toolaxis.contact.clearance.queries import keeps_limits, motions
+from toolaxis.feasibility.surroundings import CheckSurfaces
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.strategies.blade.schedule import Plane, Swing
+from toolaxis.strategies.blade.schedule import SThetaLayer, SwivelAxis
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -23,21 +23,21 @@ _INSIDE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Room:
+class BladeSurroundings:
     """What surrounds a blade.
 
     Attributes
     ----------
     tool : Tool
         With a ball end.
-    groups : tuple of Group
+    groups : tuple of CheckSurfaces
         With the distances to keep.
-    swing : Swing
+    swing : SwivelAxis
     """
 
     tool: Tool
-    groups: tuple[Group, ...]
-    swing: Swing
+    groups: tuple[CheckSurfaces, ...]
+    swing: SwivelAxis
 
     def free(self, centres: Array, theta: Array) -> Bools:
         """Whether the tool keeps all distances at cutter centres with tool angles, (n,).
@@ -55,7 +55,7 @@ class Room:
         for group in self.groups:
             some = np.flatnonzero(good)
             table = np.tile(group.required, (len(group.faces), 1))
-            good[some] = judged(group.cells, self.tool, moves[some], table).blocked < 0
+            good[some] = keeps_limits(group.cells, self.tool, moves[some], table).blocked < 0
         return good
 
     def limits(self, centres: Array, low: Array, high: Array) -> tuple[Array, Array]:
@@ -100,16 +100,16 @@ def _longest(good: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return last - np.maximum(run[np.arange(len(run)), last], 1) + 1, last
 
 
-def with_room(planes: Sequence[Plane], centres: Sequence[Array], room: Room,
-              progress: Progress = NO_PROGRESS) -> list[Plane]:
+def with_room(planes: Sequence[SThetaLayer], centres: Sequence[Array], room: BladeSurroundings,
+              progress: Progress = NO_PROGRESS) -> list[SThetaLayer]:
     """Layers with channels in which the whole tool keeps its distances, as seen at places along them.
 
     Parameters
     ----------
-    planes : sequence of Plane
+    planes : sequence of SThetaLayer
     centres : sequence of (n, 3) array
         Cutter centres of each, in the path's order.
-    room : Room
+    room : BladeSurroundings
     progress : Progress
 
     Notes

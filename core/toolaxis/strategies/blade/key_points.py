@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.corner_rounding import RoundedLine, greatest_height
-from toolaxis.strategies.blade.angle_channel import Channel
+from toolaxis.strategies.blade.angle_channel import AngleChannel
 
 Array = NDArray[np.float64]
 
@@ -75,12 +75,12 @@ class KeyCurve:
         return float((turn[bent]**2 / (3 * np.abs(self.line.heights[bent]))).max(initial=0.0))
 
 
-def key_curve(free: Channel, start: float, end: float, rule: KeyRule) -> KeyCurve:
+def key_curve(free: AngleChannel, start: float, end: float, rule: KeyRule) -> KeyCurve:
     """Key points, lines and corners by a rule.
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
     start, end : float
         rad
     rule : KeyRule
@@ -103,8 +103,8 @@ def key_curve(free: Channel, start: float, end: float, rule: KeyRule) -> KeyCurv
     clearance = rule.moved * free.width
     ends = _level_ends(free, start, end, rule.level)
     s = free.lengths
-    inner = Channel(s, np.where(free.low <= start, np.minimum(free.low + clearance, start), free.low + clearance),
-                    np.where(free.high >= end, np.maximum(free.high - clearance, end), free.high - clearance))
+    inner = AngleChannel(s, np.where(free.low <= start, np.minimum(free.low + clearance, start), free.low + clearance),
+                         np.where(free.high >= end, np.maximum(free.high - clearance, end), free.high - clearance))
     used = _USED * clearance
     keys = [(ends[0], start), *_between(inner, (ends[0], start), (ends[1], end), used), (ends[1], end)]
     keys = _needed(inner, keys, used)
@@ -122,12 +122,12 @@ def key_curve(free: Channel, start: float, end: float, rule: KeyRule) -> KeyCurv
     return KeyCurve(RoundedLine(points, heights), np.array(keys[1:-1]).reshape(-1, 2))
 
 
-def best_rule(free: Channel, start: float, end: float) -> KeyRule:
+def best_rule(free: AngleChannel, start: float, end: float) -> KeyRule:
     """The rule with the least peak acceleration on a layer.
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
     start, end : float
         rad
 
@@ -152,7 +152,7 @@ def best_rule(free: Channel, start: float, end: float) -> KeyRule:
     return best[1]
 
 
-def _level_ends(free: Channel, start: float, end: float, share: tuple[float, float]) -> tuple[float, float]:
+def _level_ends(free: AngleChannel, start: float, end: float, share: tuple[float, float]) -> tuple[float, float]:
     """Where the level ends of a layer meet the first and the last line."""
     s = free.lengths
     longest = _LONGEST * float(s[-1] - s[0])
@@ -162,7 +162,7 @@ def _level_ends(free: Channel, start: float, end: float, share: tuple[float, flo
             float(s[-1] - share[1] * min(float(s[-1] - last), longest)))
 
 
-def _out(free: Channel, one: tuple[float, float], other: tuple[float, float]) -> tuple[float, int]:
+def _out(free: AngleChannel, one: tuple[float, float], other: tuple[float, float]) -> tuple[float, int]:
     """How far a line leaves a channel at most, rad, and at which of its points."""
     some = slice(*np.searchsorted(free.lengths, (one[0], other[0]), side="right"))
     s = free.lengths[some]
@@ -174,7 +174,7 @@ def _out(free: Channel, one: tuple[float, float], other: tuple[float, float]) ->
     return float(out[k]), k + (some.start or 0)
 
 
-def _between(free: Channel, one: tuple[float, float], other: tuple[float, float],
+def _between(free: AngleChannel, one: tuple[float, float], other: tuple[float, float],
              used: float) -> list[tuple[float, float]]:
     """Key points between two points, in their order."""
     points = [one, other]
@@ -195,7 +195,7 @@ def _between(free: Channel, one: tuple[float, float], other: tuple[float, float]
     return points[1:-1]
 
 
-def _needed(free: Channel, keys: list[tuple[float, float]], used: float) -> list[tuple[float, float]]:
+def _needed(free: AngleChannel, keys: list[tuple[float, float]], used: float) -> list[tuple[float, float]]:
     """Keys without those that a direct line makes redundant."""
     kept, k = list(keys), 1
     while k < len(kept) - 1:
@@ -207,7 +207,7 @@ def _needed(free: Channel, keys: list[tuple[float, float]], used: float) -> list
     return kept
 
 
-def _room(free: Channel, points: Array) -> tuple[Array, Array]:
+def _room(free: AngleChannel, points: Array) -> tuple[Array, Array]:
     """How high corners above, and how deep ones below, the inner points may be for what the channel leaves beside.
 
     A corner lies between its lines and the chords from its ends to its top: at a place x beside the point it leaves

@@ -209,7 +209,7 @@ def _to_curve(points: Array, curve: Array) -> Array:
     return best.ravel()
 
 
-def closed_parameter(face: Face) -> str:
+def find_closed_parameter(face: Face) -> str:
     """The parameter in which a face closes.
 
     Parameters

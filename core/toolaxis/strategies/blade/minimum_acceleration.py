@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.strategies.blade.angle_channel import Channel
+from toolaxis.strategies.blade.angle_channel import AngleChannel
 
 Array = NDArray[np.float64]
 
@@ -61,12 +61,12 @@ class LeastCurve:
                          self.slope[k] + t * (self.bend[k] + t * jerk / 2), self.bend[k] + t * jerk])
 
 
-def nodes_of(free: Channel, count: int = NODES) -> NDArray[np.intp]:
+def nodes_of(free: AngleChannel, count: int = NODES) -> NDArray[np.intp]:
     """Points of a channel at which curves are governed: denser where it rises.
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
     count : int
     """
     middle = (free.low + free.high) / 2
@@ -81,7 +81,7 @@ class LeastProgramme:
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
         Of one of them; its shape decides where nodes lie.
     count : int
         Nodes at most.
@@ -95,7 +95,7 @@ class LeastProgramme:
     four neighbours at most, so the work grows with the number of nodes.
     """
 
-    def __init__(self, free: Channel, count: int = NODES, rise: float = RISE) -> None:
+    def __init__(self, free: AngleChannel, count: int = NODES, rise: float = RISE) -> None:
         from scipy.sparse import csr_array, hstack, vstack
 
         span = free.lengths - free.lengths[0]
@@ -111,12 +111,12 @@ class LeastProgramme:
         self.rows = vstack([hstack([csr_array(part), *(csr_array(-np.broadcast_to(peak, len(part))[:, None])
                                                        for peak in peaks)]) for part, *peaks in rows]).tocsr()
 
-    def solve(self, free: Channel, start: float, end: float) -> LeastCurve:
+    def solve(self, free: AngleChannel, start: float, end: float) -> LeastCurve:
         """The curve of one layer.
 
         Parameters
         ----------
-        free : Channel
+        free : AngleChannel
         start, end : float
             rad
 
@@ -152,12 +152,12 @@ class LeastProgramme:
                           turn / scale.length * slope, turn / scale.length**2 * (self.second @ found))
 
 
-def least_curve(free: Channel, start: float, end: float, count: int = NODES, rise: float = RISE) -> LeastCurve:
+def least_curve(free: AngleChannel, start: float, end: float, count: int = NODES, rise: float = RISE) -> LeastCurve:
     """The curve of least peak acceleration from an angle to another, level and unbent at both ends.
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
     start, end : float
         rad
     count : int
@@ -177,13 +177,13 @@ def least_curve(free: Channel, start: float, end: float, count: int = NODES, ris
     return LeastProgramme(free, count, rise).solve(free, start, end)
 
 
-def least_peak(free: Channel, start: float, end: float, count: int = _BOUND) -> float:
+def least_peak(free: AngleChannel, start: float, end: float, count: int = _BOUND) -> float:
     """A bound, rad/mm^2: every rising C1 curve in the channel from an angle to another, level at both ends, has
     somewhere a second derivative of at least this.
 
     Parameters
     ----------
-    free : Channel
+    free : AngleChannel
     start, end : float
         rad
     count : int

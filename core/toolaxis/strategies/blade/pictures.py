@@ -14,10 +14,10 @@ from toolaxis.feed.axis_motion import AxisMotion, axis_motion
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, figure
-from toolaxis.search.fixed_axis import Task
-from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, unscheduled
+from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.plan import CLEARANCES, BladeSearch
-from toolaxis.strategies.blade.schedule import CLEARANCE, Scheduled, Swing, scheduled
+from toolaxis.strategies.blade.schedule import CLEARANCE, ScheduledLayer, SwivelAxis, schedule_layers
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ _BEFORE = ("unscheduled", "quaternions")
 _STILL = 1e-6
 
 
-def draw_blade(plan: Plan, op: Operation, job: Task, folder: Path, curve: str) -> None:
+def draw_blade(plan: Plan, op: Operation, job: FaceProblem, folder: Path, curve: str) -> None:
     """Draw the S-theta plane of the layer with the narrowest channel, and what the machine's axes do along it.
 
     Parameters
@@ -40,7 +40,7 @@ def draw_blade(plan: Plan, op: Operation, job: Task, folder: Path, curve: str) -
     plan : Plan
     op : Operation
         With a path.
-    job : Task
+    job : FaceProblem
     folder : Path
     curve : str
         Of `toolaxis.strategies.blade.schedule.CURVES`: the one that the path follows; the others are drawn beside it.
@@ -51,10 +51,10 @@ def draw_blade(plan: Plan, op: Operation, job: Task, folder: Path, curve: str) -
     k = int(np.argmin([one.wide.width for one in planes]))
     some = planes[k:k + 1]
     order = sorted(_TITLES, key=lambda kind: kind != curve)
-    curves = {_TITLES[kind]: scheduled(some, search.swing, curve=kind, clearance=clearance)[0] for kind in order}
+    curves = {_TITLES[kind]: schedule_layers(some, search.swing, curve=kind, clearance=clearance)[0] for kind in order}
     first = next(iter(curves.values()))
     smooth, s = SmoothSection(first.section), np.linspace(0.0, first.section.length, _ALONG)
-    others = {"unscheduled": unscheduled(smooth, s), "quaternions": by_quaternions(smooth, s)}
+    others = {"unscheduled": constant_angles(smooth, s), "quaternions": by_quaternions(smooth, s)}
     name = f"{op.name}, layer {k + 1} of {len(planes)}"
     angles_picture(curves, {title: (s, theta) for title, theta in others.items()},
                    name).savefig(folder / f"{op.name}-angles.png", dpi=_DPI)
@@ -73,7 +73,7 @@ def _clearance(op: Operation) -> float:
     return CLEARANCES[min(len(refused), len(CLEARANCES) - 1)] if refused else CLEARANCE
 
 
-def _motion(plan: Plan, one: Scheduled, turned: tuple[Swing, Array], s: Array, speed: float) -> AxisMotion:
+def _motion(plan: Plan, one: ScheduledLayer, turned: tuple[SwivelAxis, Array], s: Array, speed: float) -> AxisMotion:
     """What the machine's axes do with tool angles along a section."""
     swing, theta = turned
     assert plan.machine is not None
@@ -85,7 +85,8 @@ def _motion(plan: Plan, one: Scheduled, turned: tuple[Swing, Array], s: Array, s
     return axis_motion(plan.machine.machine, path, s, speed, plan.machine.table_from_part)
 
 
-def angles_picture(curves: Mapping[str, Scheduled], others: Mapping[str, tuple[Array, Array]], name: str) -> Figure:
+def angles_picture(curves: Mapping[str, ScheduledLayer], others: Mapping[str, tuple[Array, Array]],
+                   name: str) -> Figure:
     """The S-theta plane of a layer with its channel, keys and curves, and their slopes and bends with the bound.
 
     Parameters
@@ -136,7 +137,7 @@ def angles_picture(curves: Mapping[str, Scheduled], others: Mapping[str, tuple[A
     return made
 
 
-def _section(ax: Axes, one: Scheduled) -> None:
+def _section(ax: Axes, one: ScheduledLayer) -> None:
     """Cutter centres of a layer with the tool's directions, and the base point."""
     points = one.section.points
     ax.plot(*points.T, color=BLUE, linewidth=1.4)

@@ -13,17 +13,26 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.links import Linking
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import mounting_of, while_moving
 from toolaxis.search.messages import sentence
-from toolaxis.strategies.blade.clearance_limits import Room, with_room
-from toolaxis.strategies.blade.layers import Ring, along_blade, closed_parameter
-from toolaxis.strategies.blade.schedule import CLEARANCE, Layer, Plane, Scheduled, Swing, plane_of, scheduled, swing_of
+from toolaxis.strategies.blade.clearance_limits import BladeSurroundings, with_room
+from toolaxis.strategies.blade.layers import Ring, along_blade, find_closed_parameter
+from toolaxis.strategies.blade.schedule import (
+    CLEARANCE,
+    Layer,
+    ScheduledLayer,
+    SThetaLayer,
+    SwivelAxis,
+    plane_of,
+    schedule_layers,
+    swing_of,
+)
 from toolaxis.strategies.blade.section import base_of, section
-from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
+from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.strategies.common.passes import beyond
-from toolaxis.strategies.common.path_check import MovingCrossing, prove_moving
+from toolaxis.strategies.common.path_check import MovingLinkClearance, prove_moving
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -43,7 +52,7 @@ CHECKED = ("the cutter on the machined skin is checked at points of the path, 0.
 
 
 @dataclass(frozen=True, eq=False)
-class Turn:
+class BladeTurn:
     """One turn around a blade as a path takes it.
 
     Attributes
@@ -63,16 +72,16 @@ class BladeSchedule:
 
     Attributes
     ----------
-    swing : Swing
-    turns : tuple of Turn
-    layers : tuple of Scheduled
+    swing : SwivelAxis
+    turns : tuple of BladeTurn
+    layers : tuple of ScheduledLayer
     left : (float, float)
         Shares of the span without layers at the tip and at the root.
     """
 
-    swing: Swing
-    turns: tuple[Turn, ...]
-    layers: tuple[Scheduled, ...]
+    swing: SwivelAxis
+    turns: tuple[BladeTurn, ...]
+    layers: tuple[ScheduledLayer, ...]
     left: tuple[float, float] = (0.0, 0.0)
 
 
@@ -93,7 +102,7 @@ def check_ball(tool: Tool) -> None:
                            "centre; take ball:D or a tapered ball")
 
 
-def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, direction: str) -> tuple[Turn, ...]:
+def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, direction: str) -> tuple[BladeTurn, ...]:
     """Turns around a blade from its tip to its root.
 
     Parameters
@@ -106,12 +115,12 @@ def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, directi
 
     Returns
     -------
-    tuple of Turn
+    tuple of BladeTurn
         Each begins at the base point, at the end of the hollow of the middle section.
     """
     along = ring.places(chord)
     heights = ring.heights(ring.places(min(_LOOKED_AT[0] * scallop, _LOOKED_AT[1])), scallop, allowance)
-    swing = Swing(ring.direction)
+    swing = SwivelAxis(ring.direction)
     middle = swing.flat(ring.at(along, np.full(len(along), np.mean(ring.span)))[2])
     x, y = middle.T
     if float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum()) < 0:
@@ -130,10 +139,10 @@ def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, directi
     return _deepened(ring, rows)
 
 
-def _deepened(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[Turn, ...]:
+def _deepened(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[BladeTurn, ...]:
     """Turns whose points on hollow stretches lie deeper, by as much as straight motions between them would stay above
     the surface: see `toolaxis.path.chord_tolerance.rises`."""
-    turns = [Turn(*ring.at(*row)) for row in rows]
+    turns = [BladeTurn(*ring.at(*row)) for row in rows]
     above = []
     for turn, (along, heights) in zip(turns, rows, strict=True):
         _, up, between = ring.at((along[1:] + along[:-1]) / 2, (heights[1:] + heights[:-1]) / 2)
@@ -148,7 +157,7 @@ def _deepened(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[Turn, ...]:
     return tuple(found)
 
 
-def _closer(turn: Turn, layer: Scheduled, swing: Swing) -> tuple[Turn, Array]:
+def _closer(turn: BladeTurn, layer: ScheduledLayer, swing: SwivelAxis) -> tuple[BladeTurn, Array]:
     """A turn and its tool axes, with points between those from one to the next of which the axis swings far."""
     parts = np.ceil(np.abs(np.diff(layer.theta)) / _SWING).clip(1).astype(np.int64)
     owner = np.repeat(np.arange(len(parts)), parts)
@@ -161,17 +170,17 @@ def _closer(turn: Turn, layer: Scheduled, swing: Swing) -> tuple[Turn, Array]:
     lengths = layer.section.lengths if layer.onward else layer.section.lengths[::-1]
     theta = layer.curve.at(np.interp(at, known, lengths))[0]
     normal = np.asarray(unit(_among(turn.normal)))
-    return Turn(_among(turn.contact), normal, _among(turn.centre)), swing.axes(theta)
+    return BladeTurn(_among(turn.contact), normal, _among(turn.centre)), swing.axes(theta)
 
 
-def path_of(schedule: BladeSchedule, tool: Tool, links: Swivelling) -> ToolPath:
+def path_of(schedule: BladeSchedule, tool: Tool, links: MovingLinks) -> ToolPath:
     """The path over all turns, one after the other, with entry and exit.
 
     Parameters
     ----------
     schedule : BladeSchedule
     tool : Tool
-    links : Swivelling
+    links : MovingLinks
     """
     turns, axes = zip(*(_closer(turn, layer, schedule.swing)
                         for turn, layer in zip(schedule.turns, schedule.layers, strict=True)), strict=True)
@@ -180,7 +189,7 @@ def path_of(schedule: BladeSchedule, tool: Tool, links: Swivelling) -> ToolPath:
                                for name in ("contact", "normal", "centre"))
     tip = centre - tool.corner_radius * axis
     kept = np.concatenate([[True], np.linalg.norm(np.diff(tip, axis=0), axis=1) > 1e-9])
-    path = joined([[MovingStroke(contact[kept], tip[kept], normal[kept], axis[kept])]], links)
+    path = join_moves([[MovingCuttingMove(contact[kept], tip[kept], normal[kept], axis[kept])]], links)
     sizes = np.cumsum([len(turn.centre) for turn in turns])[:-1]
     first = int(np.flatnonzero(path.kind == Motion.CUT)[0]) - 1
     starts = first + np.array([int(kept[:size].sum()) for size in sizes], dtype=np.int64)
@@ -192,7 +201,7 @@ class BladeSearch:
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     curve : str
         One of `toolaxis.strategies.blade.schedule.CURVES`.
 
@@ -202,11 +211,11 @@ class BladeSearch:
         When the tool has no ball end, or the face does not go around a blade.
     """
 
-    def __init__(self, job: Task, curve: str = "least") -> None:
+    def __init__(self, job: FaceProblem, curve: str = "least") -> None:
         self.job, self.kind = job, curve
         self.tool, face = job.worth.tool, job.worth.face
         check_ball(self.tool)
-        self.feed = closed_parameter(face)
+        self.feed = find_closed_parameter(face)
         mounting = mounting_of(job.feasibility.limits)
         machine = None if mounting is None else mounting.machine
         place = None if mounting is None else mounting.table_from_part
@@ -218,7 +227,7 @@ class BladeSearch:
         self.ring = Ring(face, self.feed, self.swing.direction, self.tool.corner_radius + worth.allowance)
         self.turns = turns_of(self.ring, worth.scallop, worth.allowance, job.chord, job.direction)
 
-    def planes(self) -> tuple[list[Plane], slice, tuple[float, float]]:
+    def planes(self) -> tuple[list[SThetaLayer], slice, tuple[float, float]]:
         """Channels of the turns with the real surroundings, which of them have room, and what is left at the ends.
 
         Raises
@@ -228,7 +237,7 @@ class BladeSearch:
         """
         job = self.job
         made = [plane_of(Layer(turn.centre), self.swing, self.tool, k + 1) for k, turn in enumerate(self.turns)]
-        room = Room(self.tool, job.feasibility.groups, self.swing)
+        room = BladeSurroundings(self.tool, job.feasibility.groups, self.swing)
         made = with_room(made, [turn.centre for turn in self.turns], room, job.progress)
         good = np.array([one.wide.width > 2 * CLEARANCE for one in made])
         if not good.any():
@@ -244,7 +253,7 @@ class BladeSearch:
             self._closed(made, last + 1 if left[1] > left[0] else first - 1)
         return made[first:last + 1], slice(first, last + 1), left
 
-    def _closed(self, planes: Sequence[Plane], k: int) -> None:
+    def _closed(self, planes: Sequence[SThetaLayer], k: int) -> None:
         """Tell where a channel closes."""
         wide = planes[k].wide
         i = int(np.argmin(wide.high - wide.low))
@@ -257,7 +266,7 @@ class BladeSearch:
                            "root; where a neighbouring blade bars the way no tool goes around that reaches to it: "
                            "plan the sides with strategy 'indexed'")
 
-    def links(self, axes: Array) -> Swivelling:
+    def links(self, axes: Array) -> MovingLinks:
         """How the path is entered and left.
 
         Parameters
@@ -267,10 +276,10 @@ class BladeSearch:
         """
         up = np.asarray(unit(axes.sum(axis=0)))
         over = height_over(self.job.worth.scallop)
-        crossing = MovingCrossing(self.tool, self.job.groups, self.job.worth.allowance, over)
-        return Swivelling(Linking(self.job.top(up), run_in=0.0, approach=over + OVER), up, self.tool, crossing.clear)
+        crossing = MovingLinkClearance(self.tool, self.job.groups, self.job.worth.allowance, over)
+        return MovingLinks(Linking(self.job.top(up), run_in=0.0, approach=over + OVER), up, self.tool, crossing.clear)
 
-    def made(self, planes: list[Plane], some: slice, left: tuple[float, float],
+    def made(self, planes: list[SThetaLayer], some: slice, left: tuple[float, float],
              clearance: float) -> tuple[BladeSchedule, ToolPath]:
         """Tool angles with a clearance, and the path.
 
@@ -281,18 +290,18 @@ class BladeSearch:
         clearance : float
             rad
         """
-        layers = scheduled(planes, self.swing, curve=self.kind, clearance=clearance, progress=self.job.progress)
+        layers = schedule_layers(planes, self.swing, curve=self.kind, clearance=clearance, progress=self.job.progress)
         schedule = BladeSchedule(self.swing, self.turns[some], layers, left)
         ends = np.array([layers[0].axes[0], layers[-1].axes[-1]])
         return schedule, path_of(schedule, self.tool, self.links(ends))
 
 
-def blade(job: Task, curve: str = "least") -> tuple[Orientation, ToolPath | None]:
+def blade(job: FaceProblem, curve: str = "least") -> tuple[Orientation, ToolPath | None]:
     """A path around a blade on which one rotary axis swings without turning back within a layer.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     curve : str
         "least": least peak acceleration; "keys": key points and rounded corners as in the paper.
 
@@ -328,7 +337,7 @@ def blade(job: Task, curve: str = "least") -> tuple[Orientation, ToolPath | None
     return Orientation(None, search.feed, outcome="not_found", reasons=tuple(refused)), None
 
 
-def _refused(job: Task, path: ToolPath) -> str | None:
+def _refused(job: FaceProblem, path: ToolPath) -> str | None:
     """Why a path may not be used."""
     limits = while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():

@@ -11,7 +11,7 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.strategies.blade.schedule import CLEARANCE, Layer, Scheduled, Swing, reschedule
+from toolaxis.strategies.blade.schedule import CLEARANCE, Layer, ScheduledLayer, SwivelAxis, reschedule
 from toolaxis.strategies.blade.section import base_of, section
 from toolaxis.tools.tool import Tool
 
@@ -26,24 +26,24 @@ _NO_STEP = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Rescheduled:
+class RescheduledPath:
     """A path with new tool angles.
 
     Attributes
     ----------
     path : ToolPath
         With the old cutter centres; kinds and breaks stay.
-    layers : tuple of Scheduled
+    layers : tuple of ScheduledLayer
         Its whole turns around the blade.
-    swing : Swing
+    swing : SwivelAxis
     """
 
     path: ToolPath
-    layers: tuple[Scheduled, ...]
-    swing: Swing
+    layers: tuple[ScheduledLayer, ...]
+    swing: SwivelAxis
 
 
-def swing_of_path(path: ToolPath, direction: ArrayLike | None = None) -> Swing:
+def swing_of_path(path: ToolPath, direction: ArrayLike | None = None) -> SwivelAxis:
     """The rotary axis that the tool axes of a path turn about.
 
     Parameters
@@ -75,11 +75,11 @@ def swing_of_path(path: ToolPath, direction: ArrayLike | None = None) -> Swing:
     if direction is None and off > CONE:
         raise InvalidInput(f"tool axes of the CL data leave their common cone by {degrees(off):.1f} deg: one rotary "
                            "axis does not make them; give the direction of the one that shall turn")
-    return Swing(along, mean)
+    return SwivelAxis(along, mean)
 
 
 def reschedule_path(path: ToolPath, tool: Tool, *, curve: str = "least", clearance: float = CLEARANCE,
-                    direction: ArrayLike | None = None, progress: Progress = NO_PROGRESS) -> Rescheduled:
+                    direction: ArrayLike | None = None, progress: Progress = NO_PROGRESS) -> RescheduledPath:
     """Give a path around a blade new tool angles.
 
     Parameters
@@ -98,7 +98,7 @@ def reschedule_path(path: ToolPath, tool: Tool, *, curve: str = "least", clearan
 
     Returns
     -------
-    Rescheduled
+    RescheduledPath
         Entries, exits and links take the axis of the cut beside them; what stands around is not looked at.
 
     Raises
@@ -135,7 +135,7 @@ def reschedule_path(path: ToolPath, tool: Tool, *, curve: str = "least", clearan
     tips = centre - tool.corner_radius * axes
     free = (path.cc == path.cl).all(axis=1)
     contact, normal = np.where(free[:, None], tips, path.cc), np.where(free[:, None], axes, path.normal)
-    return Rescheduled(ToolPath(contact, tips, axes, normal, path.kind, path.breaks), found, swing)
+    return RescheduledPath(ToolPath(contact, tips, axes, normal, path.kind, path.breaks), found, swing)
 
 
 def _cuts(path: ToolPath, flat: Array) -> list[NDArray[np.intp]]:
@@ -193,7 +193,7 @@ def _end_of_turn(flat: Array, begin: int) -> int | None:
     return begin + best if away.min() <= 0.05 * way[best] else None
 
 
-def _along(flat: Array, ends: list[int], layers: list[Scheduled]) -> Array:
+def _along(flat: Array, ends: list[int], layers: list[ScheduledLayer]) -> Array:
     """Tool angles at the points of a cut, whole turns and what is beside them."""
     theta = np.empty(len(flat))
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(flat, axis=0).T))])

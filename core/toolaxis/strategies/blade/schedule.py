@@ -17,7 +17,7 @@ from toolaxis.machine.kinematics import placement
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import as_rows, perpendicular, unit
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.strategies.blade.angle_channel import Channel, channel
+from toolaxis.strategies.blade.angle_channel import AngleChannel, channel
 from toolaxis.strategies.blade.key_points import KeyCurve, KeyRule, best_rule, key_curve
 from toolaxis.strategies.blade.minimum_acceleration import LeastCurve, LeastProgramme, least_peak
 from toolaxis.strategies.blade.section import HOLLOW, Section, section
@@ -45,7 +45,7 @@ class Curve(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Swing:
+class SwivelAxis:
     """How a tool swings about one rotary axis.
 
     Attributes
@@ -97,7 +97,7 @@ class Swing:
         return np.unwrap(np.arctan2(axes @ y, axes @ x))
 
 
-def swing_of(machine: Machine | None, blade: ArrayLike, table_from_part: ArrayLike | None = None) -> Swing:
+def swing_of(machine: Machine | None, blade: ArrayLike, table_from_part: ArrayLike | None = None) -> SwivelAxis:
     """The swing of a machine's only driven rotary axis; of another machine, about the blade's own direction.
 
     Parameters
@@ -111,12 +111,12 @@ def swing_of(machine: Machine | None, blade: ArrayLike, table_from_part: ArrayLi
     own = np.asarray(unit(as_rows(blade, 3, "direction of the blade")[0]))
     rotary = () if machine is None else machine.rotary
     if machine is None or len(rotary) != 1:
-        return Swing(own)
+        return SwivelAxis(own)
     along = np.asarray(rotary[0].direction, dtype=float)
     spindle = np.asarray(machine.spindle, dtype=float)
     here = along @ placement(table_from_part)[:3, :3]
     sense = 1.0 if here @ own >= 0 else -1.0
-    return Swing(sense * here, asin(float(np.clip(sense * (along @ spindle), -1.0, 1.0))))
+    return SwivelAxis(sense * here, asin(float(np.clip(sense * (along @ spindle), -1.0, 1.0))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class Layer:
 
 
 @dataclass(frozen=True, eq=False)
-class Scheduled:
+class ScheduledLayer:
     """A layer with its tool angles.
 
     Attributes
@@ -142,7 +142,7 @@ class Scheduled:
         Anticlockwise, whatever the sense of the path.
     onward : bool
         Whether the path runs anticlockwise.
-    wide, free : Channel
+    wide, free : AngleChannel
         Of tool angles; the second less the clearance.
     curve : Curve
         theta(S), of the section.
@@ -156,8 +156,8 @@ class Scheduled:
 
     section: Section
     onward: bool
-    wide: Channel
-    free: Channel
+    wide: AngleChannel
+    free: AngleChannel
     curve: Curve
     start: float
     end: float
@@ -184,26 +184,26 @@ class Scheduled:
 
 
 @dataclass(frozen=True, eq=False)
-class Plane:
+class SThetaLayer:
     """A layer in its S-theta plane, before its tool angles are known.
 
     Attributes
     ----------
     section : Section
     onward : bool
-    wide : Channel
+    wide : AngleChannel
     """
 
     section: Section
     onward: bool
-    wide: Channel
+    wide: AngleChannel
 
     @property
     def hollow(self) -> bool:
         """Whether the section has a hollow."""
         return bool((np.maximum.accumulate(self.section.ahead) - self.section.ahead).max() > HOLLOW)
 
-    def within(self, low: Array, high: Array) -> "Plane":
+    def within(self, low: Array, high: Array) -> "SThetaLayer":
         """The same with further limits of the angles at its points.
 
         Parameters
@@ -211,16 +211,16 @@ class Plane:
         low, high : (n,) array
             rad, in the section's order.
         """
-        return Plane(self.section, self.onward, self.wide.within(low, high))
+        return SThetaLayer(self.section, self.onward, self.wide.within(low, high))
 
 
-def plane_of(layer: Layer, swing: Swing, tool: Tool | None, number: int = 1) -> Plane:
+def plane_of(layer: Layer, swing: SwivelAxis, tool: Tool | None, number: int = 1) -> SThetaLayer:
     """The section of a layer and its channel.
 
     Parameters
     ----------
     layer : Layer
-    swing : Swing
+    swing : SwivelAxis
     tool : Tool or None
         With a ball end; None for a cylinder.
     number : int
@@ -242,18 +242,18 @@ def plane_of(layer: Layer, swing: Swing, tool: Tool | None, number: int = 1) -> 
     if (np.diff(rows, axis=0) == 0).all(axis=1).any():
         raise InvalidInput(f"layer {number} has the same cutter centre twice running: drop one of them")
     one = section(rows, f"the section of layer {number}")
-    return Plane(one, onward, channel(one, tool))
+    return SThetaLayer(one, onward, channel(one, tool))
 
 
-def reschedule(layers: Sequence[Layer], swing: Swing, tool: Tool | None = None, *, curve: str = "keys",
-               clearance: float = CLEARANCE, progress: Progress = NO_PROGRESS) -> tuple[Scheduled, ...]:
+def reschedule(layers: Sequence[Layer], swing: SwivelAxis, tool: Tool | None = None, *, curve: str = "keys",
+               clearance: float = CLEARANCE, progress: Progress = NO_PROGRESS) -> tuple[ScheduledLayer, ...]:
     """Tool angles for the layers of a path around a blade.
 
     Parameters
     ----------
     layers : sequence of Layer
         In their order, each from the base point around to it; helical, or to and fro.
-    swing : Swing
+    swing : SwivelAxis
     tool : Tool, optional
         With a ball end; taper, shank and holder keep clear of each layer's own section.  A cylinder unless given.
     curve : str
@@ -264,7 +264,7 @@ def reschedule(layers: Sequence[Layer], swing: Swing, tool: Tool | None = None, 
 
     Returns
     -------
-    tuple of Scheduled
+    tuple of ScheduledLayer
 
     Raises
     ------
@@ -281,11 +281,12 @@ def reschedule(layers: Sequence[Layer], swing: Swing, tool: Tool | None = None, 
     and bend are continuous from layer to layer; 3. the work grows with the number of layers.
     """
     planes = [plane_of(layer, swing, tool, k + 1) for k, layer in enumerate(layers)]
-    return scheduled(planes, swing, curve=curve, clearance=clearance, progress=progress)
+    return schedule_layers(planes, swing, curve=curve, clearance=clearance, progress=progress)
 
 
-def scheduled(planes: Sequence[Plane], swing: Swing, *, curve: str = "keys", clearance: float = CLEARANCE,
-              progress: Progress = NO_PROGRESS) -> tuple[Scheduled, ...]:
+def schedule_layers(planes: Sequence[SThetaLayer], swing: SwivelAxis, *, curve: str = "keys",
+                    clearance: float = CLEARANCE,
+                    progress: Progress = NO_PROGRESS) -> tuple[ScheduledLayer, ...]:
     """Tool angles for layers in their S-theta planes.
 
     Parameters
@@ -309,14 +310,15 @@ def scheduled(planes: Sequence[Plane], swing: Swing, *, curve: str = "keys", cle
         made = shape.curve(free[k], *ends[k])
         theta = made.at(one.section.lengths)[0]
         theta = theta if one.onward else theta[::-1]
-        found.append(Scheduled(one.section, one.onward, wide[k], free[k], made, *ends[k], theta, swing.axes(theta)))
+        found.append(ScheduledLayer(one.section, one.onward, wide[k], free[k], made, *ends[k], theta,
+                                    swing.axes(theta)))
     return tuple(found)
 
 
 class _Shapes:
     """What makes the curves of layers that are alike: found out once."""
 
-    def __init__(self, kind: str, free: Sequence[Channel], ends: Sequence[tuple[float, float]]) -> None:
+    def __init__(self, kind: str, free: Sequence[AngleChannel], ends: Sequence[tuple[float, float]]) -> None:
         self.programme: LeastProgramme | None = None
         self.rule: KeyRule | None = None
         if kind == "least":
@@ -332,7 +334,7 @@ class _Shapes:
                 continue
         self.usual, self.rule = min(tried, key=lambda row: row[0]) if tried else (np.inf, None)
 
-    def curve(self, free: Channel, start: float, end: float) -> Curve:
+    def curve(self, free: AngleChannel, start: float, end: float) -> Curve:
         """That of one layer."""
         if self.programme is not None:
             return self.programme.solve(free, start, end)
@@ -346,7 +348,7 @@ class _Shapes:
         return key_curve(free, start, end, best_rule(free, start, end))
 
 
-def _alongside(free: list[Channel], wide: list[Channel]) -> tuple[list[Channel], list[Channel]]:
+def _alongside(free: list[AngleChannel], wide: list[AngleChannel]) -> tuple[list[AngleChannel], list[AngleChannel]]:
     """Channels moved by whole turns, each beside the one before it."""
     moved = [(free[0], wide[0])]
     for one, other in zip(free[1:], wide[1:], strict=True):
@@ -355,11 +357,11 @@ def _alongside(free: list[Channel], wide: list[Channel]) -> tuple[list[Channel],
     return [row[0] for row in moved], [row[1] for row in moved]
 
 
-def _shifted(one: Channel, turn: float) -> Channel:
-    return Channel(one.lengths, one.low + turn, one.high + turn)
+def _shifted(one: AngleChannel, turn: float) -> AngleChannel:
+    return AngleChannel(one.lengths, one.low + turn, one.high + turn)
 
 
-def _ends(planes: Sequence[Plane], free: list[Channel]) -> list[tuple[float, float]]:
+def _ends(planes: Sequence[SThetaLayer], free: list[AngleChannel]) -> list[tuple[float, float]]:
     """Angles at S = 0 and at the end of each layer: base vectors that both layers at a base point allow.
 
     Raises

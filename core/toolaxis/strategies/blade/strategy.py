@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 
-class Blade(Strategy):
+class BladeStrategy(Strategy):
     """Tool angles of least peak acceleration."""
 
     name = "blade"
@@ -45,18 +45,18 @@ class Blade(Strategy):
         if asked.tool is not None:
             check_ball(asked.tool)
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """Layers around the blade."""
         from toolaxis.strategies.blade.plan import blade
 
         return blade(task, curve=self.curve)
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw the tool angles of one layer, and what the machine's axes do along it."""
         from toolaxis.strategies.blade.pictures import draw_blade
 
         draw_blade(plan, op, task, folder, self.curve)
 
 
-STRATEGY = Blade()
+STRATEGY = BladeStrategy()

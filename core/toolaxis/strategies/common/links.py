@@ -18,8 +18,8 @@ from toolaxis.path.links import (
     BESIDE,
     LIFTS,
     ROOFS,
+    CuttingMove,
     Linking,
-    Stroke,
     entry_points,
     exit_points,
     kinds_of,
@@ -35,13 +35,13 @@ _UPWARDS = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class MovingStroke(Stroke):
+class MovingCuttingMove(CuttingMove):
     """One cutting motion without interruption with a moving axis.
 
     Attributes
     ----------
     contact, tip, normal
-        As of `Stroke`.
+        As of `CuttingMove`.
     axis : (n, 3) array
     """
 
@@ -49,7 +49,7 @@ class MovingStroke(Stroke):
 
 
 @dataclass(frozen=True, eq=False)
-class Swivelling:
+class MovingLinks:
     """How strokes with moving axes are joined.
 
     Attributes
@@ -88,14 +88,14 @@ class Swivelling:
         return self.linking.height + max(below, 0.0) + spread
 
 
-def joined(passes: list[list[MovingStroke]], how: Swivelling) -> ToolPath:
+def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolPath:
     """Join strokes with moving axes.
 
     Parameters
     ----------
     passes : list of lists of MovingStroke
         Each pass with its strokes in the order of cutting.
-    how : Swivelling
+    how : MovingLinks
 
     Returns
     -------
@@ -152,7 +152,7 @@ def _above(tips: Array, axes: Array, up: Array, height: float) -> Array:
     return np.asarray(tips + (np.maximum(height - tips @ up, 0.0) / slope)[:, None] * axes)
 
 
-def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: Swivelling) -> Array:
+def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: MovingLinks) -> Array:
     """Tips over which it goes straight to each stroke, and after the last one, (strokes + 1, 3); nan where it lifts."""
     over = np.full((len(low[0]) + 1, 3), np.nan)
     if how.clear is None or len(low[0]) < 2:
@@ -173,7 +173,7 @@ def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: 
 
 
 def _lower(tops: tuple[Array, Array], low: tuple[list[Array], list[Array]], axes: tuple[Array, Array],
-           how: Swivelling) -> None:
+           how: MovingLinks) -> None:
     """Replace the ends of links by lower ones where a crossing there is free."""
     if how.clear is None or len(tops[0]) < 2:
         return

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from toolaxis.collision.index_moves import arms
 from toolaxis.collision.machine_collision import (
-    Meeting,
-    Surroundings,
-    Tree,
+    BodyTree,
+    CollisionPoint,
+    MachineSurroundings,
     approach,
     carrier_of,
     meeting_on,
@@ -26,7 +26,7 @@ from toolaxis.collision.machine_collision import (
 )
 from toolaxis.machine.body_poses import standing
 from toolaxis.machine.setup import Mounting
-from toolaxis.numeric.support_functions import Convex, segments
+from toolaxis.numeric.support_functions import ConvexBodies, segments
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.solid import COMPONENTS, convex_pieces, solid_pieces
@@ -40,7 +40,7 @@ _OFF = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Motions:
+class MachineMotions:
     """Straight motions of all machine axes, and of the tip.
 
     Attributes
@@ -63,20 +63,20 @@ class Motions:
     axes: Array
     arrival: NDArray[np.int64]
 
-    def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "Motions":
+    def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "MachineMotions":
         """Some of them."""
-        return Motions(self.linear[chosen], self.rotary[chosen], self.tips[chosen], self.axes[chosen],
-                       self.arrival[chosen])
+        return MachineMotions(self.linear[chosen], self.rotary[chosen], self.tips[chosen], self.axes[chosen],
+                              self.arrival[chosen])
 
-    def halves(self) -> "Motions":
+    def halves(self) -> "MachineMotions":
         """Each as two."""
         linear, rotary, tips, axes = (np.stack([ends[:, 0], ends.mean(axis=1), ends.mean(axis=1), ends[:, 1]], axis=1)
                                       .reshape(-1, 2, ends.shape[-1])
                                       for ends in (self.linear, self.rotary, self.tips, self.axes))
-        return Motions(linear, rotary, tips, np.asarray(unit(axes)), np.repeat(self.arrival, 2))
+        return MachineMotions(linear, rotary, tips, np.asarray(unit(axes)), np.repeat(self.arrival, 2))
 
 
-def motions(tips: Array, axes: Array, rotary: Array, linear: Array, arrival: NDArray[np.int64]) -> Motions:
+def motions(tips: Array, axes: Array, rotary: Array, linear: Array, arrival: NDArray[np.int64]) -> MachineMotions:
     """The motions between points that a machine follows, so close that the tool axis turns straight between them.
 
     Parameters
@@ -92,32 +92,32 @@ def motions(tips: Array, axes: Array, rotary: Array, linear: Array, arrival: NDA
     """
     start, end = (slice(-1), slice(1, None)) if len(tips) > 1 else (slice(None), slice(None))
     both = [np.stack([rows[start], rows[end]], axis=1) for rows in (linear, rotary, tips, axes)]
-    return Motions(both[0], both[1], both[2], both[3], arrival[end])
+    return MachineMotions(both[0], both[1], both[2], both[3], arrival[end])
 
 
 class _Look(Protocol):
     """Something that is held apart while axes move."""
 
-    def play(self, some: Motions) -> float:
+    def play(self, some: MachineMotions) -> float:
         """How much less distances may be on any of the motions than in the middle of them, mm."""
 
-    def nearest(self, some: Motions, most: float) -> Meeting | None:
+    def nearest(self, some: MachineMotions, most: float) -> CollisionPoint | None:
         """What comes nearer than a distance, mm, with the axes in the middle; its motion counts the motions."""
 
-    def split(self, some: Motions) -> list[Motions]:
+    def split(self, some: MachineMotions) -> list[MachineMotions]:
         """The motions in sets with less play."""
 
 
-def meeting_in_motion(mounting: Mounting, way: Motions, around: Surroundings,
-                      progress: Progress = NO_PROGRESS) -> tuple[Meeting, Array] | None:
+def meeting_in_motion(mounting: Mounting, way: MachineMotions, around: MachineSurroundings,
+                      progress: Progress = NO_PROGRESS) -> tuple[CollisionPoint, Array] | None:
     """Where anything on the spindle's side comes too near to anything on the table's while all axes move.
 
     Parameters
     ----------
     mounting : Mounting
         With bodies, a place of the part and a tool length.
-    way : Motions
-    around : Surroundings
+    way : MachineMotions
+    around : MachineSurroundings
         The tool is not held against the part: passes have been.
     progress : Progress
 
@@ -158,20 +158,20 @@ def meeting_in_motion(mounting: Mounting, way: Motions, around: Surroundings,
 class _Turning:
     """Everything in the machine but the tool over what goes along with the part, by the rotary axes."""
 
-    def __init__(self, mounting: Mounting, around: Surroundings) -> None:
+    def __init__(self, mounting: Mounting, around: MachineSurroundings) -> None:
         self.mounting, self.around, self.reach = mounting, around, arms(mounting, around)
 
-    def play(self, some: Motions) -> float:
+    def play(self, some: MachineMotions) -> float:
         """By the reach of what each axis turns."""
         return float(np.ptp(some.rotary, axis=(0, 1)) @ self.reach) / 2
 
-    def nearest(self, some: Motions, most: float) -> Meeting | None:
+    def nearest(self, some: MachineMotions, most: float) -> CollisionPoint | None:
         """With the rotary axes in the middle."""
         middle = (some.rotary.min(axis=(0, 1)) + some.rotary.max(axis=(0, 1))) / 2
         return meeting_on(self.mounting, middle, _ways(some.linear), self.around, with_tool=False, most=most,
                           over_table=False)
 
-    def split(self, some: Motions) -> list[Motions]:
+    def split(self, some: MachineMotions) -> list[MachineMotions]:
         """By rotary angles."""
         return _split(some, lambda one: one.rotary * self.reach)
 
@@ -179,26 +179,26 @@ class _Turning:
 class _Leaning:
     """The tool over bodies that go along with the part, in the part's frame."""
 
-    def __init__(self, mounting: Mounting, around: Surroundings) -> None:
+    def __init__(self, mounting: Mounting, around: MachineSurroundings) -> None:
         machine = mounting.machine
         stand = standing(machine, np.zeros(len(machine.rotary)), mounting.table_from_part)
-        self.still: list[tuple[str, Tree]] = [(one.body.name, single(one.shape)) for one in stand
-                                              if one.body.carried == carrier_of(machine)]
+        self.still: list[tuple[str, BodyTree]] = [(one.body.name, single(one.shape)) for one in stand
+                                                  if one.body.carried == carrier_of(machine)]
         rows = solid_pieces(around.tool.profile, around.tool.outlines)
         self.names, self.pieces = [COMPONENTS[int(row[7])] for row in rows], convex_pieces(rows)
         self.arm = float(self.pieces.reach.max()) if self.still else 0.0
 
     @staticmethod
-    def _middle(some: Motions) -> Array:
+    def _middle(some: MachineMotions) -> Array:
         way = (some.axes.min(axis=(0, 1)) + some.axes.max(axis=(0, 1))) / 2
         return np.asarray(unit(way)) if np.linalg.norm(way) > 0 else some.axes[0, 0]
 
-    def play(self, some: Motions) -> float:
+    def play(self, some: MachineMotions) -> float:
         """By how far the tool reaches from its tip."""
         angle = float(angle_between(some.axes.reshape(-1, 3), self._middle(some)).max())
         return 2 * self.arm * float(np.sin(min(angle + _OFF, np.pi) / 2))
 
-    def nearest(self, some: Motions, most: float) -> Meeting | None:
+    def nearest(self, some: MachineMotions, most: float) -> CollisionPoint | None:
         """With the tool along the middle axis."""
         axis, frame, best = self._middle(some), np.eye(4), None
         frame[:3, :3] = np.stack([*perpendicular(axis), axis], axis=1)
@@ -207,15 +207,15 @@ class _Leaning:
             for other, tree in self.still:
                 distance, motion, _ = approach(pieces.rows(np.array([k])), trail, tree, least)
                 if distance < least:
-                    best, least = Meeting(name, other, distance, motion), distance
+                    best, least = CollisionPoint(name, other, distance, motion), distance
         return best
 
-    def split(self, some: Motions) -> list[Motions]:
+    def split(self, some: MachineMotions) -> list[MachineMotions]:
         """By tool axes."""
         return _split(some, lambda one: one.axes)
 
 
-def _split(some: Motions, values: Callable[[Motions], Array]) -> list[Motions]:
+def _split(some: MachineMotions, values: Callable[[MachineMotions], Array]) -> list[MachineMotions]:
     """Motions in two sets, by the value along which their middles differ most; as halves where they change more."""
     ends = values(some)
     middle = ends.mean(axis=1)
@@ -227,7 +227,7 @@ def _split(some: Motions, values: Callable[[Motions], Array]) -> list[Motions]:
     return [some.rows(~near), some.rows(near)]
 
 
-def _ways(ends: Array) -> Convex:
+def _ways(ends: Array) -> ConvexBodies:
     """Straight ways between ends (n, 2, 3)."""
     spread = np.zeros((len(ends), 3, 3))
     spread[:, 0] = (ends[:, 1] - ends[:, 0]) / 2

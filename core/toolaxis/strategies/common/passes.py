@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.collision.machine_collision import Meeting, Surroundings, words
+from toolaxis.collision.machine_collision import CollisionPoint, MachineSurroundings, words
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN
-from toolaxis.feasibility.violations import BACK, LIMITS, Witness
-from toolaxis.feed.continuous_ik import Following, following
+from toolaxis.feasibility.violations import BACK, LIMITS, Violation
+from toolaxis.feed.continuous_ik import AxisTrajectory, following
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
@@ -23,13 +23,13 @@ from toolaxis.path.parametrization import tip_points
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import mounting_of, while_moving
-from toolaxis.search.path_check import Proof
-from toolaxis.strategies.common.links import MovingStroke, Swivelling, joined
+from toolaxis.search.path_check import PathCheck
+from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.strategies.common.machine_collision import meeting_in_motion, motions
-from toolaxis.strategies.common.path_check import MovingCrossing, prove_moving
+from toolaxis.strategies.common.path_check import MovingLinkClearance, prove_moving
 
 Array = NDArray[np.float64]
 
@@ -38,29 +38,30 @@ CHECKED = ("the cutter on the machined skin is checked at points of the path, 0.
 
 
 @dataclass(frozen=True, eq=False)
-class Laid:
+class MovingAxisResult:
     """Passes that were laid, or why they may not be used.
 
     Attributes
     ----------
     placed : Layout or None
     path : ToolPath or None
-    witness : Witness or None
+    witness : Violation or None
         What speaks against them.
-    proof : Proof or None
+    proof : PathCheck or None
     """
 
     placed: Layout | None = None
     path: ToolPath | None = None
-    witness: Witness | None = None
-    proof: Proof | None = None
+    witness: Violation | None = None
+    proof: PathCheck | None = None
 
-    def orientation(self, job: Task, cut: LeadCut, words: tuple[str, ...], tried: int, lead: float) -> Orientation:
+    def orientation(self, job: FaceProblem, cut: LeadCut, words: tuple[str, ...], tried: int,
+                    lead: float) -> Orientation:
         """What passes without a witness come to.
 
         Parameters
         ----------
-        job : Task
+        job : FaceProblem
         cut : LeadCut
         words : tuple of str
             The reasons.
@@ -76,13 +77,13 @@ class Laid:
                            words, evaluations=tried, lead=lead)
 
 
-def laid(job: Task, chart: LeadChart, cut: LeadCut,
-         finish: Callable[[ToolPath], ToolPath] = lambda path: path) -> Laid:
+def plan_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut,
+                finish: Callable[[ToolPath], ToolPath] = lambda path: path) -> MovingAxisResult:
     """Passes of a cut with a moving axis, made and judged.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     chart : LeadChart
     cut : LeadCut
     finish : callable
@@ -94,26 +95,27 @@ def laid(job: Task, chart: LeadChart, cut: LeadCut,
         When the user asked to stop.
     """
     try:
-        placed, path = made(job, chart, cut)
+        placed, path = make_passes(job, chart, cut)
     except InvalidInput as reason:  # a place between the screened ones leaves no strip
-        return Laid(witness=Witness(BACK, 0.0, words=str(reason)))
+        return MovingAxisResult(witness=Violation(BACK, 0.0, words=str(reason)))
     path, limits = finish(path), while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
-        return Laid(witness=Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes, where they run "
+        return MovingAxisResult(witness=Violation(LIMITS, ROUNDING,
+                                                  words="the axis leaves its limits on the passes, where they run "
                                                             "out"))
     witness = beyond(job, path)
     if witness is not None:
-        return Laid(witness=witness)
+        return MovingAxisResult(witness=witness)
     proof = prove_moving(path, cut.tool, job.groups, job.worth.allowance, progress=job.progress)
-    return Laid(placed, path, proof.witness, proof)
+    return MovingAxisResult(placed, path, proof.witness, proof)
 
 
-def made(job: Task, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
+def make_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
     """Passes with their links.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     chart : LeadChart
     cut : LeadCut
 
@@ -128,24 +130,24 @@ def made(job: Task, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
     contact, tip, normal = tip_points(chart, cut, along, steps)
     deeper = rises(chart, cut, steps, piece, along)[:, None] * normal
     rows = contact, tip - deeper, normal, cut.axes(chart.face, chart.uv(along, steps))
-    strokes = [MovingStroke(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
-    return placed, joined(_ordered(strokes, placed, job.direction), _links(job, cut))
+    strokes = [MovingCuttingMove(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
+    return placed, join_moves(_ordered(strokes, placed, job.direction), _links(job, cut))
 
 
-def _links(job: Task, cut: LeadCut) -> Swivelling:
+def _links(job: FaceProblem, cut: LeadCut) -> MovingLinks:
     face = job.worth.face
     walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
                 for group in job.groups)
     over = height_over(job.worth.scallop)
-    crossing = MovingCrossing(cut.tool, job.groups, cut.allowance, over)
+    crossing = MovingLinkClearance(cut.tool, job.groups, cut.allowance, over)
     linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER)
-    return Swivelling(linking, cut.axis, cut.tool, crossing.clear)
+    return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
 
 
-def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> list[list[MovingStroke]]:
+def _ordered(strokes: list[MovingCuttingMove], placed: Layout, direction: str) -> list[list[MovingCuttingMove]]:
     """Strokes of each pass in the order and sense in which they are cut."""
     climb = climbing(placed.chart, placed.cut)
-    passes: list[list[MovingStroke]] = []
+    passes: list[list[MovingCuttingMove]] = []
     for i in np.unique(placed.owner):
         members = [strokes[j] for j in np.flatnonzero(placed.owner == i)]
         sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
@@ -153,17 +155,17 @@ def _ordered(strokes: list[MovingStroke], placed: Layout, direction: str) -> lis
     return passes
 
 
-def _back(one: MovingStroke) -> MovingStroke:
-    return MovingStroke(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
+def _back(one: MovingCuttingMove) -> MovingCuttingMove:
+    return MovingCuttingMove(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
 
 
-def beyond(job: Task, path: ToolPath) -> Witness | None:
+def beyond(job: FaceProblem, path: ToolPath) -> Violation | None:
     """Why the task's machine cannot follow a path with one solution, without jumps, inside its travel, and with its
     bodies clear of each other, of part and tool.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     path : ToolPath
 
     Raises
@@ -178,25 +180,25 @@ def beyond(job: Task, path: ToolPath) -> Witness | None:
         along = following(mounting.machine, path, mounting.table_from_part, float(mounting.tool_length or 0.0),
                           travel=mounting.judges_travel)
     except InvalidInput as reason:
-        return Witness(LIMITS, ROUNDING, words=str(reason))
+        return Violation(LIMITS, ROUNDING, words=str(reason))
     if not mounting.judges_bodies:
         return None
-    around = Surroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
-                          job.feasibility.tolerance.holder_clearance)
-    found = met(mounting, along, around, job.progress)
-    return None if found is None else Witness(LIMITS, ROUNDING, distance=found[0].distance,
-                                              words=words(mounting, found[1], found[0], around.required))
+    around = MachineSurroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
+                                 job.feasibility.tolerance.holder_clearance)
+    found = machine_violation(mounting, along, around, job.progress)
+    return None if found is None else Violation(LIMITS, ROUNDING, distance=found[0].distance,
+                                                words=words(mounting, found[1], found[0], around.required))
 
 
-def met(mounting: Mounting, along: Following, around: Surroundings,
-        progress: Progress = NO_PROGRESS) -> tuple[Meeting, Array] | None:
+def machine_violation(mounting: Mounting, along: AxisTrajectory, around: MachineSurroundings,
+                      progress: Progress = NO_PROGRESS) -> tuple[CollisionPoint, Array] | None:
     """Where anything of a machine comes too near to anything else while it follows a path; see `meeting_in_motion`.
 
     Parameters
     ----------
     mounting : Mounting
-    along : Following
-    around : Surroundings
+    along : AxisTrajectory
+    around : MachineSurroundings
     progress : Progress
     """
     way = motions(along.tips, along.axes, along.rotary, along.linear, along.arrival)

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.clearance.queries import judged, motions
-from toolaxis.feasibility.surroundings import OTHER, SKIN, Group
-from toolaxis.feasibility.violations import Witness
+from toolaxis.contact.clearance.queries import keeps_limits, motions
+from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
+from toolaxis.feasibility.violations import Violation
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.link_heights import OVER
-from toolaxis.search.path_check import COMPONENTS, Proof, greatest_depth, worst_motion
+from toolaxis.search.path_check import COMPONENTS, PathCheck, greatest_depth, worst_motion
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ _TURNS = (0.01, 0.0025, 0.0005)
 NEAR_MM, NEAR = 0.5, radians(0.5)
 
 
-class Spans(NamedTuple):
+class PathMotions(NamedTuple):
     """Motions on which tips run straight, (n, 3) mm, and axes turn from one to the other, (n, 3)."""
 
     start: Array
@@ -41,11 +41,11 @@ class Spans(NamedTuple):
     before: Array
     after: Array
 
-    def rows(self, which: NDArray[np.intp]) -> "Spans":
+    def rows(self, which: NDArray[np.intp]) -> "PathMotions":
         """Some of them."""
-        return Spans(*(each[which] for each in self))
+        return PathMotions(*(each[which] for each in self))
 
-    def split(self, parts: NDArray[np.int64]) -> tuple["Spans", NDArray[np.intp]]:
+    def split(self, parts: NDArray[np.int64]) -> tuple["PathMotions", NDArray[np.intp]]:
         """Each cut into so many parts, with the number of the one that each part belongs to; axes are interpolated as
         cutter location data are, linearly."""
         owner = np.repeat(np.arange(len(parts)), parts)
@@ -53,15 +53,15 @@ class Spans(NamedTuple):
         low, high = ((place + k)[:, None] / parts[owner][:, None] for k in (0, 1))
         one = self.rows(owner)
         tip, turn = one.end - one.start, one.after - one.before
-        return Spans(one.start + low * tip, one.start + high * tip, _unit(one.before + low * turn),
-                     _unit(one.before + high * turn)), owner
+        return PathMotions(one.start + low * tip, one.start + high * tip, _unit(one.before + low * turn),
+                           _unit(one.before + high * turn)), owner
 
 
 def _unit(rows: Array) -> Array:
     return np.asarray(unit(rows)) if len(rows) else rows
 
 
-def spans_of(path: ToolPath) -> Spans:
+def spans_of(path: ToolPath) -> PathMotions:
     """The motions of a path.
 
     Parameters
@@ -69,17 +69,17 @@ def spans_of(path: ToolPath) -> Spans:
     path : ToolPath
     """
     axes = _unit(path.axis)
-    return Spans(path.cl[:-1], path.cl[1:], axes[:-1], axes[1:])
+    return PathMotions(path.cl[:-1], path.cl[1:], axes[:-1], axes[1:])
 
 
-def kept(tool: Tool, group: Group, spans: Spans, required: Array) -> Bools:
+def keeps_distance(tool: Tool, group: CheckSurfaces, spans: PathMotions, required: Array) -> Bools:
     """Whether every component is proven to keep its distance from a group along motions, (n,).
 
     Parameters
     ----------
     tool : Tool
-    group : Group
-    spans : Spans
+    group : CheckSurfaces
+    spans : PathMotions
     required : (3,) array
         Least signed distances of cutter, shank and holder, mm; -inf where one does not count.
     """
@@ -94,7 +94,7 @@ def kept(tool: Tool, group: Group, spans: Spans, required: Array) -> Bools:
         off = np.maximum(angle_between(parts.before, middle), angle_between(parts.after, middle))
         for some in (np.flatnonzero(turn[owner] == 0), np.flatnonzero(turn[owner] > 0)):
             table = np.tile(required + off[some].max(initial=0.0) * reach, (len(group.faces), 1))
-            free[owner[some[judged(group.cells, tool, moves[some], table).blocked >= 0]]] = False
+            free[owner[some[keeps_limits(group.cells, tool, moves[some], table).blocked >= 0]]] = False
         left = left[~free]
         if not len(left) or not (turn[~free] > 0).any():
             break
@@ -113,13 +113,13 @@ def _reaches(tool: Tool) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class MovingCrossing:
+class MovingLinkClearance:
     """The surroundings of links between strokes with moving axes.
 
     Attributes
     ----------
     tool : Tool
-    groups : tuple of Group
+    groups : tuple of CheckSurfaces
         With the distances to keep.
     allowance : float
         Stock left on the skin, mm.
@@ -128,7 +128,7 @@ class MovingCrossing:
     """
 
     tool: Tool
-    groups: tuple[Group, ...]
+    groups: tuple[CheckSurfaces, ...]
     allowance: float = 0.0
     over: float = OVER
 
@@ -150,27 +150,27 @@ class MovingCrossing:
             if across and group.role != OTHER:
                 required[0] = self.allowance + self.over
             some = np.flatnonzero(free)
-            free[some] = kept(self.tool, group, Spans(start, end, before, after).rows(some), required)
+            free[some] = keeps_distance(self.tool, group, PathMotions(start, end, before, after).rows(some), required)
         return free
 
 
-def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowance: float = 0.0, *,
-                 progress: Progress = NO_PROGRESS) -> Proof:
+def prove_moving(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *,
+                 progress: Progress = NO_PROGRESS) -> PathCheck:
     """Judge a path with a moving axis: every motion by bounds, the cutter on the skin at points.
 
     Parameters
     ----------
     path : ToolPath
     tool : Tool
-    groups : tuple of Group
-        From `toolaxis.feasibility.surroundings.grouped`, with the distances to keep.
+    groups : tuple of CheckSurfaces
+        From `toolaxis.feasibility.surroundings.group_surroundings`, with the distances to keep.
     allowance : float
         Stock left on the skin, mm.
     progress : Progress
 
     Returns
     -------
-    Proof
+    PathCheck
         Its gouge is the greatest depth at the points looked at, as an upper bound there; clearances are those that were
         asked for.
 
@@ -187,9 +187,9 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowanc
         off = np.flatnonzero(~cutting | (group.role == OTHER))
         without = np.concatenate([[-inf], group.required[1:]])
         for rows, required in ((on, without), (off, group.required)):
-            free = kept(tool, group, spans.rows(rows), required)
+            free = keeps_distance(tool, group, spans.rows(rows), required)
             if not _alone(tool, group, spans.rows(rows[~free]), required):
-                return Proof(_witness(tool, group, spans.rows(rows[~free]), required))
+                return PathCheck(_witness(tool, group, spans.rows(rows[~free]), required))
         if len(on):
             depth = _touching(tool, group, spans.rows(on), allowance)
             if depth.witness is not None:
@@ -199,21 +199,21 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[Group, ...], allowanc
     least = {name: min(float(group.required[COMPONENTS.index(name)]) for group in groups
                        if name != "cutter" or group.role == OTHER) for name in known
              if name != "cutter" or any(group.role == OTHER for group in groups)}
-    return Proof(None, gouge, least)
+    return PathCheck(None, gouge, least)
 
 
-def _alone(tool: Tool, group: Group, spans: Spans, required: Array) -> bool:
+def _alone(tool: Tool, group: CheckSurfaces, spans: PathMotions, required: Array) -> bool:
     """Whether motions that are not proven together are each proven alone: bounds are those of the widest turn among
     them, and links were laid by their own."""
-    return all(kept(tool, group, spans.rows(np.array([k])), required)[0] for k in range(len(spans.start)))
+    return all(keeps_distance(tool, group, spans.rows(np.array([k])), required)[0] for k in range(len(spans.start)))
 
 
-def standing(spans: Spans) -> Array:
+def standing(spans: PathMotions) -> Array:
     """Positions on motions, ends included, no farther apart than `NEAR_MM` and `NEAR`, (n, 3, 3) as `motions` gives.
 
     Parameters
     ----------
-    spans : Spans
+    spans : PathMotions
     """
     way = np.linalg.norm(spans.end - spans.start, axis=1) / NEAR_MM
     turn = angle_between(spans.before, spans.after) / NEAR
@@ -222,21 +222,21 @@ def standing(spans: Spans) -> Array:
     return motions(np.concatenate([parts.start, parts.end[last]]), np.concatenate([parts.before, parts.after[last]]))
 
 
-def _touching(tool: Tool, group: Group, spans: Spans, allowance: float) -> Proof:
+def _touching(tool: Tool, group: CheckSurfaces, spans: PathMotions, allowance: float) -> PathCheck:
     """The cutter where it stands on the skin, or at faces that meet it harmlessly."""
     moves = standing(spans)
     required = np.array([group.required[0], -inf, -inf])
     table = np.tile(required, (len(group.faces), 1))
-    bad = np.flatnonzero(judged(group.cells, tool, moves, table).blocked >= 0)
+    bad = np.flatnonzero(keeps_limits(group.cells, tool, moves, table).blocked >= 0)
     if len(bad):
-        return Proof(_worst(tool, group, moves[bad], required))
-    return Proof(None, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
+        return PathCheck(_worst(tool, group, moves[bad], required))
+    return PathCheck(None, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
 
 
-def _witness(tool: Tool, group: Group, spans: Spans, required: Array) -> Witness:
+def _witness(tool: Tool, group: CheckSurfaces, spans: PathMotions, required: Array) -> Violation:
     """The worst position on motions that were not proven to keep their distances."""
     return _worst(tool, group, standing(spans), required)
 
 
-def _worst(tool: Tool, group: Group, moves: Array, required: Array) -> Witness:
+def _worst(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> Violation:
     return worst_motion(tool, group, moves, required, np.maximum(required, 0.0))

@@ -12,18 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.contact.clearance.queries import judged, motions
+from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
 from toolaxis.feasibility.check_points import around
-from toolaxis.feasibility.violations import Witness
+from toolaxis.feasibility.violations import Violation
 from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.search.messages import sentence
-from toolaxis.strategies.common.passes import CHECKED, laid
+from toolaxis.strategies.common.passes import CHECKED, plan_passes
 
 Array = NDArray[np.float64]
 
@@ -50,15 +50,15 @@ class _Lead:
     length: float
 
 
-class Sturz:
+class ConstantLeadSearch:
     """The search for the lead of one face.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     """
 
-    def __init__(self, job: Task) -> None:
+    def __init__(self, job: FaceProblem) -> None:
         self.job = job
         self.face, self.tool = job.worth.face, job.worth.tool
         border = around(self.face, _BORDER)
@@ -97,7 +97,7 @@ class Sturz:
         if limits is not None and not limits.allowed(axes).all():
             return False
         moves = motions(place(self.face, self.tool, self.uv, axes, self.job.worth.allowance), axes)
-        return all((judged(group.cells, self.tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
+        return all((keeps_limits(group.cells, self.tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
                     < 0).all() for group in self.job.feasibility.groups)
 
     def candidates(self) -> list[_Lead]:
@@ -154,12 +154,12 @@ class Sturz:
         return _Lead(lead, feed, float(counts.sum()), float((counts * lengths).sum()))
 
 
-def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
+def sturz(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
     """The constant lead that machines a face in the shortest passes, or the fewest, and those passes.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
 
     Returns
     -------
@@ -180,7 +180,7 @@ def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
     **Properties**: 1. links, entries and exits are proven as for fixed axes, everything that keeps a distance by bounds
     along the motion; 2. the cutter on the skin is checked at points.
     """
-    search = Sturz(job)
+    search = ConstantLeadSearch(job)
     refused: list[str] = []
     blocked: dict[tuple[str, bool], float] = {}
     for one in search.candidates()[:_TRIED]:
@@ -197,7 +197,7 @@ def sturz(job: Task) -> tuple[Orientation, ToolPath | None]:
     return Orientation(None, outcome="not_found", reasons=tuple(words), evaluations=search.tried), None
 
 
-def _closer(search: Sturz, best: tuple[Orientation, ToolPath | None],
+def _closer(search: ConstantLeadSearch, best: tuple[Orientation, ToolPath | None],
             blocked: float | None) -> tuple[Orientation, ToolPath | None]:
     """What leads between an accepted and a refused one come to, where they are better."""
     by_passes = search.job.worth.objective == "passes"
@@ -213,10 +213,10 @@ def _closer(search: Sturz, best: tuple[Orientation, ToolPath | None],
     return best
 
 
-def _tried(search: Sturz, cut: LeadCut) -> tuple[Orientation, ToolPath | None, Witness | None]:
+def _tried(search: ConstantLeadSearch, cut: LeadCut) -> tuple[Orientation, ToolPath | None, Violation | None]:
     """What one lead comes to: its passes made and judged."""
     chart = LeadChart(search.face, cut.feed)
-    found = laid(search.job, chart, cut)
+    found = plan_passes(search.job, chart, cut)
     if found.witness is not None:
         return Orientation(None, cut.feed), found.path, found.witness
     words = (f"lead {degrees(cut.lead):.2f} deg towards {cut.feed}", CHECKED)

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
 
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 
 class ConstantLead(Strategy):
@@ -25,7 +25,7 @@ class ConstantLead(Strategy):
     at_points = True
     compared = True
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """The best constant lead and its passes."""
         from toolaxis.strategies.constant_lead.search import sturz

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import judged, motions
+from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.contact.placement import place
 from toolaxis.contact.strip.second_order import screen_many
 from toolaxis.machine.kinematics import placement
@@ -15,10 +15,10 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure
 from toolaxis.path.width_correction import lean_ratios
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.strategies.four_plus_one.angle_grid import NODES, Nodes
-from toolaxis.strategies.four_plus_one.free_angle import Gates, bands, narrowest, smoothest, widest
+from toolaxis.strategies.four_plus_one.free_angle import SingularSides, bands, narrowest, smoothest, widest
 from toolaxis.strategies.four_plus_one.links import free_angles
 from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedChart, ClampedCut
 
@@ -41,7 +41,7 @@ _CORNERS = ((0, 0), (1, 0), (0, 1), (1, 1))
 _COUNTED = 5e-3
 
 
-class _Moves(NamedTuple):
+class _FreeingTurns(NamedTuple):
     """Places (m,) at which something is in the way, and the turns of the free axis that help there, rad."""
 
     along: Array
@@ -50,7 +50,7 @@ class _Moves(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class ClampCandidate:
     """A clamped angle, the feed, and the angles of the free axis chosen at the nodes.
 
     Attributes
@@ -64,7 +64,7 @@ class Candidate:
     widths : (j, i, k) array
         Strip widths in the step parameter; 0 where an angle must not be used.
     chosen : (i, k) array of int
-    gates : Gates
+    gates : SingularSides
         That the free axis does not pass.
     known : (j, i, k) array of bool
         What was held against everything around.
@@ -77,7 +77,7 @@ class Candidate:
     angles: Array
     widths: Array
     chosen: Index
-    gates: Gates
+    gates: SingularSides
     known: Bools
 
     def value(self, objective: str) -> float:
@@ -91,17 +91,17 @@ class Candidate:
         return self.passes if objective == "passes" else self.length
 
 
-class Clamping:
+class ClampSearch:
     """One face, and all that decides about clamped angles for it.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     mounting : Mounting
         With two rotary axes.
     """
 
-    def __init__(self, job: Task, mounting: Mounting) -> None:
+    def __init__(self, job: FaceProblem, mounting: Mounting) -> None:
         self.job, self.mounting = job, mounting
         self.nodes = {feed: Nodes(ClampedChart(job.worth.face, feed), job.worth.tool.radius) for feed in ("u", "v")}
         worth = job.worth
@@ -133,7 +133,7 @@ class Clamping:
         low, high = max(axis.low, -2 * np.pi), min(axis.high, 2 * np.pi)
         return np.linspace(low, high, 1 + max(int(np.ceil((high - low) / FREE)), 1))
 
-    def reckoned(self, clamp: Clamp, feed: str) -> Candidate | None:
+    def reckoned(self, clamp: Clamp, feed: str) -> ClampCandidate | None:
         """The widest strips by screening alone; None where some place has none.
 
         Parameters
@@ -146,17 +146,18 @@ class Clamping:
         known = np.zeros(widths.shape, dtype=bool)
         return self._candidate(clamp, feed, angles, widths, widest(widths, angles, gates), gates, known)
 
-    def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array, chosen: Index | None, gates: Gates,
-                   known: Bools) -> Candidate | None:
+    def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array, chosen: Index | None,
+                   gates: SingularSides,
+                   known: Bools) -> ClampCandidate | None:
         if chosen is None:
             return None
         nodes, least = self.nodes[feed], narrowest(widths, chosen)
         weight = np.full(NODES[1], nodes.step[1] - nodes.step[0])
         weight[[0, -1]] /= 2
-        return Candidate(clamp, feed, float((weight / least).sum()), float((weight * nodes.lengths / least).sum()),
-                         angles, widths, chosen, gates, known)
+        return ClampCandidate(clamp, feed, float((weight / least).sum()), float((weight * nodes.lengths / least).sum()),
+                              angles, widths, chosen, gates, known)
 
-    def _gates(self, clamp: Clamp, feed: str) -> Gates:
+    def _gates(self, clamp: Clamp, feed: str) -> SingularSides:
         """Where the axis passes the normal, and where it must not: too near to it, or with something in the way."""
         nodes = self.nodes[feed]
         normals = self.job.worth.face.normal(nodes.uv)
@@ -166,7 +167,7 @@ class Clamping:
         shut = np.asarray(angle_between(axes, normals)) < self._upright
         some = np.flatnonzero(nodes.counts.ravel() & ~shut)
         shut[some] = ~self._free(nodes.uv[some], axes[some])
-        return Gates(at, shut.reshape(NODES) & nodes.counts)
+        return SingularSides(at, shut.reshape(NODES) & nodes.counts)
 
     @property
     def _upright(self) -> float:
@@ -184,7 +185,7 @@ class Clamping:
         self.looked += len(axes)
         return np.asarray(width.reshape(len(angles), *NODES))
 
-    def standing(self, clamp: Clamp, feed: str) -> Candidate | None:
+    def standing(self, clamp: Clamp, feed: str) -> ClampCandidate | None:
         """The widest strips with angles at which the tool keeps all distances at the nodes; None where there are none.
 
         Parameters
@@ -201,8 +202,8 @@ class Clamping:
         known[:, ~self.nodes[feed].counts] = True
         return self._settled(clamp, feed, angles, widths, self._gates(clamp, feed), known)
 
-    def _settled(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: Gates,
-                 known: Bools) -> Candidate | None:
+    def _settled(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: SingularSides,
+                 known: Bools) -> ClampCandidate | None:
         """Angles chosen anew until nothing is in the way of any; widths are set to 0 where something is."""
         axes, known = clamp.axes(angles), known.copy()
         for _ in range(_ROUNDS):
@@ -222,13 +223,13 @@ class Clamping:
             return None
         return self._candidate(clamp, feed, angles, widths, chosen, gates, known)
 
-    def barred(self, one: Candidate, bad: Index) -> Candidate | None:
+    def barred(self, one: ClampCandidate, bad: Index) -> ClampCandidate | None:
         """The widest strips without the angles at which something is in the way between the nodes; None where there
         are none.
 
         Parameters
         ----------
-        one : Candidate
+        one : ClampCandidate
         bad : (m,) array of int
             Places among `Nodes.fine` where that was found, with the angles of its passes.
         """
@@ -257,17 +258,17 @@ class Clamping:
         for group in self.job.feasibility.groups:
             some = np.flatnonzero(free)
             table = np.tile(group.required, (len(group.faces), 1))
-            free[some] = judged(group.cells, worth.tool, moves[some], table).blocked < 0
+            free[some] = keeps_limits(group.cells, worth.tool, moves[some], table).blocked < 0
         return free
 
-    def cut(self, one: Candidate, share: float, inset: int = 0) -> tuple[ClampedCut | None, Index]:
+    def cut(self, one: ClampCandidate, share: float, inset: int = 0) -> tuple[ClampedCut | None, Index]:
         """What cuts with the smoothest angles at which no strip is narrower than a share of the narrowest of its pass.
 
         Where the tool comes too near to something between the nodes, the angles of the nodes around are moved away.
 
         Parameters
         ----------
-        one : Candidate
+        one : ClampCandidate
         share : float
         inset : int
             By how many angles to stay away from those that must not be used.
@@ -301,7 +302,7 @@ class Clamping:
             low, high = np.where(down > 0, np.minimum(low, high), low), np.where(up > 0, np.maximum(low, high), high)
         return None, np.zeros(0, dtype=np.intp) if first is None else first
 
-    def _with(self, one: Candidate, values: Array) -> ClampedCut:
+    def _with(self, one: ClampCandidate, values: Array) -> ClampedCut:
         """What cuts with angles at the nodes."""
         nodes, worth = self.nodes[one.feed], self.job.worth
         axes = one.clamp.axes(values[nodes.counts])
@@ -314,7 +315,7 @@ class Clamping:
         nodes = self.nodes[cut.feed]
         return np.flatnonzero(~self._free(nodes.chart.uv(*nodes.fine), cut.clamp.axes(cut.field.at(*nodes.fine))))
 
-    def _away(self, cut: ClampedCut, bad: Index) -> _Moves | None:
+    def _away(self, cut: ClampedCut, bad: Index) -> _FreeingTurns | None:
         """The least turns that help at places where something is in the way; None where none does."""
         nodes, clamp = self.nodes[cut.feed], cut.clamp
         assert clamp is not None and cut.field is not None
@@ -331,10 +332,10 @@ class Clamping:
                 free = self._free(uv[left], clamp.axes(here[left] + sense * size))
                 turn[left[free & (turn[left] == 0)]] = sense * size
             left = left[turn[left] == 0]
-        return None if len(left) else _Moves(along, step, turn)
+        return None if len(left) else _FreeingTurns(along, step, turn)
 
     @staticmethod
-    def _pushed(nodes: Nodes, moves: _Moves, sense: float) -> Array:
+    def _pushed(nodes: Nodes, moves: _FreeingTurns, sense: float) -> Array:
         """By how much angles at nodes must move in a sense, (i, k) rad."""
         out = np.zeros(NODES)
         some = np.flatnonzero(moves.turn * sense > 0)

@@ -33,7 +33,7 @@ _SOLVED = 0.004
 _MOST = 0.5
 
 
-class Gates(NamedTuple):
+class SingularSides(NamedTuple):
     """Where a turning axis passes nearest to the normal.
 
     Attributes
@@ -58,7 +58,7 @@ class Gates(NamedTuple):
         return np.asarray(np.floor((angles[:, None, None] - self.at) / (2 * np.pi)).astype(np.intp))
 
 
-def widest(widths: Array, angles: Array, gates: Gates | None = None) -> Index | None:
+def widest(widths: Array, angles: Array, gates: SingularSides | None = None) -> Index | None:
     """The angles with the widest strips that turn gently, (i, k) places on the grid of angles.
 
     Parameters
@@ -67,7 +67,7 @@ def widest(widths: Array, angles: Array, gates: Gates | None = None) -> Index | 
         Strip widths of each angle at each node in one unit; 0 where the angle must not be used.
     angles : (j,) array
         Even, rad.
-    gates : Gates, optional
+    gates : SingularSides, optional
         That are not passed between two nodes of which one shuts.
 
     Returns
@@ -169,7 +169,7 @@ def narrowest(widths: Array, chosen: Index) -> Array:
 
 
 def bands(widths: Array, angles: Array, chosen: Index, share: float,
-          gates: Gates | None = None) -> tuple[Array, Array]:
+          gates: SingularSides | None = None) -> tuple[Array, Array]:
     """Angles around those chosen at which no strip is narrower than a share of the narrowest of its pass, (i, k) each.
 
     Parameters
@@ -180,7 +180,7 @@ def bands(widths: Array, angles: Array, chosen: Index, share: float,
     chosen : (i, k) array of int
     share : float
         Of the width that a pass has at its narrowest place, 0 to 1.
-    gates : Gates, optional
+    gates : SingularSides, optional
         No band goes through one that is shut.
 
     Returns

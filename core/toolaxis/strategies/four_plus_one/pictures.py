@@ -28,7 +28,7 @@ _STILL = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Turning:
+class FreeAxisMotion:
     """How the free axis turns on the cuts of an operation.
 
     Attributes
@@ -47,7 +47,7 @@ class Turning:
     passes: tuple[tuple[Array, Array], ...]
 
 
-def turning_of(plan: Plan, op: Operation) -> Turning | None:
+def turning_of(plan: Plan, op: Operation) -> FreeAxisMotion | None:
     """How the free axis turns; None where there is no machine, or none of its axes stands still.
 
     Parameters
@@ -68,7 +68,7 @@ def turning_of(plan: Plan, op: Operation) -> Turning | None:
     strokes = np.split(cuts, np.flatnonzero(np.diff(cuts) > 1) + 1)
     rows = tuple((path.cc[one], np.degrees(rotary[one, 1 - which])) for one in strokes if len(one) > 1)
     names = [axis.name for axis in mounting.machine.rotary]
-    return Turning(names[which], names[1 - which], float(np.degrees(rotary[0, which])), rows)
+    return FreeAxisMotion(names[which], names[1 - which], float(np.degrees(rotary[0, which])), rows)
 
 
 def draw_free_angle(plan: Plan, op: Operation, folder: Path) -> None:
@@ -86,12 +86,12 @@ def draw_free_angle(plan: Plan, op: Operation, folder: Path) -> None:
         free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png", dpi=_DPI)
 
 
-def free_angle_picture(turning: Turning, op: Operation) -> Figure:
+def free_angle_picture(turning: FreeAxisMotion, op: Operation) -> Figure:
     """The angle of the free axis over the face, and its angle and its rate along every pass.
 
     Parameters
     ----------
-    turning : Turning
+    turning : FreeAxisMotion
     op : Operation
     """
     made = figure(12.5, 5.6)
@@ -132,7 +132,7 @@ def free_angle_picture(turning: Turning, op: Operation) -> Figure:
     return made
 
 
-def _backwards(turning: Turning, contact: Array) -> bool:
+def _backwards(turning: FreeAxisMotion, contact: Array) -> bool:
     """Whether a pass runs against the first one."""
     first = turning.passes[0][0]
     return bool((contact[-1] - contact[0]) @ (first[-1] - first[0]) < 0)

@@ -23,11 +23,11 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.path.pass_count import Count
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task, searched
+from toolaxis.search.fixed_axis import FaceProblem, find_axis
 from toolaxis.search.machine_limits import mounting_of
 from toolaxis.search.messages import sentence
-from toolaxis.strategies.common.passes import CHECKED, Laid, laid
-from toolaxis.strategies.four_plus_one.clamp_angle import Candidate, Clamping
+from toolaxis.strategies.common.passes import CHECKED, MovingAxisResult, plan_passes
+from toolaxis.strategies.four_plus_one.clamp_angle import ClampCandidate, ClampSearch
 from toolaxis.strategies.four_plus_one.links import on_the_circle
 from toolaxis.strategies.four_plus_one.passes import Clamp, ClampedCut
 
@@ -53,12 +53,12 @@ _LESSONS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Choice:
+class ClampedPasses:
     """A clamped angle with what its passes come to.
 
     Attributes
     ----------
-    candidate : Candidate
+    candidate : ClampCandidate
     cut : ClampedCut
     count : Count
         With exact widths, the axis standing at each place as it does there, or moving.
@@ -66,7 +66,7 @@ class Choice:
         Which of the ways to try passes it is.
     """
 
-    candidate: Candidate
+    candidate: ClampCandidate
     cut: ClampedCut
     count: Count
     tried: int
@@ -82,12 +82,12 @@ class Choice:
         return self.count.passes if objective == "passes" else self.count.length
 
 
-def machine_of(job: Task) -> Mounting:
+def machine_of(job: FaceProblem) -> Mounting:
     """The machine whose axes are clamped and turned.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
 
     Raises
     ------
@@ -102,7 +102,7 @@ def machine_of(job: Task) -> Mounting:
     return mounting
 
 
-def clamped_range(axis: RotaryAxis, step: float) -> Array:
+def clampable_angles(axis: RotaryAxis, step: float) -> Array:
     """Angles at which an axis may be clamped, one turn of an endless one, (n,) rad.
 
     Parameters
@@ -117,12 +117,12 @@ def clamped_range(axis: RotaryAxis, step: float) -> Array:
     return np.asarray(np.linspace(low, high, count + 1)[:count if whole else None])
 
 
-def screened(search: Clamping, step: float = np.radians(STEP_DEG)) -> list[Candidate]:
+def screen_angles(search: ClampSearch, step: float = np.radians(STEP_DEG)) -> list[ClampCandidate]:
     """The best clamped angles by screening: those with wider strips than both neighbours, best first.
 
     Parameters
     ----------
-    search : Clamping
+    search : ClampSearch
     step : float
         Between clamped angles, rad.
 
@@ -131,10 +131,10 @@ def screened(search: Clamping, step: float = np.radians(STEP_DEG)) -> list[Candi
     **Source**: [zhu2016] Sec. 5.4.3 turns the plane XOZ about B, the clamped axis, in the range that Eq. (17) allows;
     here the range is that of the machine, and angles that some normal forbids have no strip.
     """
-    found: list[Candidate] = []
+    found: list[ClampCandidate] = []
     objective = search.job.worth.objective
     for which, axis in enumerate(search.mounting.machine.rotary):
-        angles = clamped_range(axis, step)
+        angles = clampable_angles(axis, step)
         for feed in FEEDS:
             search.job.progress.report("clamped angles", 2 * which + FEEDS.index(feed), 4)
             search.job.progress.check()
@@ -143,7 +143,7 @@ def screened(search: Clamping, step: float = np.radians(STEP_DEG)) -> list[Candi
             least = value <= np.minimum(np.append(value[1:], inf), np.append(inf, value[:-1]))
             found += [one for one, best in zip(rows, least, strict=True) if one is not None and best]
     found.sort(key=lambda one: (round(one.value(objective), 6), abs(one.clamp.angle)))
-    kept: list[Candidate] = []
+    kept: list[ClampCandidate] = []
     for one in found:  # the same axes by the other solution of the machine are no other candidate
         if not any(one.feed == other.feed and one.clamp.which == other.clamp.which
                    and abs(one.length - other.length) <= 1e-9 * one.length for other in kept):
@@ -151,19 +151,19 @@ def screened(search: Clamping, step: float = np.radians(STEP_DEG)) -> list[Candi
     return kept
 
 
-class Finder:
+class FourPlusOneSearch:
     """The search for the best clamped angle of one face.
 
     Parameters
     ----------
-    search : Clamping
+    search : ClampSearch
     """
 
-    def __init__(self, search: Clamping) -> None:
+    def __init__(self, search: ClampSearch) -> None:
         self.search = search
-        self.known: dict[tuple[int, str, float], Choice | None] = {}
+        self.known: dict[tuple[int, str, float], ClampedPasses | None] = {}
 
-    def choice(self, clamp: Clamp, feed: str) -> Choice | None:
+    def choice(self, clamp: Clamp, feed: str) -> ClampedPasses | None:
         """What a clamped angle comes to; None where it machines not all of the face.
 
         Parameters
@@ -177,13 +177,13 @@ class Finder:
             self.known[key] = None if one is None else self.smooth(one)
         return self.known[key]
 
-    def smooth(self, one: Candidate) -> Choice | None:
+    def smooth(self, one: ClampCandidate) -> ClampedPasses | None:
         """A candidate with smooth angles that keep all distances between the nodes too, and its passes counted; None
         where there are none.
 
         Parameters
         ----------
-        one : Candidate
+        one : ClampCandidate
         """
         now = one
         for _ in range(_LESSONS):
@@ -192,7 +192,7 @@ class Finder:
                 cut, found = self.search.cut(now, share, inset)
                 if cut is not None:
                     count = self.search.counted(cut)
-                    return Choice(now, cut, count, number) if np.isfinite(count.length) else None
+                    return ClampedPasses(now, cut, count, number) if np.isfinite(count.length) else None
                 bad = bad if len(bad) else found
             after = self.search.barred(now, bad)
             if after is None:
@@ -200,12 +200,12 @@ class Finder:
             now = after
         return None
 
-    def around(self, start: Choice) -> Choice:
+    def around(self, start: ClampedPasses) -> ClampedPasses:
         """The best clamped angle near one.
 
         Parameters
         ----------
-        start : Choice
+        start : ClampedPasses
         """
         objective, middle, feed = self.search.job.worth.objective, start.candidate.clamp, start.candidate.feed
         best = start
@@ -219,23 +219,23 @@ class Finder:
                     best, last = other, k
         return best
 
-    def moving(self, one: Choice) -> Choice:
+    def moving(self, one: ClampedPasses) -> ClampedPasses:
         """The same counted with a moving axis, by the way to try passes that makes the least of it.
 
         Parameters
         ----------
-        one : Choice
+        one : ClampedPasses
         """
         objective, found = self.search.job.worth.objective, []
         for number in range(one.tried, min(one.tried + 2, len(_TRIES))):
             cut = one.cut if number == one.tried else self.search.cut(one.candidate, *_TRIES[number])[0]
             if cut is not None:
-                found.append(Choice(one.candidate, cut, self.search.counted(cut, False), number))
+                found.append(ClampedPasses(one.candidate, cut, self.search.counted(cut, False), number))
             if found and found[0].value(objective) <= _STEADY * one.value(objective):
                 break
         return min(found, key=lambda choice: choice.value(objective))
 
-    def found(self, fixed: Orientation) -> list[Choice]:
+    def found(self, fixed: Orientation) -> list[ClampedPasses]:
         """The best clamped angles, best first, those at which the best fixed axis stands among them.
 
         Parameters
@@ -243,7 +243,7 @@ class Finder:
         fixed : Orientation
         """
         objective = self.search.job.worth.objective
-        starts = [(one.clamp, one.feed) for one in screened(self.search)[:_EXAMINED]]
+        starts = [(one.clamp, one.feed) for one in screen_angles(self.search)[:_EXAMINED]]
         if fixed.axis is not None:
             rows = self.search.mounting.solutions(fixed.axis)[:1]
             starts += [(self.search.clamp(which, float(row[which])), fixed.feed) for row in rows for which in (0, 1)]
@@ -252,7 +252,7 @@ class Finder:
             self.search.job.progress.report("clamped angles examined", k, len(starts))
             found.append(self.choice(clamp, feed))
         best = sorted((one for one in found if one is not None), key=lambda one: one.value(objective))
-        searched = list[Choice]()
+        searched = list[ClampedPasses]()
         for one in best:
             if len(searched) < _SEARCHED and one.value(objective) <= _HOPEFUL * best[0].value(objective) and not any(
                     _near(one, other) for other in searched):
@@ -262,19 +262,19 @@ class Finder:
         return sorted((self.moving(one) for one in every[:_RANKED]), key=lambda one: one.value(objective))
 
 
-def _near(one: Choice, other: Choice) -> bool:
+def _near(one: ClampedPasses, other: ClampedPasses) -> bool:
     """Whether two clamped angles are so near that one is looked at around the other."""
     a, b = one.candidate, other.candidate
     apart = abs(a.clamp.angle - b.clamp.angle)
     return (a.clamp.which, a.feed) == (b.clamp.which, b.feed) and apart < _SIDE * np.radians(FINE_DEG) + _SAME
 
 
-def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
+def four_plus_one(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
     """The clamped angle that machines a face in the shortest passes, or the fewest, and those passes.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
 
     Returns
     -------
@@ -298,10 +298,10 @@ def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
     **Properties**: 1. never longer than the best fixed axis, nor with more passes where these are the objective; 2. the
     free angle has no jump along a pass or from one to the next; 3. the clamped one stands still on cuts and links.
     """
-    search, refused = Clamping(job, machine_of(job)), list[str]()
-    fixed, _ = searched(job)
+    search, refused = ClampSearch(job, machine_of(job)), list[str]()
+    fixed, _ = find_axis(job)
     best: list[tuple[Orientation, ToolPath | None]] = []
-    for one in Finder(search).found(fixed):
+    for one in FourPlusOneSearch(search).found(fixed):
         found = _tried(search, one, fixed, refused)
         best += [] if found is None else [found]
         if len(best) == _LAID:
@@ -316,18 +316,18 @@ def four_plus_one(job: Task) -> tuple[Orientation, ToolPath | None]:
     return replace(fixed, reasons=(words, *fixed.reasons, *refused)), job.made(fixed.axis, fixed.feed)
 
 
-def _price(job: Task, found: Orientation) -> float:
+def _price(job: FaceProblem, found: Orientation) -> float:
     return found.passes if job.worth.objective == "passes" else found.length
 
 
-def _tried(search: Clamping, one: Choice, fixed: Orientation,
+def _tried(search: ClampSearch, one: ClampedPasses, fixed: Orientation,
            refused: list[str]) -> tuple[Orientation, ToolPath | None] | None:
     """A clamped angle with its passes laid and proven, by the first way that the proof accepts; None without any."""
     for share, inset in _TRIES[one.tried:]:
         cut, _ = search.cut(one.candidate, share, inset)
         if cut is None or cut.clamp is None:
             continue
-        done = laid(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.clamp))
+        done = plan_passes(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.clamp))
         if done.witness is None:
             return _told(search, done, cut, fixed), done.path
         refused.append(f"refused {_named(cut)}: {sentence(done.witness, search.job.feasibility)}")
@@ -363,7 +363,7 @@ def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str
             for row in rows]
 
 
-def _told(search: Clamping, done: Laid, cut: ClampedCut, fixed: Orientation) -> Orientation:
+def _told(search: ClampSearch, done: MovingAxisResult, cut: ClampedCut, fixed: Orientation) -> Orientation:
     """What passes come to, in numbers and words."""
     assert done.path is not None and cut.clamp is not None
     on = done.path.kind == Motion.CUT

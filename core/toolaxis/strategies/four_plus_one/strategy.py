@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 
 class FourPlusOne(Strategy):
@@ -33,14 +33,14 @@ class FourPlusOne(Strategy):
         """The free angle."""
         return {"angle": "Axis that turns"}
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """The best clamped angle and its passes; the best fixed axis where that is shorter."""
         from toolaxis.strategies.four_plus_one.search import four_plus_one
 
         return four_plus_one(task)
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw the angle of the axis that turns, over the face and along the passes."""
         from toolaxis.strategies.four_plus_one.pictures import draw_free_angle
 

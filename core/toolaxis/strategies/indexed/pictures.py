@@ -18,8 +18,8 @@ from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.hemisphere import hemisphere_picture
 from toolaxis.report.figures.plots import WidthStudy, study_picture, widths_picture
 from toolaxis.report.figures.splat_renderer import mean_direction
-from toolaxis.search.evaluated_axes import Ledger
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.sectors import roman_axis, sectors
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -31,7 +31,7 @@ _ANGLES = 9
 _POINTS = 60
 
 
-def draw_fixed_axis(plan: Plan, op: Operation, task: Task, folder: Path) -> None:
+def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) -> None:
     """Draw the map of all axes of an operation and the strip widths along its passes.
 
     In a plan that was compared with other methods the operation on the largest face also gets what takes longer: the
@@ -41,7 +41,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: Task, folder: Path) -> None
     ----------
     plan : Plan
     op : Operation
-    task : Task
+    task : FaceProblem
     folder : Path
     """
     studied = _studied(plan)
@@ -78,16 +78,16 @@ def _marks(op: Operation) -> Mapping[str, ArrayLike]:
     return marks
 
 
-def _baselines(plan: Plan, job: Task, sectors_too: bool) -> Mapping[str, ArrayLike]:
+def _baselines(plan: Plan, job: FaceProblem, sectors_too: bool) -> Mapping[str, ArrayLike]:
     """Axes that other rules choose: Roman's, and that of projection planes and sectors."""
-    marks: dict[str, ArrayLike] = {"Roman's rule": roman_axis(Ledger(job.feasibility, job.worth, job.progress))}
+    marks: dict[str, ArrayLike] = {"Roman's rule": roman_axis(AxisTable(job.feasibility, job.worth, job.progress))}
     if sectors_too and plan.inputs.method != "sectors":
-        found = sectors(Ledger(job.feasibility, job.worth, job.progress))
+        found = sectors(AxisTable(job.feasibility, job.worth, job.progress))
         marks |= {"sectors [zhu2016]": found[0].axis} if found else {}
     return marks
 
 
-def width_lines(plan: Plan, op: Operation, job: Task) -> list[tuple[Array, Array]]:
+def width_lines(plan: Plan, op: Operation, job: FaceProblem) -> list[tuple[Array, Array]]:
     """Strip widths along the passes of an operation with a fixed axis, as it is laid out on its own.
 
     Parameters
@@ -95,7 +95,7 @@ def width_lines(plan: Plan, op: Operation, job: Task) -> list[tuple[Array, Array
     plan : Plan
     op : Operation
         With a path.
-    job : Task
+    job : FaceProblem
         Of `toolaxis.job.planning.edit_axis.search_task`.
 
     Returns
@@ -120,7 +120,7 @@ def width_lines(plan: Plan, op: Operation, job: Task) -> list[tuple[Array, Array
     return lines
 
 
-def _draw_study(plan: Plan, op: Operation, job: Task, folder: Path) -> None:
+def _draw_study(plan: Plan, op: Operation, job: FaceProblem, folder: Path) -> None:
     assert op.orientation.axis is not None
     study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed,
                         usable=lambda axis: job.feasibility.witness(axis) is None)

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 #: How fixed axes are found, and what each way is called.
 METHODS = {SPHERE: "best of the hemisphere", "sectors": "sectors of zhu2016", "roman": "Roman's rule",
@@ -60,14 +60,14 @@ class Indexed(Strategy):
             raise InvalidInput(f"method 'one' takes one axis for all sub-surfaces, and {asked.held}: leave out either "
                                "the method or the lock")
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """The fixed axis that the method finds, and its passes."""
-        from toolaxis.search.fixed_axis import searched
+        from toolaxis.search.fixed_axis import find_axis
 
-        return searched(task, _SEARCHES.get(inputs.method, inputs.method), start)
+        return find_axis(task, _SEARCHES.get(inputs.method, inputs.method), start)
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw the map of axes and the strip widths, and the study of estimate and count where methods are compared."""
         from toolaxis.strategies.indexed.pictures import draw_fixed_axis
 

@@ -23,7 +23,7 @@ _GOLDEN = 0.6180339887498949
 _INSIDE = 1e-12
 
 
-class Nearest(NamedTuple):
+class NearestOrientations(NamedTuple):
     """Nearest feasible orientations: lean and direction, rad, their distance in both, and whether there is one."""
 
     lean: Array
@@ -167,7 +167,7 @@ def least_lean(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], direction: A
 
 
 def nearest_feasible(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: ArrayLike,
-                     direction: ArrayLike) -> Nearest:
+                     direction: ArrayLike) -> NearestOrientations:
     """The feasible orientations nearest to given ones, by the distance in lean and direction.
 
     Parameters
@@ -179,7 +179,7 @@ def nearest_feasible(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: 
 
     Returns
     -------
-    Nearest
+    NearestOrientations
         Those given where they are feasible; where none is, not found, with the orientation given.
 
     Notes
@@ -208,4 +208,4 @@ def nearest_feasible(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: 
     found = np.isfinite(border)
     size = np.where(found, np.where(border > lean, border + _INSIDE, lean), lean)
     turn = np.where(found, turn, 0.0)
-    return Nearest(size, direction + turn, np.hypot(turn, size - lean), found)
+    return NearestOrientations(size, direction + turn, np.hypot(turn, size - lean), found)

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import nearest_turn, rotary_angles
 from toolaxis.strategies.roughness import rotary_velocity as pace
-from toolaxis.strategies.roughness.pass_constraints import Lane, knots_of, leaning, windows
+from toolaxis.strategies.roughness.pass_constraints import PassConstraints, knots_of, leaning, windows
 from toolaxis.strategies.roughness.rotary_spline import smoothest
-from toolaxis.strategies.roughness.smoothing import Smoothed
+from toolaxis.strategies.roughness.smoothing import SmoothedAxes
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -19,18 +19,18 @@ Bools = NDArray[np.bool_]
 _ROUNDS = 200
 
 
-def pinned(lane: Lane, lead: float) -> Smoothed:
+def iterate_as_published(lane: PassConstraints, lead: float) -> SmoothedAxes:
     """Rotary axes by the paper's loop, the ends of the pass at a lead along the feed.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     lead : float
         rad
 
     Returns
     -------
-    Smoothed
+    SmoothedAxes
         With more control coefficients than the lane's where it has to fix more places than they allow.
 
     Raises
@@ -59,8 +59,8 @@ def pinned(lane: Lane, lead: float) -> Smoothed:
         margins = lane.margins(lane.axes(spline.control))
         bad = margins.min(axis=1) < 0
         if not bad.any():
-            return Smoothed(lane, spline, spline.cost(lane.places, lane.durations), margins,
-                            pace.left(lane, spline.control), rounds)
+            return SmoothedAxes(lane, spline, spline.cost(lane.places, lane.durations), margins,
+                                pace.velocity_left(lane, spline.control), rounds)
         current, angles = lane.leans(lane.axes(spline.control)), spline.angles(lane.places)
         for k in _worst(margins.min(axis=1), bad):
             if k in fixed:
@@ -73,7 +73,7 @@ def pinned(lane: Lane, lead: float) -> Smoothed:
     raise InvalidInput(f"conditions are still broken after {_ROUNDS} rounds")
 
 
-def _angles(lane: Lane, axis: Array, near: Array) -> Array:
+def _angles(lane: PassConstraints, axis: Array, near: Array) -> Array:
     place = np.eye(4)
     place[:3, :3] = lane.turn
     found = rotary_angles(lane.machine, axis[None], near, place)
@@ -82,7 +82,7 @@ def _angles(lane: Lane, axis: Array, near: Array) -> Array:
     return nearest_turn(lane.machine, found.joints[0][found.within[0]], near)
 
 
-def _finer(lane: Lane, count: int) -> Lane:
+def _finer(lane: PassConstraints, count: int) -> PassConstraints:
     if count <= len(lane.knots) - 4:
         raise InvalidInput(f"{count} control coefficients are too few for the places that must be fixed")
     return replace(lane, knots=knots_of(lane.places, count))

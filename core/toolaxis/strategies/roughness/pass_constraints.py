@@ -40,7 +40,7 @@ _FREE, _PROBE = 1e3, 1e-5
 
 
 @dataclass(frozen=True)
-class Wish:
+class OrientationRequirements:
     """What is asked of orientations along passes; lengths in mm.
 
     Attributes
@@ -74,7 +74,7 @@ class Wish:
 
 
 @dataclass(frozen=True, eq=False)
-class Lane:
+class PassConstraints:
     """A pass whose rotary axes are sought.
 
     Attributes
@@ -82,7 +82,7 @@ class Lane:
     face, tool, machine
     turn : (3, 3) array
         From the part's directions to the table's.
-    wish : Wish
+    wish : OrientationRequirements
     feed : str
         "u" or "v".
     places : (n,) array
@@ -107,7 +107,7 @@ class Lane:
     tool: Tool
     machine: Machine
     turn: Array
-    wish: Wish
+    wish: OrientationRequirements
     feed: str
     places: Array
     uv: Array
@@ -233,12 +233,12 @@ class Lane:
         return np.stack(found, axis=2)
 
 
-def leaning(lane: Lane, lean: Array, direction: float = 0.0) -> Array:
+def leaning(lane: PassConstraints, lean: Array, direction: float = 0.0) -> Array:
     """Axes that lean in a direction from the feed, (n, 3).
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     lean : (n,) array
         rad
     direction : float
@@ -249,12 +249,12 @@ def leaning(lane: Lane, lean: Array, direction: float = 0.0) -> Array:
     return np.asarray(np.cos(a) * n + np.sin(a) * (np.cos(direction) * f + np.sin(direction) * k))
 
 
-def windows(lane: Lane, direction: float = 0.0) -> tuple[Array, Bools]:
+def windows(lane: PassConstraints, direction: float = 0.0) -> tuple[Array, Bools]:
     """Leans from the least to the greatest, (k,), and at which of them each place keeps all conditions, (k, n).
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     direction : float
         rad
     """
@@ -262,12 +262,12 @@ def windows(lane: Lane, direction: float = 0.0) -> tuple[Array, Bools]:
     return lean, np.array([(lane.margins(leaning(lane, one, direction)) >= 0).all(axis=1) for one in lean])
 
 
-def best_roughness(lane: Lane) -> Array:
+def best_roughness(lane: PassConstraints) -> Array:
     """The least Ra that each place can have while it keeps all else, (n,) mm; inf where it cannot.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     """
     best = np.full(len(lane.places), np.inf)
     for direction in DIRECTIONS:
@@ -279,12 +279,12 @@ def best_roughness(lane: Lane) -> Array:
     return best
 
 
-def beginnings(lane: Lane) -> list[RotarySpline]:
+def beginnings(lane: PassConstraints) -> list[RotarySpline]:
     """Splines to begin with, each near a lean in one direction that keeps what it can; the one that turns least first.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
 
     Raises
     ------
@@ -300,7 +300,7 @@ def beginnings(lane: Lane) -> list[RotarySpline]:
             off = np.where(kept, np.abs(lean[:, None] - common), np.inf)
             nearest = np.where(kept.any(axis=0), lean[off.argmin(axis=0)], common)
             try:
-                found.append(followed(lane, leaning(lane, nearest, direction)))
+                found.append(spline_along_axes(lane, leaning(lane, nearest, direction)))
             except InvalidInput as reason:
                 why = why or str(reason)
         if free.all() and found and direction != DIRECTIONS[0]:
@@ -319,7 +319,7 @@ def _common(lean: Array, kept: Bools) -> Array:
     return most[[0, len(most) // 2, -1]] if len(most) else most
 
 
-def _impossible(lane: Lane, k: int) -> str:
+def _impossible(lane: PassConstraints, k: int) -> str:
     best = best_roughness(lane)
     where = np.round(lane.bench.point[k], 2).tolist()
     if np.isfinite(best[k]) and best[k] > lane.wish.roughness:
@@ -332,12 +332,12 @@ def _impossible(lane: Lane, k: int) -> str:
             f"{lane.wish.widths[0]:.3g} to {lane.wish.widths[1]:.3g} mm: take a smaller cutter, or another range")
 
 
-def followed(lane: Lane, axes: Array) -> RotarySpline:
+def spline_along_axes(lane: PassConstraints, axes: Array) -> RotarySpline:
     """The spline nearest to the rotary angles that take axes at the places without a jump.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     axes : (n, 3) array
 
     Raises

@@ -25,7 +25,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.roughness.passes import evaluation_length, roughness_at, spots
 from toolaxis.strategies.roughness.search import NOMINAL
-from toolaxis.strategies.roughness.section_width import expected_widths, section_width
+from toolaxis.strategies.roughness.section_width import expect_widths, section_width
 
 Array = NDArray[np.float64]
 
@@ -175,7 +175,7 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
         names = tuple(axis.name for axis in plan.machine.machine.rotary)
         speeds = _velocities(plan, op, cut)
     return RoughnessStudy(points[0], wide, points[1], 1000 * rough,
-                          expected_widths(plan.tool, NOMINAL, plan.inputs.scallop), 1000 * ra, speeds, names)
+                          expect_widths(plan.tool, NOMINAL, plan.inputs.scallop), 1000 * ra, speeds, names)
 
 
 def _velocities(plan: Plan, op: Operation, cut: PathCut) -> dict[str, tuple[Array, Array]]:

@@ -12,24 +12,24 @@ from toolaxis.path.constant_lead import LeadCut
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.messages import sentence
-from toolaxis.strategies.common.passes import CHECKED, laid
+from toolaxis.strategies.common.passes import CHECKED, plan_passes
 from toolaxis.strategies.roughness.passes import evaluation_length, roughness_at, spots
 from toolaxis.strategies.roughness.rotary_velocity import PARTS, fastest, turning
-from toolaxis.strategies.roughness.search import Found, Multiscale
+from toolaxis.strategies.roughness.search import RoughnessSearch, SmoothPasses
 from toolaxis.strategies.roughness.strategy import ROUGHNESS
 
 Array = NDArray[np.float64]
 
 
-def multiscale(job: Task, roughness: float = ROUGHNESS,
+def multiscale(job: FaceProblem, roughness: float = ROUGHNESS,
                feedrate: float = 800.0) -> tuple[Orientation, ToolPath | None]:
     """Passes that keep a roughness across the feed with strips of an expected width, the rotary axes turning least.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
         Its scallop height is that at which strip widths are taken, and the greatest that may be left.
     roughness : float
         Greatest Ra, mm.
@@ -52,9 +52,9 @@ def multiscale(job: Task, roughness: float = ROUGHNESS,
     Notes
     -----
     **Source**: [dong2023] Sec. 5.2, with the conditions themselves in the place of fixed orientations, see
-    `toolaxis.strategies.roughness.smoothing.smoothed`, and passes laid for the roughness.
+    `toolaxis.strategies.roughness.smoothing.smooth_axes`, and passes laid for the roughness.
     """
-    search, refused = Multiscale(job, roughness, feedrate), list[str]()
+    search, refused = RoughnessSearch(job, roughness, feedrate), list[str]()
     best: tuple[Orientation, ToolPath | None] | None = None
     for feed in FEEDS:
         try:
@@ -72,29 +72,29 @@ def multiscale(job: Task, roughness: float = ROUGHNESS,
     return replace(best[0], reasons=(*best[0].reasons, *refused)), best[1]
 
 
-def _price(job: Task, found: Orientation) -> float:
+def _price(job: FaceProblem, found: Orientation) -> float:
     return float(found.passes) if job.worth.objective == "passes" else found.length
 
 
-def _judged(search: Multiscale, one: Found) -> tuple[Orientation | None, ToolPath | None, str]:
+def _judged(search: RoughnessSearch, one: SmoothPasses) -> tuple[Orientation | None, ToolPath | None, str]:
     """What passes come to, or why they may not be used."""
     job, limit = search.job, search.roughness
     if (one.roughness > limit).any():
         return None, None, (f"Ra {1000 * limit:.3g} um is missed at {int((one.roughness > limit).sum())} of "
                             f"{len(one.uv)} places, {1000 * one.roughness.max():.3g} um at the worst")
-    made = laid(job, one.placed.chart, one.cut)  # type: ignore[arg-type]
+    made = plan_passes(job, one.placed.chart, one.cut)  # type: ignore[arg-type]
     if made.witness is not None:
         return None, None, sentence(made.witness, job.feasibility)
     return made.orientation(job, one.cut, words(search, one), search.tried, one.cut.lead), made.path, ""
 
 
-def words(search: Multiscale, one: Found) -> tuple[str, ...]:
+def words(search: RoughnessSearch, one: SmoothPasses) -> tuple[str, ...]:
     """Sentences on what was reached.
 
     Parameters
     ----------
-    search : Multiscale
-    one : Found
+    search : RoughnessSearch
+    one : SmoothPasses
     """
     wide, (low, high) = one.widths, search.wish.widths
     lean = np.concatenate([lane.lane.leans(lane.axes) for lane in one.lanes])
@@ -136,12 +136,12 @@ def racing(rates: Array, most: Array, speed: float, points: Array) -> tuple[str,
             "no way was found that keeps it there at the programmed feed",)
 
 
-def constant_lead(search: Multiscale, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:
+def constant_lead(search: RoughnessSearch, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:
     """Sturz milling on the same passes: the cut, its section strip widths, and its Ra at the same places, mm.
 
     Parameters
     ----------
-    search : Multiscale
+    search : RoughnessSearch
     placed : Layout
     lead : float
         rad

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.machine.machine import Machine
-from toolaxis.strategies.roughness.pass_constraints import Lane
+from toolaxis.strategies.roughness.pass_constraints import PassConstraints
 from toolaxis.strategies.roughness.rotary_spline import rates
 
 Array = NDArray[np.float64]
@@ -29,35 +29,35 @@ def fastest(machine: Machine) -> Array:
 
 
 @lru_cache(maxsize=4)
-def turning(lane: Lane) -> Array:
+def turning(lane: PassConstraints) -> Array:
     """What turns control coefficients into velocities in parts of the gaps between places, (k, c) 1/s.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     """
     count = len(lane.places)
     fine = np.interp(np.linspace(0, count - 1, PARTS * (count - 1) + 1), np.arange(count), lane.places)
     return rates(lane.knots, fine, np.repeat(lane.durations / PARTS, PARTS))
 
 
-def left(lane: Lane, control: Array) -> Array:
+def velocity_left(lane: PassConstraints, control: Array) -> Array:
     """What is left of the velocities, as a share of them, (k, m); negative where an axis would be too fast.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     control : (c, m) array
     """
     return np.asarray(1 - np.abs(turning(lane) @ control) / fastest(lane.machine))
 
 
-def limits(lane: Lane, control: Array, radius: float) -> tuple[Array, Array]:
+def limits(lane: PassConstraints, control: Array, radius: float) -> tuple[Array, Array]:
     """Linear forms of a step of the coefficients within a radius, (r, m c), and what each must come to, (r,).
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     control : (c, m) array
     radius : float
         rad

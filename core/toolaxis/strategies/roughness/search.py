@@ -12,7 +12,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import judged, motions
+from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.contact.placement import tips
 from toolaxis.contact.strip.second_order import contact_forms
 from toolaxis.errors import InvalidInput
@@ -20,7 +20,7 @@ from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.constant_lead import LeadChart
 from toolaxis.path.pass_layout import Layout, lay_out
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.machine_limits import mounting_of, while_moving
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
 from toolaxis.strategies.roughness.pass_constraints import (
@@ -29,12 +29,12 @@ from toolaxis.strategies.roughness.pass_constraints import (
     LEAST_LEAN,
     MOST_LEAN,
     UPRIGHT,
-    Lane,
-    Wish,
+    OrientationRequirements,
+    PassConstraints,
     beginnings,
-    followed,
     knots_of,
     leaning,
+    spline_along_axes,
 )
 from toolaxis.strategies.roughness.passes import (
     FieldChart,
@@ -46,8 +46,8 @@ from toolaxis.strategies.roughness.passes import (
 )
 from toolaxis.strategies.roughness.rotary_spline import RotarySpline
 from toolaxis.strategies.roughness.roughness import scallop_of_roughness
-from toolaxis.strategies.roughness.section_width import expected_widths
-from toolaxis.strategies.roughness.smoothing import Smoothed, smoothed
+from toolaxis.strategies.roughness.section_width import expect_widths
+from toolaxis.strategies.roughness.smoothing import SmoothedAxes, smooth_axes
 from toolaxis.strategies.roughness.strategy import ROUGHNESS
 
 Array = NDArray[np.float64]
@@ -71,14 +71,14 @@ _CHORDS = 0.04
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SmoothPasses:
     """Passes with smooth rotary axes.
 
     Attributes
     ----------
     placed : Layout
     cut : SplineCut
-    lanes : tuple of Smoothed
+    lanes : tuple of SmoothedAxes
         One for each piece of the layout.
     uv : (n, 2) array
         Places at which Ra was evaluated.
@@ -88,7 +88,7 @@ class Found:
 
     placed: Layout
     cut: SplineCut
-    lanes: tuple[Smoothed, ...]
+    lanes: tuple[SmoothedAxes, ...]
     uv: Array
     roughness: Array
 
@@ -103,12 +103,12 @@ class Found:
         return np.concatenate([one.lane.widths(one.axes)[one.lane.inside] for one in self.lanes])
 
 
-class Multiscale:
+class RoughnessSearch:
     """The search for the rotary axes of one face.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     roughness : float
         Greatest Ra, mm.
     feedrate : float
@@ -122,7 +122,7 @@ class Multiscale:
         When the cutter is no torus, no machine with two rotary axes is given, or a number is out of range.
     """
 
-    def __init__(self, job: Task, roughness: float = ROUGHNESS, feedrate: float = 800.0,
+    def __init__(self, job: FaceProblem, roughness: float = ROUGHNESS, feedrate: float = 800.0,
                  widths: tuple[float, float] | None = None) -> None:
         self.face, self.tool = job.worth.face, job.worth.tool
         check_bull_nose(self.tool, flat_too=False)
@@ -135,8 +135,9 @@ class Multiscale:
         self.job = replace(job, chord=min(job.chord, _CHORDS * self.height))
         self.roughness, self.speed = roughness, feedrate / 60
         least = max(LEAST_LEAN, job.feasibility.least_angle)
-        self.wish = Wish(job.worth.scallop, widths or expected_widths(self.tool, NOMINAL, job.worth.scallop), roughness,
-                         (least, min(MOST_LEAN, job.feasibility.greatest_angle - radians(1.0))))
+        self.wish = OrientationRequirements(job.worth.scallop,
+                                            widths or expect_widths(self.tool, NOMINAL, job.worth.scallop), roughness,
+                                            (least, min(MOST_LEAN, job.feasibility.greatest_angle - radians(1.0))))
         if self.height >= job.worth.scallop:
             raise InvalidInput(f"Ra {1000 * roughness:g} um stands for scallops of {self.height:.3g} mm, not below the "
                                f"scallop height {job.worth.scallop:g} mm: give a greater scallop height, at which "
@@ -144,7 +145,7 @@ class Multiscale:
         self.tried = 0
 
     def lane(self, piece: Array, feed: str, apart: tuple[Array, float, float] | None = None,
-             wish: Wish | None = None) -> Lane:
+             wish: OrientationRequirements | None = None) -> PassConstraints:
         """A pass, or a part of one, to be given rotary axes.
 
         Parameters
@@ -154,7 +155,7 @@ class Multiscale:
         feed : str
         apart : (steps of all passes, range of the along parameter), optional
             Ra does not matter unless given.
-        wish : Wish, optional
+        wish : OrientationRequirements, optional
         """
         low, high, step = piece
         coarse = self._uv(np.linspace(low, high, 65), step, feed)
@@ -173,20 +174,21 @@ class Multiscale:
             k = int(np.abs(steps - step).argmin())
             beside = float(np.diff(steps)[max(k - 1, 0):k + 1].max(initial=0.0))
             gap = beside * contact_forms(self.face, uv, feed, True)[:, 12]
-        return Lane(self.face, self.tool, self.mounting.machine, self.turn, wish or self.wish, feed, places, uv, inside,
-                    gap, np.full(len(places), self.wish.leans[0]), self.speed, knots_of(places),
-                    self.job.worth.allowance)
+        return PassConstraints(self.face, self.tool, self.mounting.machine, self.turn, wish or self.wish, feed, places,
+                               uv, inside,
+                               gap, np.full(len(places), self.wish.leans[0]), self.speed, knots_of(places),
+                               self.job.worth.allowance)
 
     def _uv(self, along: Array, step: float, feed: str) -> Array:
         rows = np.column_stack([along, np.full(len(along), step)])
         return rows if feed == "u" else rows[:, ::-1]
 
-    def blocked(self, lane: Lane, axes: Array) -> Bools:
+    def blocked(self, lane: PassConstraints, axes: Array) -> Bools:
         """Whether the tool comes too close to something at the places of a pass, (n,).
 
         Parameters
         ----------
-        lane : Lane
+        lane : PassConstraints
         axes : (n, 3) array
         """
         self.tried += len(axes)
@@ -195,7 +197,7 @@ class Multiscale:
         bad = np.zeros(len(axes), dtype=bool)
         for group in self.job.feasibility.groups:
             table = np.tile(group.required, (len(group.faces), 1))
-            bad |= judged(group.cells, self.tool, moves, table).blocked >= 0
+            bad |= keeps_limits(group.cells, self.tool, moves, table).blocked >= 0
         limits = while_moving(self.job.feasibility.limits)
         return bad if limits is None else bad | ~limits.allowed(axes)
 
@@ -227,7 +229,7 @@ class Multiscale:
         return FieldCut(self.tool, mean, _SHARE * self.height, self.job.worth.allowance, float(highest.mean()), feed,
                         grid[0], grid[1], highest)
 
-    def _least(self, lane: Lane) -> Array:
+    def _least(self, lane: PassConstraints) -> Array:
         """Least leans at the places of a lane, (n,)."""
         found = np.full(len(lane.places), np.nan)
         for lean in np.linspace(*self.wish.leans, _LEANS):
@@ -244,7 +246,7 @@ class Multiscale:
             raise InvalidInput(self._without(_only(lane, none)))
         return found
 
-    def _without(self, lane: Lane) -> str:
+    def _without(self, lane: PassConstraints) -> str:
         """Why the first place of a lane has no lean along the feed: too narrow, too wide, or too close to something."""
         where, (low, high) = np.round(lane.bench.point[0], 2).tolist(), self.wish.widths
         every = [leaning(lane, lean) for lean in np.linspace(*self.wish.leans, _LEANS)]
@@ -258,7 +260,7 @@ class Multiscale:
             return f"{begin}: strips are {wide[free].min():.4g} mm wide at least; take a smaller cutter"
         return f"{begin}: take another cutter, scallop height or range"
 
-    def found(self, feed: str) -> Found:
+    def found(self, feed: str) -> SmoothPasses:
         """Passes along a feed with smooth rotary axes.
 
         Parameters
@@ -275,13 +277,13 @@ class Multiscale:
         placed = lay_out(chart, leads, progress=self.job.progress)
         return self.along(placed, self.wish)
 
-    def along(self, placed: Layout, wish: Wish, free: bool = True) -> Found:
+    def along(self, placed: Layout, wish: OrientationRequirements, free: bool = True) -> SmoothPasses:
         """Smooth rotary axes along passes.
 
         Parameters
         ----------
         placed : Layout
-        wish : Wish
+        wish : OrientationRequirements
         free : bool
             Whether the ends of passes are free; else they lean 20 degrees along the feed.
 
@@ -295,7 +297,7 @@ class Multiscale:
         length = length if np.isfinite(length) else 4.0
         uv = spots(self.face, feed, length)
         limits = np.full(len(placed.pieces), wish.roughness)
-        lanes: list[Smoothed | None] = [None] * len(placed.pieces)
+        lanes: list[SmoothedAxes | None] = [None] * len(placed.pieces)
         for _ in range(_TIGHTENED):
             self._fill(lanes, placed, wish, limits, free)
             done = tuple(one for one in lanes if one is not None)
@@ -304,9 +306,9 @@ class Multiscale:
             if (ra <= wish.roughness).all():
                 break
             self._tighten(lanes, placed, limits, (uv, ra, length, wish.roughness))
-        return Found(placed, cut, done, uv, ra)
+        return SmoothPasses(placed, cut, done, uv, ra)
 
-    def _tighten(self, lanes: list[Smoothed | None], placed: Layout, limits: Array,
+    def _tighten(self, lanes: list[SmoothedAxes | None], placed: Layout, limits: Array,
                  seen: tuple[Array, Array, float, float]) -> None:
         """Have the passes around places that miss the roughness made again with a smaller one."""
         uv, ra, length, most = seen
@@ -319,7 +321,8 @@ class Multiscale:
             for k in np.flatnonzero(near):
                 lanes[k] = None
 
-    def _fill(self, lanes: list[Smoothed | None], placed: Layout, wish: Wish, limits: Array, free: bool) -> None:
+    def _fill(self, lanes: list[SmoothedAxes | None], placed: Layout, wish: OrientationRequirements, limits: Array,
+              free: bool) -> None:
         feed = placed.chart.feed  # type: ignore[attr-defined]
         a0, a1, _, _ = placed.chart.bounds
         for k, piece in enumerate(placed.pieces):
@@ -329,17 +332,17 @@ class Multiscale:
                 one = self._smooth(lane, lanes[k - 1] if k else None, free)
                 lanes[k] = one if one.follows else self._paced(one, free)
 
-    def _paced(self, one: Smoothed, free: bool) -> Smoothed:
+    def _paced(self, one: SmoothedAxes, free: bool) -> SmoothedAxes:
         """Rotary axes of a pass that keep their velocities at the feed rate too, begun from those that do not; as they
         are where none are found."""
         ends = None if free else one.spline.angles(one.lane.places[[0, -1]])
-        found = smoothed(replace(one.lane, paced=True), one.spline, ends)
+        found = smooth_axes(replace(one.lane, paced=True), one.spline, ends)
         return found if found.kept and not self.blocked(found.lane, found.axes).any() else one
 
-    def _smooth(self, lane: Lane, last: Smoothed | None, free: bool) -> Smoothed:
+    def _smooth(self, lane: PassConstraints, last: SmoothedAxes | None, free: bool) -> SmoothedAxes:
         """Smooth rotary axes of a pass; from those of the one before where they serve."""
         if not free:
-            nominal = followed(lane, leaning(lane, np.full(len(lane.places), NOMINAL)))
+            nominal = spline_along_axes(lane, leaning(lane, np.full(len(lane.places), NOMINAL)))
             best = self._best(lane, [nominal], nominal.angles(lane.places[[0, -1]]))
             ends = nominal.angles(lane.places[[0, -1]])
         else:
@@ -355,24 +358,24 @@ class Multiscale:
         raise InvalidInput(f"the tool comes too close near {where} however much it leans along the pass: choose "
                            "another strategy, a longer stick-out or a slimmer holder")
 
-    def _from(self, lane: Lane, last: Smoothed | None) -> Smoothed:
+    def _from(self, lane: PassConstraints, last: SmoothedAxes | None) -> SmoothedAxes:
         """Smooth rotary axes of a pass, from those of the one before where they serve about as well there."""
-        known = list[Smoothed]()
+        known = list[SmoothedAxes]()
         if last is not None and len(last.lane.knots) == len(lane.knots):
-            one = smoothed(lane, replace(last.spline, knots=lane.knots))
+            one = smooth_axes(lane, replace(last.spline, knots=lane.knots))
             if one.kept and one.cost <= _WORSE * last.cost + _STANDS:
                 return one
             known.append(one)
         return self._best(lane, beginnings(lane), None, known)
 
-    def _best(self, lane: Lane, starts: list[RotarySpline], ends: Array | None,
-              known: Sequence[Smoothed] = ()) -> Smoothed:
+    def _best(self, lane: PassConstraints, starts: list[RotarySpline], ends: Array | None,
+              known: Sequence[SmoothedAxes] = ()) -> SmoothedAxes:
         """The one that turns least of those that keep all conditions, those already known among them."""
         found, kept = list(known), [one for one in known if one.kept]
         for number, start in enumerate(starts):
             if kept and (number >= _STARTS or kept[-1].cost < _STANDS):
                 break
-            found.append(smoothed(lane, start, ends))
+            found.append(smooth_axes(lane, start, ends))
             kept += found[-1:] if found[-1].kept else []
         if not kept:
             closest = max(found, key=lambda one: float(one.margins.min()))
@@ -380,7 +383,7 @@ class Multiscale:
                                f"{closest.sentence}")
         return min(kept, key=lambda one: one.cost)
 
-    def _cut(self, placed: Layout, lanes: tuple[Smoothed, ...]) -> SplineCut:
+    def _cut(self, placed: Layout, lanes: tuple[SmoothedAxes, ...]) -> SplineCut:
         order = np.argsort(placed.pieces[:, 2], kind="stable")
         axes = np.concatenate([one.axes for one in lanes])
         lean = float(np.mean(np.concatenate([one.lane.leans(one.axes) for one in lanes])))
@@ -389,6 +392,6 @@ class Multiscale:
                          pieces=placed.pieces[order], splines=tuple(lanes[k].spline for k in order))
 
 
-def _only(lane: Lane, some: Bools) -> Lane:
+def _only(lane: PassConstraints, some: Bools) -> PassConstraints:
     return replace(lane, places=lane.places[some], uv=lane.uv[some], inside=lane.inside[some], apart=lane.apart[some],
                    floor=lane.floor[some])

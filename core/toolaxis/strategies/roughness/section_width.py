@@ -202,7 +202,7 @@ def section_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallo
     return bench.widths(axis_rows(axis, len(bench.point)))
 
 
-def expected_widths(tool: Tool, lean: float, scallop: float) -> tuple[float, float]:
+def expect_widths(tool: Tool, lean: float, scallop: float) -> tuple[float, float]:
     """Range of the expected strip width, mm: that of a lean on a plane, more or less a tenth of the radius.
 
     Parameters

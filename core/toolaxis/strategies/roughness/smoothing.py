@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.constrained_least_squares import constrained_least_squares
 from toolaxis.strategies.roughness import rotary_velocity as pace
-from toolaxis.strategies.roughness.pass_constraints import CONDITIONS, Lane
+from toolaxis.strategies.roughness.pass_constraints import CONDITIONS, PassConstraints
 from toolaxis.strategies.roughness.rotary_spline import RotarySpline, rates
 
 Array = NDArray[np.float64]
@@ -30,12 +30,12 @@ _MISSED, _NEAR = 1e4, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Smoothed:
+class SmoothedAxes:
     """Rotary axes along a pass.
 
     Attributes
     ----------
-    lane : Lane
+    lane : PassConstraints
     spline : RotarySpline
     cost : float
         Sum of squared angular velocities, (rad/s)^2.
@@ -47,7 +47,7 @@ class Smoothed:
         How often it was solved.
     """
 
-    lane: Lane
+    lane: PassConstraints
     spline: RotarySpline
     cost: float
     margins: Array
@@ -83,12 +83,12 @@ class Smoothed:
         return f"near {where} {CONDITIONS[c]}"
 
 
-def smoothed(lane: Lane, start: RotarySpline, ends: Array | None = None) -> Smoothed:
+def smooth_axes(lane: PassConstraints, start: RotarySpline, ends: Array | None = None) -> SmoothedAxes:
     """Rotary axes with the least sum of squared velocities that keep all conditions, from a start that need not.
 
     Parameters
     ----------
-    lane : Lane
+    lane : PassConstraints
     start : RotarySpline
     ends : (2, m) array, optional
         Rotary angles at the first and the last place, rad; free unless given.
@@ -129,7 +129,7 @@ def smoothed(lane: Lane, start: RotarySpline, ends: Array | None = None) -> Smoo
             slopes = lane.slopes(spline.control)
         else:
             radius = min(radius, size) / 3
-    return Smoothed(lane, spline, cost, margins, paces, rounds)
+    return SmoothedAxes(lane, spline, cost, margins, paces, rounds)
 
 
 class _Tried(NamedTuple):
@@ -142,7 +142,7 @@ class _Tried(NamedTuple):
     cost: float
 
     @classmethod
-    def of(cls, lane: Lane, spline: RotarySpline, step: Array) -> "_Tried":
+    def of(cls, lane: PassConstraints, spline: RotarySpline, step: Array) -> "_Tried":
         new = replace(spline, control=spline.control + step)
         margins, paces = _left(lane, new.control)
         return cls(new, margins, paces, _missing(lane, margins, paces), new.cost(lane.places, lane.durations))
@@ -155,25 +155,26 @@ class _Tried(NamedTuple):
         return self.worth_of(self.cost, last, self.short)
 
 
-def _left(lane: Lane, control: Array) -> tuple[Array, Array]:
+def _left(lane: PassConstraints, control: Array) -> tuple[Array, Array]:
     """What is left of conditions and of velocities."""
-    return lane.margins(lane.axes(control)), pace.left(lane, control)
+    return lane.margins(lane.axes(control)), pace.velocity_left(lane, control)
 
 
-def _missing(lane: Lane, *left: Array) -> float:
+def _missing(lane: PassConstraints, *left: Array) -> float:
     """By how much conditions, and velocities where they count, are missed: the most, and the rest in the mean."""
     short = [np.maximum(-one, 0.0) for one in left[:1 + lane.paced]]
     return max(float(one.max()) for one in short) + sum(float(one.sum()) / len(one) for one in short)
 
 
-def _through(lane: Lane, control: Array, ends: Array) -> Array:
+def _through(lane: PassConstraints, control: Array, ends: Array) -> Array:
     held = lane.values[[0, -1]]
     unit = np.eye(control.shape[0])
     return np.column_stack([constrained_least_squares(unit, column, (held, end))
                             for column, end in zip(control.T, np.asarray(ends).T, strict=True)])
 
 
-def _corrected(lane: Lane, here: tuple[Array, Array, Array], tried: tuple[Array, _Tried], sizes: tuple[float, float],
+def _corrected(lane: PassConstraints, here: tuple[Array, Array, Array], tried: tuple[Array, _Tried],
+               sizes: tuple[float, float],
                ends: Array | None) -> Array:
     """The step with conditions as they came out at its end in the place of what their slopes had promised there."""
     control, slopes, _ = here
@@ -182,7 +183,8 @@ def _corrected(lane: Lane, here: tuple[Array, Array, Array], tried: tuple[Array,
     return _step(lane, (control, slopes, new.margins - promised), sizes, ends)
 
 
-def _step(lane: Lane, here: tuple[Array, Array, Array], sizes: tuple[float, float], ends: Array | None) -> Array:
+def _step(lane: PassConstraints, here: tuple[Array, Array, Array], sizes: tuple[float, float],
+          ends: Array | None) -> Array:
     """The step that makes the sum least under the linearised conditions, (c, m), within a radius and with an aim."""
     control, slopes, margins = here
     (c, m), (radius, aim) = control.shape, sizes

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 #: Ra unless given, mm.
 ROUGHNESS = 1.6e-3
@@ -45,14 +45,14 @@ class Roughness(Strategy):
         if asked.tool is not None:
             check_bull_nose(asked.tool, flat_too=False)
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """Passes that keep the roughness."""
         from toolaxis.strategies.roughness.plan import multiscale
 
         return multiscale(task, inputs.roughness, inputs.feedrate)
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw strip width and Ra over the face, and what the rotary axes do."""
         from toolaxis.strategies.roughness.pictures import draw_roughness
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.strategies.two_point.rings import CONTACT, Rings, Setting, Stand, check_tolerance, rings
+from toolaxis.strategies.two_point.rings import CONTACT, ContactSet, CornerCircles, Posture, check_tolerance, rings
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ NARROW = 2e-4
 _TURN_STEP, _LEAN_STEP = 2e-3, 2e-4
 
 
-def matched_lead(radius: float, rho: ArrayLike) -> Array:
+def match_lead(radius: float, rho: ArrayLike) -> Array:
     """The lean at which the ring's projection along the feed is curved like the surface across it, rad.
 
     Parameters
@@ -130,21 +130,21 @@ def _hollow(radius: float, rho: ArrayLike) -> Array:
     return found
 
 
-def balance(setting: Setting, lift: ArrayLike, start: ArrayLike = 0.0) -> Array:
+def balance(setting: ContactSet, lift: ArrayLike, start: ArrayLike = 0.0) -> Array:
     """Directions of the lean in which both sides of a lifted ring touch at once, rad, (n,).
 
     By Newton's method in lean and direction; NaN where no direction within `ASIDE` of the start does it.
 
     Parameters
     ----------
-    setting : Setting
+    setting : ContactSet
     lift : float or (n,) array_like
         Height of the ring over the contact, mm, above zero.
     start : float or (n,) array_like
         Direction to begin with, rad.
     """
     first, height = (np.zeros(len(setting.uv)) + np.asarray(rows, dtype=float) for rows in (start, lift))
-    stand = Stand(_first_lean(setting, height), first, height)
+    stand = Posture(_first_lean(setting, height), first, height)
     ring = rings(setting, stand)
     for _ in range(6):
         sides = ring.sides
@@ -155,22 +155,22 @@ def balance(setting: Setting, lift: ArrayLike, start: ArrayLike = 0.0) -> Array:
         size = np.where(np.abs(size) > 1e-6, size, np.inf)
         lean = (sides[:, 1] * by_turn[:, 0] - sides[:, 0] * by_turn[:, 1]) / size
         turn = (sides[:, 0] * by_lean[:, 1] - sides[:, 1] * by_lean[:, 0]) / size
-        stand = Stand(np.clip(stand.lean + np.clip(lean, -0.05, 0.05), setting.least_lean, STEEPEST),
-                      np.clip(stand.direction + np.clip(turn, -0.1, 0.1), first - ASIDE, first + ASIDE),
-                      stand.lift)
+        stand = Posture(np.clip(stand.lean + np.clip(lean, -0.05, 0.05), setting.least_lean, STEEPEST),
+                        np.clip(stand.direction + np.clip(turn, -0.1, 0.1), first - ASIDE, first + ASIDE),
+                        stand.lift)
         ring = rings(setting, stand, ring.uv)
     found = (np.abs(ring.sides).max(axis=1) <= TOUCH) & (np.abs(stand.direction - first) < ASIDE)
     return np.where(found, stand.direction, np.nan)
 
 
-def _first_lean(setting: Setting, lift: Array) -> Array:
+def _first_lean(setting: ContactSet, lift: Array) -> Array:
     """The formula's lean for small lifts, within limits, (n,) rad."""
     across = np.maximum(setting.curvatures()[1], 0.0)
     sine = np.clip(setting.tool.flat_radius * across, 0.0, np.sin(STEEPEST))
     return np.asarray(np.clip(np.arcsin(sine) - np.sqrt(2 * lift * across), setting.least_lean, STEEPEST))
 
 
-def settle(setting: Setting, lift: ArrayLike, direction: ArrayLike = 0.0) -> tuple[Stand, Rings]:
+def settle(setting: ContactSet, lift: ArrayLike, direction: ArrayLike = 0.0) -> tuple[Posture, CornerCircles]:
     """The least lean at which a ring gouges nowhere, in front or behind, and touches in front.
 
     It starts at a height over the contact, leans until nothing gouges, and sinks until its front half touches, in turn.
@@ -178,7 +178,7 @@ def settle(setting: Setting, lift: ArrayLike, direction: ArrayLike = 0.0) -> tup
 
     Parameters
     ----------
-    setting : Setting
+    setting : ContactSet
     lift : float or (n,) array_like
         Height over the contact to start with, mm: `BRIDGE` of the tolerance for two contacts, 0 for one.
     direction : float or (n,) array_like
@@ -186,11 +186,11 @@ def settle(setting: Setting, lift: ArrayLike, direction: ArrayLike = 0.0) -> tup
 
     Returns
     -------
-    Stand, Rings
+    Posture, Rings
         Heights at `ANGLES` and between them above zero within `FREE`.
     """
     aside, height = (np.zeros(len(setting.uv)) + np.asarray(rows, dtype=float) for rows in (direction, lift))
-    stand = Stand(_first_lean(setting, height), aside, height)
+    stand = Posture(_first_lean(setting, height), aside, height)
     ring, least = rings(setting, stand), np.full(len(height), setting.least_lean)
     for _ in range(5):
         stand, ring = _lean(setting, stand, ring, least)
@@ -205,19 +205,19 @@ def settle(setting: Setting, lift: ArrayLike, direction: ArrayLike = 0.0) -> tup
     return _risen(setting, stand, ring)
 
 
-def raised(setting: Setting, stand: Stand) -> tuple[Stand, Rings]:
+def gouge_free_lean(setting: ContactSet, stand: Posture) -> tuple[Posture, CornerCircles]:
     """The least lean at or above a given one at which a ring gouges nowhere, at the same height over the contact.
 
     Parameters
     ----------
-    setting : Setting
-    stand : Stand
+    setting : ContactSet
+    stand : Posture
         Where nothing gouges at the steepest lean either, the ring rises.
     """
     return _risen(setting, *_lean(setting, stand, rings(setting, stand), stand.lean))
 
 
-def _risen(setting: Setting, stand: Stand, ring: Rings) -> tuple[Stand, Rings]:
+def _risen(setting: ContactSet, stand: Posture, ring: CornerCircles) -> tuple[Posture, CornerCircles]:
     """Rings that gouge, higher by what they gouge until they do not."""
     for _ in range(40):
         low = ring.least
@@ -228,13 +228,13 @@ def _risen(setting: Setting, stand: Stand, ring: Rings) -> tuple[Stand, Rings]:
     return stand, ring
 
 
-def sunk(setting: Setting, stand: Stand) -> tuple[Stand, Rings]:
+def lower_to_contact(setting: ContactSet, stand: Posture) -> tuple[Posture, CornerCircles]:
     """Rings let down until something touches, or the contact itself does.
 
     Parameters
     ----------
-    setting : Setting
-    stand : Stand
+    setting : ContactSet
+    stand : Posture
         Gouging nowhere.
     """
     ring = rings(setting, stand)
@@ -244,7 +244,7 @@ def sunk(setting: Setting, stand: Stand) -> tuple[Stand, Rings]:
     return stand, ring
 
 
-def _lean(setting: Setting, stand: Stand, ring: Rings, least: Array) -> tuple[Stand, Rings]:
+def _lean(setting: ContactSet, stand: Posture, ring: CornerCircles, least: Array) -> tuple[Posture, CornerCircles]:
     """The least lean within limits at which nothing gouges, or the steepest; by a bracket, secants and halves."""
     count = len(stand.lean)
     low, high = least.copy(), np.full(count, STEEPEST)
@@ -258,7 +258,8 @@ def _lean(setting: Setting, stand: Stand, ring: Rings, least: Array) -> tuple[St
         low[rows], below[rows] = np.where(free, low[rows], lean[rows]), np.where(free, below[rows], depth)
         keep = free | (lean[rows] >= STEEPEST)
         best[rows[keep]] = lean[rows[keep]]
-        found = found.put(rows[keep], Rings(trial.axis[keep], trial.tip[keep], trial.uv[keep], trial.height[keep]))
+        found = found.put(rows[keep], CornerCircles(trial.axis[keep], trial.tip[keep], trial.uv[keep],
+                                                    trial.height[keep]))
         # Where the contact itself touches, the depth does not tell how far the lean is from the least one.
         flat = trial.height[:, CONTACT] <= 3 * FREE
         done = (free & (((depth <= FREE) & ~flat) | (lean[rows] <= least[rows]))) | (lean[rows] >= STEEPEST)

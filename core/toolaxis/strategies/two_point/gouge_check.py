@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.clearance.gouge import least_distance, skin_cells
-from toolaxis.contact.clearance.queries import judged
+from toolaxis.contact.clearance.queries import keeps_limits
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
-from toolaxis.shape.bounding.bounding_tree import Cells
+from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -26,7 +26,7 @@ Flags = NDArray[np.bool_]
 SHARES, AT_ONCE = (0.85, 0.4, 0.1), 65536
 
 
-def turning_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: Cells | list[Face] | tuple[Face, ...],
+def turning_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingTree | list[Face] | tuple[Face, ...],
                    limit: float, *, allowance: float = 0.0) -> Flags:
     """Whether the cutter may reach deeper than a limit between points of a path: False is proven, (n - 1,).
 
@@ -79,7 +79,7 @@ def _split(tool: Tool) -> tuple[Tool, float, float]:
             float(np.hypot(radius, top)))
 
 
-def _judged(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp], cells: Cells,
+def _judged(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp], cells: BoundingTree,
             ask: tuple[float, float]) -> Flags:
     """Whether some motions were not proven, (k,): least signed distance of the lower end, and what turning may cost."""
     (tool, near, far), (tips, axes), (deep, cost) = split, path, ask
@@ -96,5 +96,5 @@ def _judged(split: tuple[Tool, float, float], path: tuple[Array, Array], which: 
     slack = float(size.max(initial=0.0))
     required = np.tile([deep + near * slack, max(far * slack, 1e-9), -np.inf], (len(cells.faces), 1))
     bad = np.zeros(len(which), dtype=bool)
-    bad[owner[judged(cells, tool, moves, required).blocked >= 0]] = True
+    bad[owner[keeps_limits(cells, tool, moves, required).blocked >= 0]] = True
     return bad

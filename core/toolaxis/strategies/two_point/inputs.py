@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import STEEPEST
-from toolaxis.strategies.two_point.rings import Setting
+from toolaxis.strategies.two_point.rings import ContactSet
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
 if TYPE_CHECKING:
-    from toolaxis.strategies.two_point.lean_field import Field
+    from toolaxis.strategies.two_point.lean_field import LeanField
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ FREE_POSTURES = ("two-point", "one-point", "matched-raised", "formula-raised")
 
 
 @dataclass(frozen=True, eq=False)
-class Work:
+class TwoPointInputs:
     """What is to be machined, with what, and how the cutter shall stand.
 
     Attributes
@@ -67,7 +67,7 @@ class Work:
     allowance: float = 0.0
     limits: Tolerance = field(default_factory=Tolerance)
     share: float = 1.0
-    found: "dict[int, Field]" = field(default_factory=dict, repr=False, init=False)
+    found: "dict[int, LeanField]" = field(default_factory=dict, repr=False, init=False)
 
     def __post_init__(self) -> None:
         if self.feed not in ("u", "v"):
@@ -108,7 +108,7 @@ class Work:
         pair = np.column_stack([along, np.full(len(along), step)])
         return pair if self.feed == "u" else pair[:, ::-1].copy()
 
-    def setting(self, uv: Array, sense: int) -> Setting:
+    def setting(self, uv: Array, sense: int) -> ContactSet:
         """Contacts with travel in increasing (1) or decreasing (-1) parameter.
 
         Parameters
@@ -117,5 +117,5 @@ class Work:
         sense : int
         """
         d = self.face.evaluate(uv)
-        return Setting(self.face, self.tool, uv, sense * (d.su if self.feed == "u" else d.sv), self.scallop,
-                       self.allowance, self.limits)
+        return ContactSet(self.face, self.tool, uv, sense * (d.su if self.feed == "u" else d.sv), self.scallop,
+                          self.allowance, self.limits)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.strategies.two_point.contact import BRIDGE, STEEPEST, circle_strip_width, settle, two_point_lead
-from toolaxis.strategies.two_point.inputs import Work
-from toolaxis.strategies.two_point.rings import FRONT, SIDES, Rings, Setting
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
+from toolaxis.strategies.two_point.rings import FRONT, SIDES, ContactSet, CornerCircles
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ ENOUGH = 0.85
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
+class LeanField:
     """In which direction the cutter leans over a face, and from what height it settles: even over a grid.
 
     Attributes
@@ -52,12 +52,12 @@ class Field:
         return direction, lift
 
 
-def directions(work: Work, sense: int) -> Field:
+def directions(work: TwoPointInputs, sense: int) -> LeanField:
     """Directions in which two-point contact leans over a face; found once.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     sense : int
         1 where the axis leans towards growing parameter, -1 where towards the other end.
     """
@@ -66,12 +66,12 @@ def directions(work: Work, sense: int) -> Field:
     return work.found[sense]
 
 
-def field_of(work: Work, sense: int) -> Field:
+def field_of(work: TwoPointInputs, sense: int) -> LeanField:
     """The directions in which settled rings leave the widest strips, turning little from place to place.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     sense : int
 
     Notes
@@ -101,17 +101,17 @@ def field_of(work: Work, sense: int) -> Field:
         here = cost[:, j] + sum(turn[:, rows].T for rows in beside)
         chosen[:, j] = _cheapest(np.asarray(here), turn)
     best = np.take_along_axis(wide, chosen[..., None, None], axis=2)[..., 0, :].argmax(axis=2)
-    return Field(along, step, DIRECTIONS[chosen], lifts[best])
+    return LeanField(along, step, DIRECTIONS[chosen], lifts[best])
 
 
-def _settled_width(work: Work, sense: int, uv: Array, how: tuple[ArrayLike, ArrayLike]) -> Array:
+def _settled_width(work: TwoPointInputs, sense: int, uv: Array, how: tuple[ArrayLike, ArrayLike]) -> Array:
     """Widths of the strips of rings that settle from heights in directions, (n,) mm; 0 where they stay too high."""
     setting = work.setting(uv, sense)
     stand, ring = settle(setting, *how)
     return np.where(stand.lift <= work.scallop, _width(work, setting, ring), 0.0)
 
 
-def _formula_width(work: Work, sense: int, uv: Array) -> Array:
+def _formula_width(work: TwoPointInputs, sense: int, uv: Array) -> Array:
     """Width of the formula's strip, (n,) mm; 0 where nothing is to be bridged, infinite where the cutter is too large:
     other directions are tried there."""
     across, radius = work.setting(uv, sense).curvatures()[1], work.tool.flat_radius
@@ -135,7 +135,7 @@ def _cheapest(cost: Array, turn: Array) -> NDArray[np.intp]:
     return np.array(path[::-1])
 
 
-def _width(work: Work, setting: Setting, ring: Rings) -> Array:
+def _width(work: TwoPointInputs, setting: ContactSet, ring: CornerCircles) -> Array:
     """Width of what standing rings leave within the tolerance across the passes, (n,) mm."""
     d = work.face.evaluate(setting.uv)
     pace = np.linalg.norm(d.sv if work.feed == "u" else d.su, axis=1)

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.strategies.common.links import MovingStroke
-from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.common.links import MovingCuttingMove
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
 from toolaxis.strategies.two_point.postures import postures
-from toolaxis.strategies.two_point.strips import Lane, Strip, left_out, places
+from toolaxis.strategies.two_point.strips import PassPostures, Strip, left_out, places
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -19,20 +19,20 @@ Bools = NDArray[np.bool_]
 _ACROSS = 15
 
 
-def strokes(work: Work, strips: tuple[Strip, ...], direction: str = "zigzag",
-            progress: Progress = NO_PROGRESS) -> list[list[MovingStroke]]:
+def strokes(work: TwoPointInputs, strips: tuple[Strip, ...], direction: str = "zigzag",
+            progress: Progress = NO_PROGRESS) -> list[list[MovingCuttingMove]]:
     """Cutting motions of passes in the order of cutting.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     strips : tuple of Strip
     direction : str
         "zigzag" (every other pass back), "climb" or "conventional" (all one way, for a cutter that turns clockwise).
     progress : Progress
     """
     climbs = _climbs(work)
-    found: list[list[MovingStroke]] = []
+    found: list[list[MovingCuttingMove]] = []
     for number, one in enumerate(strips):
         progress.report("postures", number, len(strips))
         onward = number % 2 == 0 if direction == "zigzag" else climbs == (direction == "climb")
@@ -43,7 +43,7 @@ def strokes(work: Work, strips: tuple[Strip, ...], direction: str = "zigzag",
     return found
 
 
-def _climbs(work: Work) -> bool:
+def _climbs(work: TwoPointInputs) -> bool:
     """Whether travel in growing parameter climbs: passes proceed in growing step parameter, where material is left."""
     a0, a1, s0, s1 = work.span
     uv = work.uv(np.array([(a0 + a1) / 2]), (s0 + s1) / 2)
@@ -52,7 +52,7 @@ def _climbs(work: Work) -> bool:
     return bool(np.cross(along, normal) @ across >= 0)
 
 
-def _spans(work: Work, one: Strip, lane: Lane, where: slice) -> list[tuple[float, float]]:
+def _spans(work: TwoPointInputs, one: Strip, lane: PassPostures, where: slice) -> list[tuple[float, float]]:
     """From where to where along a pass a lane works: as far as its strip holds some of the face."""
     along = places(work)
     low, high = one.step - one.halves[:, 0], one.step + one.halves[:, 1]
@@ -74,7 +74,7 @@ def _spans(work: Work, one: Strip, lane: Lane, where: slice) -> list[tuple[float
     return found
 
 
-def _stroke(work: Work, one: Strip, lane: Lane, span: tuple[float, float]) -> MovingStroke:
+def _stroke(work: TwoPointInputs, one: Strip, lane: PassPostures, span: tuple[float, float]) -> MovingCuttingMove:
     """Points of a pass, so close that straight motions keep the chord tolerance, at tip, rim and twice that high."""
     on = (lane.along >= span[0]) & (lane.along <= span[1])
     along = np.unique(np.concatenate([[span[0]], lane.along[on], [span[1]]]))
@@ -82,11 +82,11 @@ def _stroke(work: Work, one: Strip, lane: Lane, span: tuple[float, float]) -> Mo
     along = np.concatenate([*(np.linspace(a, b, n, endpoint=False)
                               for (a, b), n in zip(pairwise(along), parts, strict=True)), along[-1:]])
     found = postures(work, along, one.step, lane.sense, (lane.along, lane.postures.stand))
-    stroke = MovingStroke(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
+    stroke = MovingCuttingMove(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
     return replace(stroke, tip=stroke.tip - _rises(work, stroke, along)[:, None] * stroke.normal)
 
 
-def _rises(work: Work, stroke: MovingStroke, along: Array) -> Array:
+def _rises(work: TwoPointInputs, stroke: MovingCuttingMove, along: Array) -> Array:
     """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
 
     As `toolaxis.path.chord_tolerance.rises`, but from how the poses bend at their neighbours: what tip and rim rise by.
@@ -106,7 +106,7 @@ def _rises(work: Work, stroke: MovingStroke, along: Array) -> Array:
     return np.asarray(np.maximum(np.append(above, 0.0), np.append(0.0, above)))
 
 
-def _parts(work: Work, lane: Lane) -> NDArray[np.int64]:
+def _parts(work: TwoPointInputs, lane: PassPostures) -> NDArray[np.int64]:
     """Into how many parts the gaps around a posture must be cut, at all but the first and the last."""
     found, gap = lane.postures, np.diff(lane.along)
     sag = np.zeros(len(gap) - 1)
@@ -118,5 +118,5 @@ def _parts(work: Work, lane: Lane) -> NDArray[np.int64]:
     return np.asarray(np.clip(np.ceil(np.sqrt(wide / work.chord)), 1, 12).astype(np.int64))
 
 
-def _back(stroke: MovingStroke) -> MovingStroke:
-    return MovingStroke(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1], stroke.axis[::-1])
+def _back(stroke: MovingCuttingMove) -> MovingCuttingMove:
+    return MovingCuttingMove(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1], stroke.axis[::-1])

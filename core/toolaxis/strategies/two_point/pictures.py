@@ -12,7 +12,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
 from toolaxis.shape.nearest import nearest
-from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, Rings, Setting, rings, stand_of
+from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, ContactSet, CornerCircles, rings, stand_of
 
 Array = NDArray[np.float64]
 
@@ -40,8 +40,8 @@ def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
     if not len(some):
         return
     d = op.face.evaluate(uv)
-    setting = Setting(op.face, plan.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
-                      plan.inputs.allowance, plan.inputs.tolerance)
+    setting = ContactSet(op.face, plan.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
+                         plan.inputs.allowance, plan.inputs.tolerance)
     stand = stand_of(setting, op.path.cl[some], op.path.axis[some])
     sides = np.abs(rings(setting, stand).sides).max(axis=1)
     best = int(np.argmin(np.where(stand.lift > 0.9 * stand.lift.max(), sides, np.inf)))
@@ -50,14 +50,14 @@ def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
     contacts_picture(one, ring, op.name).savefig(folder / f"{op.name}-contacts.png", dpi=_DPI)
 
 
-def contacts_picture(setting: Setting, ring: Rings, name: str) -> Figure:
+def contacts_picture(setting: ContactSet, ring: CornerCircles, name: str) -> Figure:
     """A section across the feed through one contact, and the height of the cutter's edge over it.
 
     Parameters
     ----------
-    setting : Setting
+    setting : ContactSet
         Of one contact.
-    ring : Rings
+    ring : CornerCircles
     name : str
         Of the operation.
     """
@@ -107,7 +107,7 @@ def _strip(beside: Array, height: Array, tolerance: float) -> tuple[float, float
     return ends[0], ends[1]
 
 
-def _to_scale(ax: Axes, setting: Setting, ring: Rings, touches: Array) -> None:
+def _to_scale(ax: Axes, setting: ContactSet, ring: CornerCircles, touches: Array) -> None:
     """The section itself: the face along the line under the edge, and the bottom of the cutter seen along the feed."""
     frame, offset = setting.frame, setting.tool.corner_radius
     origin = setting.face.evaluate(setting.uv).point[0]

@@ -11,15 +11,15 @@ from toolaxis.strategies.two_point.contact import (
     STEEPEST,
     TOUCH,
     balance,
-    matched_lead,
-    raised,
+    gouge_free_lean,
+    lower_to_contact,
+    match_lead,
     settle,
-    sunk,
     two_point_lead,
 )
-from toolaxis.strategies.two_point.inputs import FREE_POSTURES, Work
+from toolaxis.strategies.two_point.inputs import FREE_POSTURES, TwoPointInputs
 from toolaxis.strategies.two_point.lean_field import directions
-from toolaxis.strategies.two_point.rings import Rings, Setting, Stand, rings
+from toolaxis.strategies.two_point.rings import ContactSet, CornerCircles, Posture, rings
 
 Array = NDArray[np.float64]
 
@@ -41,16 +41,16 @@ class Postures:
     ----------
     uv : (n, 2) array
         Contacts that the posture is named by; the cutter is `stand.lift` above them.
-    stand : Stand
-    ring : Rings
+    stand : Posture
+    ring : CornerCircles
     normal : (n, 3) array
     reason : (n,) array of int8
         Index into `REASONS`; that of the gouge-free postures.
     """
 
     uv: Array
-    stand: Stand
-    ring: Rings
+    stand: Posture
+    ring: CornerCircles
     normal: Array
     reason: NDArray[np.int8]
 
@@ -60,13 +60,13 @@ class Postures:
         return np.where(self.reason == TWO, 2, np.where(self.reason == TIGHT, 0, 1)).astype(np.int8)
 
 
-def postures(work: Work, along: Array, step: float, sense: int,
-             near: tuple[Array, Stand] | None = None) -> Postures:
+def postures(work: TwoPointInputs, along: Array, step: float, sense: int,
+             near: tuple[Array, Posture] | None = None) -> Postures:
     """Postures along a pass.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     along : (n,) array
         Places along the pass, in growing order.
     step : float
@@ -90,13 +90,13 @@ def postures(work: Work, along: Array, step: float, sense: int,
     return Postures(setting.uv, stand, ring, setting.frame.normal, _reasons(work, setting, stand, ring))
 
 
-def _between(setting: Setting, along: Array, near: tuple[Array, Stand]) -> tuple[Stand, Rings]:
+def _between(setting: ContactSet, along: Array, near: tuple[Array, Posture]) -> tuple[Posture, CornerCircles]:
     """Postures between others, leaning more where these gouge."""
     rows = (np.interp(along, near[0], rows) for rows in (near[1].lean, near[1].direction, near[1].lift))
-    return raised(setting, Stand(*rows))
+    return gouge_free_lean(setting, Posture(*rows))
 
 
-def _settled(work: Work, setting: Setting, along: Array, step: float) -> tuple[Stand, Rings]:
+def _settled(work: TwoPointInputs, setting: ContactSet, along: Array, step: float) -> tuple[Posture, CornerCircles]:
     """Gouge-free postures that follow each other without jumps; beyond the ends of the face as at them."""
     if work.posture == "two-point":
         sense = 1 if (setting.feed * work.setting(setting.uv[:1], 1).feed).sum() > 0 else -1
@@ -106,39 +106,39 @@ def _settled(work: Work, setting: Setting, along: Array, step: float) -> tuple[S
     elif work.posture == "one-point":
         stand, _ = settle(setting, 0.0)
     else:
-        stand, _ = raised(setting, _by_formula(work, setting))
+        stand, _ = gouge_free_lean(setting, _by_formula(work, setting))
     a0, a1 = work.span[:2]
     inside = (along >= a0 - 1e-9) & (along <= a1 + 1e-9)
     if inside.any():
-        stand = Stand(*(np.interp(along, along[inside], rows[inside])
-                        for rows in (stand.lean, stand.direction, stand.lift)))
-    stand, ring = sunk(setting, _followed(work, setting, stand))
-    return (stand, ring) if (ring.least >= -FREE).all() else raised(setting, stand)
+        stand = Posture(*(np.interp(along, along[inside], rows[inside])
+                          for rows in (stand.lean, stand.direction, stand.lift)))
+    stand, ring = lower_to_contact(setting, _followed(work, setting, stand))
+    return (stand, ring) if (ring.least >= -FREE).all() else gouge_free_lean(setting, stand)
 
 
-def _followed(work: Work, setting: Setting, stand: Stand) -> Stand:
+def _followed(work: TwoPointInputs, setting: ContactSet, stand: Posture) -> Posture:
     """Postures that lean and rise as much as their neighbours ask for."""
     way = np.linalg.norm(np.diff(work.face.evaluate(setting.uv).point, axis=0), axis=1)
     place = np.concatenate([[0.0], np.cumsum(way)])
     apart = np.abs(np.subtract.outer(place, place)) / work.tool.radius
     lean = np.minimum((stand.lean - TURN * apart).max(axis=1), STEEPEST)
     rise = (stand.lift - TURN * work.tool.radius * apart).max(axis=1)
-    return Stand(lean, stand.direction, np.where(rise > work.scallop, rise, stand.lift))
+    return Posture(lean, stand.direction, np.where(rise > work.scallop, rise, stand.lift))
 
 
-def _by_formula(work: Work, setting: Setting) -> Stand:
+def _by_formula(work: TwoPointInputs, setting: ContactSet) -> Posture:
     """One lean, or the paper's where the surface is hollow and wider than the cutter; the least and the steepest
     elsewhere."""
     across = setting.curvatures()[1]
     zero, radius = np.zeros(len(across)), work.tool.flat_radius
     if work.posture == "sturz":
-        return Stand(zero + work.lead, zero, zero)
+        return Posture(zero + work.lead, zero, zero)
     fits = (across > 1e-9) & (radius * across < np.sin(STEEPEST))
     rho = np.where(fits, 1 / np.where(fits, across, 1.0), 1e9)
     bridged = work.share * work.scallop if work.posture.startswith("formula") else 0.0
-    lean = two_point_lead(radius, rho, bridged) if bridged else matched_lead(radius, rho)
+    lean = two_point_lead(radius, rho, bridged) if bridged else match_lead(radius, rho)
     lean = np.clip(np.where(fits, lean, np.where(across > 0, STEEPEST, 0.0)), setting.least_lean, STEEPEST)
-    return Stand(lean, zero, zero + BRIDGE * bridged)
+    return Posture(lean, zero, zero + BRIDGE * bridged)
 
 
 def _even(along: Array, direction: Array) -> Array:
@@ -155,7 +155,7 @@ def _even(along: Array, direction: Array) -> Array:
     return even
 
 
-def _reasons(work: Work, setting: Setting, stand: Stand, ring: Rings) -> NDArray[np.int8]:
+def _reasons(work: TwoPointInputs, setting: ContactSet, stand: Posture, ring: CornerCircles) -> NDArray[np.int8]:
     across = setting.curvatures()[1]
     both = (np.abs(ring.sides) <= 5 * TOUCH).all(axis=1) & (stand.lift > TOUCH)
     return np.select(

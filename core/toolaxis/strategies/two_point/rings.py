@@ -70,7 +70,7 @@ def check_tolerance(radius: float, tolerance: float) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class ContactSet:
     """Contacts of a face with what decides how the cutter stands there.
 
     Attributes
@@ -122,7 +122,7 @@ class Setting:
         """Least angle of the axis to the normal, rad."""
         return max(self.limits.min_lead, radians(0.05))
 
-    def rows(self, which: NDArray[Any]) -> "Setting":
+    def rows(self, which: NDArray[Any]) -> "ContactSet":
         """Some of the contacts.
 
         Parameters
@@ -141,7 +141,7 @@ class Setting:
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
+class Posture:
     """How the cutter stands at n contacts.
 
     Attributes
@@ -156,18 +156,18 @@ class Stand:
     direction: Array
     lift: Array
 
-    def rows(self, which: NDArray[Any]) -> "Stand":
+    def rows(self, which: NDArray[Any]) -> "Posture":
         """Some of them.
 
         Parameters
         ----------
         which : (n,) array of bool or int
         """
-        return Stand(self.lean[which], self.direction[which], self.lift[which])
+        return Posture(self.lean[which], self.direction[which], self.lift[which])
 
 
 @dataclass(frozen=True, eq=False)
-class Rings:
+class CornerCircles:
     """Rings at n contacts: where they stand, and how high above the face.
 
     Attributes
@@ -184,18 +184,18 @@ class Rings:
     uv: Array
     height: Array
 
-    def put(self, which: NDArray[Any], new: "Rings") -> "Rings":
+    def put(self, which: NDArray[Any], new: "CornerCircles") -> "CornerCircles":
         """With some of them replaced.
 
         Parameters
         ----------
         which : (n,) array of bool or int
-        new : Rings
+        new : CornerCircles
         """
         whole = tuple(rows.copy() for rows in (self.axis, self.tip, self.uv, self.height))
         for rows, some in zip(whole, (new.axis, new.tip, new.uv, new.height), strict=True):
             rows[which] = some
-        return Rings(*whole)
+        return CornerCircles(*whole)
 
     @property
     def sides(self) -> Array:
@@ -228,28 +228,28 @@ def _least(rows: Array, contact: int) -> Array:
     return np.asarray(np.minimum(value, rows.min(axis=1)))
 
 
-def stand_of(setting: Setting, tip: Array, axis: Array) -> Stand:
+def stand_of(setting: ContactSet, tip: Array, axis: Array) -> Posture:
     """How cutters stand whose tips and axes are known; undoes what `rings` does first.
 
     Parameters
     ----------
-    setting : Setting
+    setting : ContactSet
     tip, axis : (n, 3) array
         mm, unit vectors.
     """
     frame = setting.frame
     along, beside, up = (dot(axis, side) for side in (frame.feed, frame.left, frame.normal))
     low = tips(setting.face.evaluate(setting.uv).point, frame.normal, axis, setting.tool, setting.allowance)
-    return Stand(np.arccos(np.clip(up, -1.0, 1.0)), np.arctan2(beside, along), dot(tip - low, frame.normal))
+    return Posture(np.arccos(np.clip(up, -1.0, 1.0)), np.arctan2(beside, along), dot(tip - low, frame.normal))
 
 
-def rings(setting: Setting, stand: Stand, start: Array | None = None) -> Rings:
+def rings(setting: ContactSet, stand: Posture, start: Array | None = None) -> CornerCircles:
     """Rings of cutters, and their heights above the face.
 
     Parameters
     ----------
-    setting : Setting
-    stand : Stand
+    setting : ContactSet
+    stand : Posture
     start : (n, 120, 2) array, optional
         Feet of rings that stand nearly so.
     """
@@ -269,7 +269,7 @@ def rings(setting: Setting, stand: Stand, start: Array | None = None) -> Rings:
         metric = np.linalg.pinv(np.stack([d.su, d.sv], axis=-1))
         start = setting.uv[:, None] + np.einsum("nij,nkj->nki", metric, points - d.point[:, None])
     uv, height = _feet(face, points.reshape(-1, 3), start.reshape(-1, 2), rounds)
-    return Rings(axis, tip, uv.reshape(*points.shape[:2], 2), height.reshape(points.shape[:2]) - setting.offset)
+    return CornerCircles(axis, tip, uv.reshape(*points.shape[:2], 2), height.reshape(points.shape[:2]) - setting.offset)
 
 
 def _feet(face: Face, points: Array, uv: Array, rounds: int) -> tuple[Array, Array]:

@@ -13,24 +13,24 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN
-from toolaxis.feasibility.violations import GOUGE, LIMITS, Witness
+from toolaxis.feasibility.violations import GOUGE, LIMITS, Violation
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.links import Linking
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
-from toolaxis.search.fixed_axis import Task
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.search.messages import sentence
-from toolaxis.strategies.common.links import Swivelling, joined
+from toolaxis.strategies.common.links import MovingLinks, join_moves
 from toolaxis.strategies.common.passes import beyond
-from toolaxis.strategies.common.path_check import MovingCrossing, prove_moving
+from toolaxis.strategies.common.path_check import MovingLinkClearance, prove_moving
 from toolaxis.strategies.two_point.gouge_check import turning_gouges
-from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
 from toolaxis.strategies.two_point.path import strokes
 from toolaxis.strategies.two_point.postures import REASONS, TIGHT, TWO
-from toolaxis.strategies.two_point.strips import Lane, Strip, lay_strips, left_out, places, strip
+from toolaxis.strategies.two_point.strips import PassPostures, Strip, lay_strips, left_out, places, strip
 
 Array = NDArray[np.float64]
 
@@ -44,22 +44,22 @@ PROVEN = "every motion is proven by bounds, the cutter on the machined skin betw
 
 
 @dataclass(frozen=True)
-class Choice:
+class FeedAndLean:
     """A feed and a way to lean, with the passes and the cutting length they are reckoned to take."""
 
-    work: Work
+    work: TwoPointInputs
     leaning: str
     passes: float
     length: float
 
 
-def two_point(job: Task, posture: str = "two-point",
+def two_point(job: FaceProblem, posture: str = "two-point",
               lead: float = radians(20.0)) -> tuple[Orientation, ToolPath | None]:
     """Passes with two-point contact, or with another posture of a flat bottom, over a face.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     posture : str
         One of `toolaxis.strategies.two_point.inputs.POSTURES`.
     lead : float
@@ -87,7 +87,7 @@ def two_point(job: Task, posture: str = "two-point",
         name = f"feed along {choice.work.feed}, leaning {choice.leaning}"
         try:
             strips = lay_strips(choice.work, choice.leaning, job.progress)
-            path = linked(job, choice.work, strips)
+            path = add_links(job, choice.work, strips)
         except InvalidInput as reason:
             refused.append(f"refused {name}: {reason}")
             continue
@@ -99,17 +99,17 @@ def two_point(job: Task, posture: str = "two-point",
     return Orientation(None, outcome="not_found", reasons=words), None
 
 
-def choices(job: Task, posture: str, lead: float = radians(20.0)) -> list[Choice]:
+def choices(job: FaceProblem, posture: str, lead: float = radians(20.0)) -> list[FeedAndLean]:
     """Feeds and ways to lean, the one with the fewest or the shortest passes first.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     posture : str
     lead : float
     """
     worth, limits = job.worth, replace(job.feasibility.tolerance, chord=job.chord)
-    works = [Work(worth.face, worth.tool, worth.scallop, feed, posture, lead, worth.allowance, limits)
+    works = [TwoPointInputs(worth.face, worth.tool, worth.scallop, feed, posture, lead, worth.allowance, limits)
              for feed in FEEDS]
     plain = [min(_reckoned(replace(work, posture="one-point"), leaning).length for leaning in TRIED[:2])
              for work in works]
@@ -121,13 +121,13 @@ def choices(job: Task, posture: str, lead: float = radians(20.0)) -> list[Choice
             found.append(_reckoned(work, leaning))
     by_passes = job.worth.objective == "passes"
 
-    def _cost(one: Choice) -> float:
+    def _cost(one: FeedAndLean) -> float:
         return (one.passes if by_passes else one.length) * (1.0 if one.leaning in TRIED[:2] else SPLIT)
 
     return sorted((one for one in found if np.isfinite(one.passes)), key=_cost)
 
 
-def _reckoned(work: Work, leaning: str) -> Choice:
+def _reckoned(work: TwoPointInputs, leaning: str) -> FeedAndLean:
     """A choice with what a few passes tell of it."""
     *_, s0, s1 = work.span
     narrow, length = [], []
@@ -138,18 +138,18 @@ def _reckoned(work: Work, leaning: str) -> Choice:
         point = work.face.evaluate(work.uv(places(work), one.step)).point
         length.append(float(np.linalg.norm(np.diff(point, axis=0), axis=1).sum()))
     if min(narrow) <= 0:
-        return Choice(work, leaning, np.inf, np.inf)
+        return FeedAndLean(work, leaning, np.inf, np.inf)
     passes = float((s1 - s0) * np.mean(1 / np.array(narrow)))
-    return Choice(work, leaning, passes, passes * float(np.mean(length)))
+    return FeedAndLean(work, leaning, passes, passes * float(np.mean(length)))
 
 
-def linked(job: Task, work: Work, strips: tuple[Strip, ...]) -> ToolPath:
+def add_links(job: FaceProblem, work: TwoPointInputs, strips: tuple[Strip, ...]) -> ToolPath:
     """Passes with their entries, exits and links.
 
     Parameters
     ----------
-    job : Task
-    work : Work
+    job : FaceProblem
+    work : TwoPointInputs
     strips : tuple of Strip
 
     Raises
@@ -164,17 +164,17 @@ def linked(job: Task, work: Work, strips: tuple[Strip, ...]) -> ToolPath:
     walls = any(group.role == OTHER or (group.role == SKIN and any(face is not work.face for face in group.faces))
                 for group in job.groups)
     over = height_over(work.scallop)
-    crossing = MovingCrossing(work.tool, job.groups, work.allowance, over)
+    crossing = MovingLinkClearance(work.tool, job.groups, work.allowance, over)
     linking = Linking(job.top(up), run_in=0.0 if walls else 1.0, approach=over + OVER)
-    return joined(passes, Swivelling(linking, up, work.tool, crossing.clear))
+    return join_moves(passes, MovingLinks(linking, up, work.tool, crossing.clear))
 
 
-def gouging(job: Task, path: ToolPath) -> NDArray[np.intp]:
+def gouging(job: FaceProblem, path: ToolPath) -> NDArray[np.intp]:
     """Cutting motions that are not proven to stay within the gouge limit of the skin, by the point they arrive at.
 
     Parameters
     ----------
-    job : Task
+    job : FaceProblem
     path : ToolPath
     """
     skin = next(group for group in job.groups if group.role == SKIN)
@@ -192,11 +192,12 @@ def gouging(job: Task, path: ToolPath) -> NDArray[np.intp]:
     return np.concatenate(found) if found else np.empty(0, dtype=np.intp)
 
 
-def _judged(job: Task, choice: Choice, strips: tuple[Strip, ...], path: ToolPath) -> tuple[Orientation, Witness | None]:
+def _judged(job: FaceProblem, choice: FeedAndLean, strips: tuple[Strip, ...],
+            path: ToolPath) -> tuple[Orientation, Violation | None]:
     """What a path comes to, and why it may not be used."""
     work, limits = choice.work, while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
-        return Orientation(None), Witness(LIMITS, ROUNDING, words="the axis leaves its limits on the passes")
+        return Orientation(None), Violation(LIMITS, ROUNDING, words="the axis leaves its limits on the passes")
     stopped = beyond(job, path)
     if stopped is not None:
         return Orientation(None), stopped
@@ -205,22 +206,22 @@ def _judged(job: Task, choice: Choice, strips: tuple[Strip, ...], path: ToolPath
         return Orientation(None), proof.witness
     bad = gouging(job, path)
     if len(bad):
-        return Orientation(None), Witness(GOUGE, 0.0, work.face.label, path.cc[bad[0]])
+        return Orientation(None), Violation(GOUGE, 0.0, work.face.label, path.cc[bad[0]])
     length = path.length(Motion.CUT)
     lean = float(np.mean([lane.postures.stand.lean.mean() for one in strips for lane in one.lanes]))
     missed = float(np.mean([left_out(one).mean() for one in strips]))
-    words = [f"feed along {work.feed}, leaning {choice.leaning}", *told(work, strips), PROVEN]
+    words = [f"feed along {work.feed}, leaning {choice.leaning}", *describe_contacts(work, strips), PROVEN]
     return Orientation(np.asarray(unit(path.axis.mean(axis=0))), work.feed, path.passes, float(path.passes), length,
                        work.face.area / length, proof.gouge, proof.clearance, "feasible", tuple(words), lead=lean,
                        unreached=missed), None
 
 
-def told(work: Work, strips: tuple[Strip, ...]) -> tuple[str, ...]:
+def describe_contacts(work: TwoPointInputs, strips: tuple[Strip, ...]) -> tuple[str, ...]:
     """Sentences on how many contacts the cutter has along the passes, and why not two.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     strips : tuple of Strip
     """
     rows = np.concatenate([_reasons(work, lane, where) for one in strips for lane, where in one.shares])
@@ -232,7 +233,7 @@ def told(work: Work, strips: tuple[Strip, ...]) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _reasons(work: Work, lane: Lane, where: slice) -> NDArray[np.int8]:
+def _reasons(work: TwoPointInputs, lane: PassPostures, where: slice) -> NDArray[np.int8]:
     """Codes at the places on which a lane works."""
     own = places(work)[where]
     nearest = np.abs(lane.along[:, None] - own).argmin(axis=0)

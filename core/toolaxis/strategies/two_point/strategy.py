@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
-    from toolaxis.plan.plan import Inputs, Plan
-    from toolaxis.search.fixed_axis import Task
+    from toolaxis.plan.plan import Plan, PlanInputs
+    from toolaxis.search.fixed_axis import FaceProblem
 
 
 class TwoPoint(Strategy):
@@ -39,14 +39,14 @@ class TwoPoint(Strategy):
         if asked.tool is not None:
             check_bottom(asked.tool)
 
-    def plan(self, task: "Task", inputs: "Inputs",
+    def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":
         """Passes with two contacts where they can be had."""
         from toolaxis.strategies.two_point.search import two_point
 
         return two_point(task)
 
-    def draw(self, plan: "Plan", op: "Operation", task: "Task", folder: "Path") -> None:
+    def draw(self, plan: "Plan", op: "Operation", task: "FaceProblem", folder: "Path") -> None:
         """Draw the cutter at the widest of its two-point contacts."""
         from toolaxis.strategies.two_point.pictures import draw_contacts
 

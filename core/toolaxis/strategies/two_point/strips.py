@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.strategies.two_point.inputs import Work
+from toolaxis.strategies.two_point.inputs import TwoPointInputs
 from toolaxis.strategies.two_point.lean_field import strip_end
 from toolaxis.strategies.two_point.postures import Postures, postures
 from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, SIDES
@@ -24,7 +24,7 @@ LEANS = ("ahead", "back", "inward", "outward")
 
 
 @dataclass(frozen=True, eq=False)
-class Lane:
+class PassPostures:
     """Postures along a whole pass that lean one way, and what they leave beside it.
 
     Attributes
@@ -54,7 +54,7 @@ class Strip:
     Attributes
     ----------
     step : float
-    lanes : tuple of Lane
+    lanes : tuple of PassPostures
         One, or two that share the pass.
     turn : int
         Number of places of the face on which the first lane works.
@@ -62,35 +62,35 @@ class Strip:
     """
 
     step: float
-    lanes: tuple[Lane, ...]
+    lanes: tuple[PassPostures, ...]
     turn: int
     halves: Array
 
     @property
-    def shares(self) -> tuple[tuple[Lane, slice], ...]:
+    def shares(self) -> tuple[tuple[PassPostures, slice], ...]:
         """Each lane with the places on which it works."""
         if len(self.lanes) == 1:
             return ((self.lanes[0], slice(0, len(self.halves))),)
         return ((self.lanes[0], slice(0, self.turn)), (self.lanes[1], slice(self.turn, len(self.halves))))
 
 
-def places(work: Work) -> Array:
+def places(work: TwoPointInputs) -> Array:
     """Places along the face at which strips are measured, (t,).
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     """
     a0, a1, _, _ = work.span
     return np.linspace(a0, a1, PLACES)
 
 
-def nodes(work: Work, step: float) -> Array:
+def nodes(work: TwoPointInputs, step: float) -> Array:
     """Places along a pass at which postures are looked for, beyond the ends of the face as far as the ring is deep.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     step : float
     """
     a0, a1, _, _ = work.span
@@ -102,12 +102,12 @@ def nodes(work: Work, step: float) -> Array:
     return np.asarray(a0 + gap * np.arange(-before, PLACES + after), dtype=float)
 
 
-def lane(work: Work, step: float, sense: int, along: Array | None = None) -> Lane:
+def lane(work: TwoPointInputs, step: float, sense: int, along: Array | None = None) -> PassPostures:
     """Postures along a pass and the half widths that they leave.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     step : float
     sense : int
     along : (k,) array, optional
@@ -140,15 +140,15 @@ def lane(work: Work, step: float, sense: int, along: Array | None = None) -> Lan
     worked = (number >= first[:, None]) & (number <= last[:, None])
     reach = np.stack([np.nanmin(np.where(worked, came, np.inf), axis=1), np.nanmax(np.where(worked, came, -np.inf),
                                                                                    axis=1)], axis=1)
-    return Lane(sense, along, found, np.nan_to_num(halves), reach)
+    return PassPostures(sense, along, found, np.nan_to_num(halves), reach)
 
 
-def strip(work: Work, step: float, leaning: str = "ahead") -> Strip:
+def strip(work: TwoPointInputs, step: float, leaning: str = "ahead") -> Strip:
     """One pass, leaning one of `LEANS`.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     step : float
     leaning : str
 
@@ -182,12 +182,12 @@ def left_out(found: Strip) -> Bools:
     return np.asarray(found.halves.sum(axis=1) <= 0)
 
 
-def next_strip(work: Work, covered: Array, guess: float, leaning: str) -> Strip:
+def next_strip(work: TwoPointInputs, covered: Array, guess: float, leaning: str) -> Strip:
     """The strip farthest on that leaves nothing between itself and what is covered.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     covered : (t,) array
         Up to which step parameter the face is covered at its places.
     guess : float
@@ -223,12 +223,12 @@ def next_strip(work: Work, covered: Array, guess: float, leaning: str) -> Strip:
     return best
 
 
-def lay_strips(work: Work, leaning: str = "ahead", progress: Progress = NO_PROGRESS) -> tuple[Strip, ...]:
+def lay_strips(work: TwoPointInputs, leaning: str = "ahead", progress: Progress = NO_PROGRESS) -> tuple[Strip, ...]:
     """Passes over a whole face, each as far from the one before as both their strips allow.
 
     Parameters
     ----------
-    work : Work
+    work : TwoPointInputs
     leaning : str
         One of `LEANS`.
     progress : Progress

@@ -25,7 +25,7 @@ class Passes:
     Attributes
     ----------
     operation : App.DocumentObject
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     tool : toolaxis.tools.tool.Tool
     path : toolaxis.cldata.toolpath.ToolPath
         In the document's space.

@@ -14,7 +14,7 @@ from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.placement import placement_from
-from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.transaction import one_step
 from freecad.toolaxis.services.arguments import document_of, operation_of, progress_of
@@ -125,7 +125,7 @@ def _ready(operation):
     if operation.AxisMoves:
         raise InvalidInput(f"the axis of '{operation.Label}' moves while it cuts, and jobs have fixed planes: export a "
                            "program instead, or choose fixed axes")
-    inputs, standing = inputs_of(operation), Standing.of(operation)
+    inputs, standing = inputs_of(operation), OperationRecord.of(operation)
     stands = [(standing, operation.Label), *((standing.turned(link.Placement, 0), link.Label)
                                              for link in turned_copies(operation))]
     return [Passes(operation, inputs, inputs.assembled(), one.path, one.matrix, inputs.job().rapid, label)

@@ -73,7 +73,7 @@ def quiet(things):
                 link.setElementVisible(thing.Name, False)
 
 
-class Tree:
+class PlanTree:
     """Where the operations of a plan stand in the tree, and the links for those that are turned copies.
 
     Parameters

@@ -137,7 +137,7 @@ def _let_stand(thing):
             thing.setExpression(name, None)
 
 
-class Keeper:
+class DeletionObserver:
     """Follows all documents: what belongs to an operation goes with it, and what is deleted alone is told.
 
     Nothing is done while FreeCAD itself undoes or redoes: it brings back, or takes away, what was recorded.

@@ -14,7 +14,7 @@ TOLERANCE, FORMER_TOLERANCE = 0.01, 0.002
 
 
 @dataclass(frozen=True)
-class Piece:
+class KeptSubSurface:
     """A sub-surface that is kept as it is: its border, and what is locked of its axis and feed.
 
     Attributes
@@ -46,7 +46,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Inputs:
+class JobInputs:
     """What a job in a document is given; mm, and degrees inside the short forms.
 
     Attributes
@@ -77,7 +77,7 @@ class Inputs:
         Whether blades are looked for where all sculptured faces of one part are chosen.
     compare : bool
         Whether other methods plan the same faces too.
-    pieces : tuple of Piece
+    pieces : tuple of KeptSubSurface
         Sub-surfaces that are kept as they are.
     strategy : str
         One of `freecad.toolaxis.document.strategies.STRATEGIES`: fixed axes, or how the axis moves.
@@ -156,7 +156,7 @@ class Inputs:
         InvalidInput
             When a value is out of range.
         """
-        from toolaxis.plan.plan import Inputs as JobInputs
+        from toolaxis.plan.plan import PlanInputs as JobInputs
         from toolaxis.tolerances import Tolerance
 
         return JobInputs(self.scallop, self.allowance, method=self.strategy if self.moves else self.method,
@@ -173,10 +173,10 @@ class Inputs:
         InvalidInput
             When one is out of range, or does not go with method, tool or machine.
         """
-        from toolaxis.partition.partition import checked_count
+        from toolaxis.partition.partition import check_count
 
-        checked_count(self.regions)
-        checked_count(self.orientations, "orientations")
+        check_count(self.regions)
+        check_count(self.orientations, "orientations")
         check_strategy(self)
 
 
@@ -189,19 +189,19 @@ def inputs_of(thing):
 
     Returns
     -------
-    Inputs
+    JobInputs
         Without faces where the part was deleted.
     """
     faces = tuple((part, name) for part, names in thing.Faces for name in names if name)
     rows = {name: tuple((point.x, point.z) for point in getattr(thing, name.capitalize()))
             for name in ("shank", "holder")}
     pieces = kept_pieces(thing) if is_plan(thing) else [own_piece(thing, faces)]
-    return Inputs(faces, thing.Tool, rows["shank"], rows["holder"], thing.StickOut.Value, thing.FluteLength.Value,
-                  thing.Scallop.Value, thing.Allowance.Value, thing.Limits, tuple(thing.Obstacles),
-                  thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
-                  thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
-                  thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
-                  thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value)
+    return JobInputs(faces, thing.Tool, rows["shank"], rows["holder"], thing.StickOut.Value, thing.FluteLength.Value,
+                     thing.Scallop.Value, thing.Allowance.Value, thing.Limits, tuple(thing.Obstacles),
+                     thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
+                     thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
+                     thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
+                     thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value)
 
 
 def flute_of(tool):
@@ -242,10 +242,11 @@ def own_piece(operation, faces):
         return None
     axis = locked_axis(operation)
     number = str(details.get("face", ""))
-    return Piece(*faces[0], tuple(tuple(map(tuple, loop)) for loop in region),
-                 axis if operation.AxisLocked or _shares(operation) else None,
-                 operation.FeedParameter if operation.FeedLocked else "", operation.AxisLocked and axis is not None,
-                 details.get("label", number).removeprefix(number), operation.DrawnByHand)
+    return KeptSubSurface(*faces[0], tuple(tuple(map(tuple, loop)) for loop in region),
+                          axis if operation.AxisLocked or _shares(operation) else None,
+                          operation.FeedParameter if operation.FeedLocked else "",
+                          operation.AxisLocked and axis is not None,
+                          details.get("label", number).removeprefix(number), operation.DrawnByHand)
 
 
 def locked_axis(operation):
@@ -280,5 +281,5 @@ def kept_pieces(plan):
     found = []
     for one, faces in rows:
         if faces and (faces[0][0].Name, faces[0][1]) in by_hand:
-            found.append(own_piece(one, faces) or Piece(*faces[0]))
+            found.append(own_piece(one, faces) or KeptSubSurface(*faces[0]))
     return found

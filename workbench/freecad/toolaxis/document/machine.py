@@ -122,7 +122,7 @@ def nearest(ways, rotary):
 
     Parameters
     ----------
-    ways : sequence of freecad.toolaxis.document.machine_angles.Held
+    ways : sequence of freecad.toolaxis.document.machine_angles.AxisSolution
     rotary : sequence of float
         rad
     """

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class AxisSolution:
     """One way in which a machine holds the axis of an operation.
 
     Attributes
@@ -47,7 +47,7 @@ def ways_to_hold(mounted, axis, tips):
 
     Returns
     -------
-    list of Held
+    list of AxisSolution
         Two with two rotary axes; none where the machine cannot turn there at all.
     """
     import numpy as np
@@ -61,7 +61,7 @@ def ways_to_hold(mounted, axis, tips):
     made = []
     for row, within in zip(found.joints[0], found.within[0], strict=True):
         rotary = np.array([axis.rounded(angle) for axis, angle in zip(machine.rotary, row, strict=True)])
-        made.append(Held(rotary, *_against(mounted, rotary, within, tips)))
+        made.append(AxisSolution(rotary, *_against(mounted, rotary, within, tips)))
     return made
 
 
@@ -127,7 +127,7 @@ def texts_of(machine, ways, taken):
     Parameters
     ----------
     machine : toolaxis.machine.machine.Machine
-    ways : sequence of Held
+    ways : sequence of AxisSolution
     taken : int
     """
     order = sorted(range(len(ways)), key=lambda k: k != taken)

@@ -3,7 +3,7 @@
 from math import degrees
 
 import FreeCAD
-from freecad.toolaxis.document.children import Keeper, note
+from freecad.toolaxis.document.children import DeletionObserver, note
 from freecad.toolaxis.document.inputs import FORMER_TOLERANCE
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.properties import Property, Proxy, assign
@@ -115,7 +115,7 @@ class Operation(Proxy):
         mark(thing)
 
 
-class _Watch(Keeper):
+class _RecomputeObserver(DeletionObserver):
     """Marks also what FreeCAD left out of a recompute because the part behind it failed."""
 
     def slotRecomputedDocument(self, document):
@@ -127,7 +127,7 @@ class _Watch(Keeper):
                 follower.marked(document)
 
 
-_WATCH = _Watch()
+_WATCH = _RecomputeObserver()
 _watching = []
 
 
@@ -137,8 +137,8 @@ def watch(*followers):
     Parameters
     ----------
     *followers
-        What else is told of operations, once each: `deleted(thing, going)` as `Keeper` has it, and `marked(document)`
-        after those of a document were marked.
+        What else is told of operations, once each: `deleted(thing, going)` as `DeletionObserver` has it, and
+        `marked(document)` after those of a document were marked.
     """
     if not _watching:
         FreeCAD.addDocumentObserver(_WATCH)
@@ -191,7 +191,7 @@ def set_inputs(thing, inputs):
     Parameters
     ----------
     thing : App.DocumentObject
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
         With one face.
     """
     thing.Faces = [(part, (name,)) for part, name in inputs.faces]

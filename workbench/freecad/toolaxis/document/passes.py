@@ -155,7 +155,7 @@ def read_back(passes, motions, breaks):
     return ToolPath(tips, tips, axis, axis, kind, starts)
 
 
-class Stations:
+class PassStations:
     """Places along the moves that are not rapid, by their share of the length.
 
     Parameters

@@ -8,7 +8,7 @@ from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.operation import INPUTS, compare, set_inputs, watch
 from freecad.toolaxis.document.properties import Property, Proxy, assign
-from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.document.staleness import changed_inputs, digest
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
 
@@ -156,7 +156,7 @@ def keep_plan(thing, inputs, plan):
     Parameters
     ----------
     thing : App.DocumentObject
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     plan : toolaxis.plan.plan.Plan
     """
     from toolaxis.plan.blades_document import blades_document
@@ -193,7 +193,7 @@ def keep_figures(thing, plan):
     found, face = [], plan.operations[0].face
     for number, one in enumerate(operations_in(thing), 1):
         if one.Motions:
-            standing = Standing.of(one)
+            standing = OperationRecord.of(one)
             found.append(Operation(number, face, standing.orientation, standing.path, standing.frame))
         else:
             found.append(Operation(number, face, orientation_from(json.loads(one.AxisMap))))

@@ -10,7 +10,7 @@ from freecad.toolaxis.document.placement import matrix_of
 
 
 @dataclass(frozen=True)
-class Standing:
+class OperationRecord:
     """An operation read out of its document.
 
     Attributes
@@ -82,7 +82,7 @@ class Standing:
         part : toolaxis.shape.part.Part
         bodies : sequence of Part
         tool : toolaxis.tools.tool.Tool
-        inputs : toolaxis.plan.plan.Inputs
+        inputs : toolaxis.plan.plan.PlanInputs
         """
         from toolaxis.plan.operation import Operation
         from toolaxis.plan.plan import Plan

@@ -7,7 +7,7 @@ _PLAIN = ("Plane", "Cylinder", "Cone")
 
 
 @dataclass(frozen=True)
-class Source:
+class ShapesRead:
     """Copies of shapes with their faces to machine.
 
     Attributes
@@ -33,7 +33,7 @@ class Source:
 
         Parameters
         ----------
-        inputs : freecad.toolaxis.document.inputs.Inputs
+        inputs : freecad.toolaxis.document.inputs.JobInputs
 
         Raises
         ------
@@ -59,7 +59,7 @@ class Source:
 
         Parameters
         ----------
-        inputs : freecad.toolaxis.document.inputs.Inputs
+        inputs : freecad.toolaxis.document.inputs.JobInputs
         """
         from toolaxis.plan.sub_surface import SubSurface
 
@@ -86,11 +86,11 @@ class Source:
         progress : toolaxis.progress.Progress
         """
         from toolaxis.cad.freecad.documents import part_from
-        from toolaxis.progress import heard
+        from toolaxis.progress import activate_progress
 
         progress.report("reading the part", 0, 1)
         whole = self.shapes[0] if len(self.shapes) == 1 else list(self.shapes)
-        with heard(progress):
+        with activate_progress(progress):
             part = replace(part_from(whole), source=", ".join(self.labels))
             bodies = tuple(replace(part_from(shape), source=label)
                            for shape, label in zip(self.obstacles, self.obstacle_labels, strict=True))
@@ -102,7 +102,7 @@ def numbered(inputs, shapes):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     shapes : sequence of Part.Shape
         One for each of `inputs.things`.
 
@@ -128,7 +128,7 @@ def titles_of(inputs):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
 
     Returns
     -------

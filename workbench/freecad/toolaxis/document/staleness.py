@@ -101,7 +101,7 @@ def digest(inputs):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     """
     numbers = ("stickout", "scallop", "allowance", "feedrate", "spindle")
     words = {name: f"{getattr(inputs, name):.9g}" for name in numbers}
@@ -173,7 +173,7 @@ def changed_inputs(planned, inputs):
     ----------
     planned : dict
         Read from `digest` at the time of planning.
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
         As they are now, with a face at least.
     """
     now = json.loads(digest(inputs))

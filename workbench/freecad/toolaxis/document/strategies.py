@@ -30,7 +30,7 @@ def check_strategy(inputs):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
 
     Raises
     ------
@@ -60,7 +60,7 @@ def asked_of(inputs):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     """
     return {"strategy": inputs.strategy, "roughness": _roughness_of(inputs)}
 

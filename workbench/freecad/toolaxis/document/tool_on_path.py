@@ -3,7 +3,7 @@
 from math import cos, pi, sin
 
 import FreeCAD
-from freecad.toolaxis.document.passes import Stations
+from freecad.toolaxis.document.passes import PassStations
 from freecad.toolaxis.document.properties import Property, Proxy
 
 Vector = FreeCAD.Vector
@@ -97,7 +97,7 @@ class ToolOnPasses(Proxy):
         if thing.Passes is None:
             return
         if self._stations is None:
-            self._stations = Stations(thing.Passes)
+            self._stations = PassStations(thing.Passes)
         station = self._stations.at(thing.Position)
         if not thing.Station.isSame(station, 0.0):
             thing.Station = station

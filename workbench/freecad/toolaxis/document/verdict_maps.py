@@ -21,7 +21,7 @@ _RAISED = 2e-3
 _MAPS = (("Scallops", "remaining", "Height left above the face"), ("Gouges", "gouge", "Depth of gouge"))
 
 
-class Drawn(NamedTuple):
+class MapMesh(NamedTuple):
     """A map as it enters a document: the mesh, and value, mm, and colour at each of its points."""
 
     mesh: object
@@ -40,7 +40,7 @@ def drawn(verdict, frame):
 
     Returns
     -------
-    list of Drawn
+    list of MapMesh
         Of the scallops, of the gouges.
     """
     import Mesh
@@ -57,7 +57,7 @@ def drawn(verdict, frame):
         aside = _values(some, "declared")[rows].astype(bool) if name == "remaining" else None
         rgb = judged(values, _limit(verdict, name), aside)
         colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in rgb.tolist()]
-        made.append(Drawn(mesh, values.tolist(), colours))
+        made.append(MapMesh(mesh, values.tolist(), colours))
     return made
 
 
@@ -88,7 +88,7 @@ def keep(operation, verdict, frame, maps=None):
     verdict : toolaxis.verify.verdict.OperationVerdict
     frame : FreeCAD.Placement
         Of the passes.
-    maps : list of Drawn, optional
+    maps : list of MapMesh, optional
         From `drawn`, where they were drawn already.
 
     Returns

@@ -6,8 +6,8 @@ from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_plan, plan_of
 from freecad.toolaxis.document.machine_limits import limits_from
 from freecad.toolaxis.document.preferences import threads
-from freecad.toolaxis.document.read_operation import Standing
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_operation import OperationRecord
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.staleness import standing as what_stands
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.strategies import asked_of, refuse_in_vain
@@ -39,7 +39,7 @@ def task(inputs):
     tool = inputs.assembled()
     inputs.check_counts()
     inputs.job().check_tool(tool)
-    source = Source.of(inputs)
+    source = ShapesRead.of(inputs)
     division = source.division(inputs)
 
     def compute(progress):
@@ -81,7 +81,7 @@ def verification(operation):
     inputs = inputs_of(operation)
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
-    standing, source, tool, count = Standing.of(operation), Source.of(inputs), inputs.assembled(), threads()
+    standing, source, tool, count = OperationRecord.of(operation), ShapesRead.of(inputs), inputs.assembled(), threads()
     operation.Proxy.judging = what_stands(operation)
 
     def compute(progress):

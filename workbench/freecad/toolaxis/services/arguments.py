@@ -188,7 +188,7 @@ def _check_there(place, thing):
 
 
 def fields_of(document, given):
-    """Fields of `freecad.toolaxis.document.inputs.Inputs` from the arguments of a function.
+    """Fields of `freecad.toolaxis.document.inputs.JobInputs` from the arguments of a function.
 
     Parameters
     ----------
@@ -262,9 +262,9 @@ def _outline(name, value):
 
 
 def _count(name, value):
-    from toolaxis.partition.partition import checked_count
+    from toolaxis.partition.partition import check_count
 
-    checked_count(value, "orientations" if name == "orientations" else "sub-surfaces")
+    check_count(value, "orientations" if name == "orientations" else "sub-surfaces")
     return value
 
 

@@ -148,7 +148,7 @@ def sentence(reason: BaseException) -> str:
     return (text or type(reason).__name__).rstrip(".")
 
 
-class Work(QtCore.QObject):
+class BackgroundWork(QtCore.QObject):
     """One computation off the GUI thread.
 
     Exactly one of `done`, `failed` and `cancelled` is emitted, on the GUI thread, unless the work is left alone.
@@ -183,7 +183,7 @@ class Work(QtCore.QObject):
         self._told: tuple[str, float, float] | None = None
         self.running = False
 
-    def start(self) -> "Work":
+    def start(self) -> "BackgroundWork":
         """Begin; returns at once."""
         _running.add(self._thread)
         self._thread.finished.connect(_keeper().sweep)

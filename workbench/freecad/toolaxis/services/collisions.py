@@ -13,7 +13,7 @@ _MEASURED = 400
 
 
 @dataclass(frozen=True)
-class Copy:
+class ShapeCopy:
     """An object of a document as a shape that other threads may read.
 
     Attributes
@@ -30,7 +30,7 @@ class Copy:
 
 
 @dataclass(frozen=True)
-class Met:
+class Collision:
     """What meets, where a machine stands.
 
     Attributes
@@ -55,14 +55,14 @@ class Met:
 
 
 @dataclass(frozen=True)
-class Around:
+class CollisionModel:
     """Parts and bodies, as the library knows them, on a machine with the tool of each operation.
 
     Attributes
     ----------
     mounted : toolaxis.machine.setup.Mounting
         Its tool's length does not count.
-    surroundings : tuple of toolaxis.collision.machine_collision.Surroundings
+    surroundings : tuple of toolaxis.collision.machine_collision.MachineSurroundings
         One for each operation, with its tool.
     names : dict of str to str
         Names of objects by what their faces are called after their numbers.
@@ -92,7 +92,7 @@ class Around:
 
         Returns
         -------
-        Met or None
+        Collision or None
         """
         from toolaxis.collision.machine_collision import nearest_meeting
 
@@ -111,7 +111,7 @@ class Around:
 
         Returns
         -------
-        Met or None
+        Collision or None
         """
         from toolaxis.collision.machine_collision import meeting_on
         from toolaxis.machine.kinematics import forward
@@ -127,7 +127,7 @@ class Around:
         """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
         import numpy as np
 
-        from toolaxis.collision.machine_collision import Meeting
+        from toolaxis.collision.machine_collision import CollisionPoint
 
         axes = np.tile(self.mounted.axis_at(rotary), (len(tips), 1))
         _, found = met_by_tool(self.surroundings[row].tool, (tips, axes), self.near, len(tips) == 1)
@@ -135,7 +135,7 @@ class Around:
         if not deep:
             return None
         depth, k, member, face = max(deep, key=lambda one: one[0])
-        return Meeting(member, f"face {self.called[face]}", -depth, k)
+        return CollisionPoint(member, f"face {self.called[face]}", -depth, k)
 
     def _holding(self, row):
         """The machine with the tool of an operation in its spindle."""
@@ -152,7 +152,8 @@ class Around:
         if not name and found.other not in known:  # something lies wholly inside; of which object is not told
             name = next(iter(self.names.values()), "")
         text = words(self.mounted, rotary, found, 0.0).removesuffix(self.mounted.at(rotary))
-        return Met(text.replace("the face", "face", 1), found.one, name, found.other if not name else "", found.motion)
+        return Collision(text.replace("the face", "face", 1), found.one, name, found.other if not name else "",
+                         found.motion)
 
 
 def met_by_tool(tool, path, near, still):
@@ -199,7 +200,7 @@ def copies(operations):
 
     Returns
     -------
-    list of Copy
+    list of ShapeCopy
     """
     from toolaxis.cad.freecad.documents import name_of, shape_of
 
@@ -208,7 +209,7 @@ def copies(operations):
     avoided = [thing for job in jobs for thing in job.obstacles]
     seen = [body for body in bodies_in(operations[0].Document, parts) if body.Visibility] if operations else []
     found = {thing.Name: thing for thing in (*parts, *avoided, *seen)}
-    return [Copy(thing.Name, name_of(thing), shape_of(thing).copy()) for thing in found.values()]
+    return [ShapeCopy(thing.Name, name_of(thing), shape_of(thing).copy()) for thing in found.values()]
 
 
 def tool_of(operation):
@@ -230,7 +231,7 @@ def read(found, progress):
 
     Parameters
     ----------
-    found : sequence of Copy
+    found : sequence of ShapeCopy
     progress : toolaxis.progress.Progress
 
     Yields
@@ -239,14 +240,14 @@ def read(found, progress):
         What it is called, each otherwise; the object's name; and its faces.
     """
     from toolaxis.cad.freecad.documents import part_from
-    from toolaxis.progress import heard
+    from toolaxis.progress import activate_progress
 
     called = set()
     for k, copy in enumerate(found):
         progress.report("reading the bodies", k, len(found))
         label = copy.label if copy.label not in called else f"{copy.label} ({copy.name})"
         called.add(label)
-        with heard(progress):
+        with activate_progress(progress):
             faces = tuple(part_from(copy.shape).faces)
         yield label, copy.name, faces
 
@@ -260,30 +261,31 @@ def around(mounted, tools, found, progress):
         With a place of the part on the table.
     tools : sequence of toolaxis.tools.tool.Tool
         One for each operation.
-    found : sequence of Copy
+    found : sequence of ShapeCopy
     progress : toolaxis.progress.Progress
 
     Returns
     -------
-    Around
+    CollisionModel
     """
     import numpy as np
 
-    from toolaxis.collision.machine_collision import Surroundings
+    from toolaxis.collision.machine_collision import MachineSurroundings
     from toolaxis.contact.clearance.surroundings import Surroundings as Near
-    from toolaxis.progress import heard
+    from toolaxis.progress import activate_progress
     from toolaxis.shape.bounding.bounding_tree import forest
 
     names, cells, every = {}, [], []
     for label, name, faces in read(found, progress):
         names[label] = name
-        with heard(progress):
+        with activate_progress(progress):
             if faces:
                 every += [replace(face, label=f"{face.number} of {label}") for face in faces]
                 cells.append(forest(tuple(every[-len(faces):])))
     near = Near(tuple(every), np.full((len(every), 3), -DEPTH))
-    return Around(mounted, tuple(Surroundings(tool, tuple(cells), -DEPTH) for tool in tools), names, near,
-                  tuple(face.label for face in every))
+    return CollisionModel(mounted, tuple(MachineSurroundings(tool, tuple(cells), -DEPTH) for tool in tools), names,
+                          near,
+                          tuple(face.label for face in every))
 
 
 def along(known, journey, rows, progress):
@@ -291,7 +293,7 @@ def along(known, journey, rows, progress):
 
     Parameters
     ----------
-    known : Around
+    known : CollisionModel
     journey : object
         With `at(way)`, `station(way)` and `joints`, the stations.
     rows : sequence of int
@@ -300,13 +302,13 @@ def along(known, journey, rows, progress):
 
     Returns
     -------
-    list of Met or None
+    list of Collision or None
         `STEPS` for each way, and one at the end.
     """
-    from toolaxis.progress import heard
+    from toolaxis.progress import activate_progress
 
     count, found = STEPS * (len(journey.joints) - 1) + 1, []
-    with heard(progress):
+    with activate_progress(progress):
         for k in range(count):
             progress.report("looking for collisions", k, count)
             found.append(known.at(rows[journey.station(k / STEPS)], journey.at(k / STEPS)))

@@ -4,7 +4,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from freecad.toolaxis.document.cam_probe import controllers, speeds, tool_from
-from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.inputs import JobInputs
 from freecad.toolaxis.document.preferences import preferred_inputs
 from freecad.toolaxis.document.read_shapes import number_in
 from freecad.toolaxis.services.obstacles import bodies_beside
@@ -28,12 +28,12 @@ def defaults(document, faces):
 
     Returns
     -------
-    freecad.toolaxis.document.inputs.Inputs
+    freecad.toolaxis.document.inputs.JobInputs
         Also where the faces cannot be used; they are refused later, with the reason.
     """
     shapes = _faces(faces)
     beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
-    inputs = _preferred(_for_size(Inputs(tuple(faces), obstacles=tuple(beside)), shapes))
+    inputs = _preferred(_for_size(JobInputs(tuple(faces), obstacles=tuple(beside)), shapes))
     for controller in controllers(document):
         with suppress(Exception):  # a tool of another kind: the next one
             found = tool_fields(tool_from(controller))

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from freecad.toolaxis.document.inputs import Piece, inputs_of, own_piece
+from freecad.toolaxis.document.inputs import KeptSubSurface, inputs_of, own_piece
 from freecad.toolaxis.document.kinds import is_operation, operations_in, plan_of
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_shapes import ShapesRead
 
 #: Points along each edge of a line that was drawn.
 _POINTS = 24
@@ -16,7 +16,7 @@ def _refused(text):
     return InvalidInput(text)
 
 
-class Division:
+class DividedFace:
     """The sub-surfaces of one face as they stand in the tree.
 
     Parameters
@@ -48,10 +48,10 @@ class Division:
         self.rows = [one for one in every if _face_of(one) == _face_of(operations[0])]
         thing, name = _face(operations[0])
         self.face = thing, name
-        source = Source.of(replace(inputs_of(operations[0]), faces=((thing, name),), obstacles=(), pieces=()))
+        source = ShapesRead.of(replace(inputs_of(operations[0]), faces=((thing, name),), obstacles=(), pieces=()))
         part, _ = source.read(NO_PROGRESS)
         self.whole = part.face(source.numbers[0])
-        self.pieces = [own_piece(one, [self.face]) or Piece(thing, name) for one in self.rows]
+        self.pieces = [own_piece(one, [self.face]) or KeptSubSurface(thing, name) for one in self.rows]
 
     def surface(self, operation):
         """The sub-surface of an operation as a face.
@@ -71,7 +71,7 @@ class Division:
         ----------
         drawn : sequence of loops
             Borders of new sub-surfaces.
-        kept : sequence of Piece
+        kept : sequence of KeptSubSurface
             What stays of this face.
         """
         from toolaxis.shape.kinks import letters
@@ -80,8 +80,8 @@ class Division:
         used = {piece.suffix for piece in kept}
         free = (letters(k) for k in range(10**6) if letters(k) not in used)
         alone = len(drawn) + len(kept) == 1
-        new = [Piece(thing, name, tuple(tuple(map(tuple, loop.tolist())) for loop in loops),
-                     suffix="" if alone else next(free), drawn=True) for loops in drawn]
+        new = [KeptSubSurface(thing, name, tuple(tuple(map(tuple, loop.tolist())) for loop in loops),
+                              suffix="" if alone else next(free), drawn=True) for loops in drawn]
         stay = [replace(piece, suffix=piece.suffix or next(free), drawn=True) for piece in kept]
         own = inputs_of(self.owner)
         others = [piece for piece in own.pieces if (piece.thing.Name, piece.name) != (thing.Name, name)]
@@ -119,16 +119,16 @@ def merged(operations):
     -------
     owner : App.DocumentObject
         The plan that takes the new one's place.
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
 
     Raises
     ------
     InvalidInput
         When they do not touch, or are not of one face.
     """
-    from toolaxis.partition.manual_edit import merged as together
+    from toolaxis.partition.manual_edit import merge_sub_surfaces as together
 
-    division = Division(operations)
+    division = DividedFace(operations)
     loops = together([division.surface(one) for one in operations])
     return division.owner, division.inputs([loops], division.rest(operations))
 
@@ -148,7 +148,7 @@ def split(operation, line=None, parameter="", at=None):
     Returns
     -------
     owner : App.DocumentObject
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
 
     Raises
     ------
@@ -157,7 +157,7 @@ def split(operation, line=None, parameter="", at=None):
     """
     from toolaxis.partition.manual_edit import cut_along, cut_out, halves
 
-    division = Division([operation])
+    division = DividedFace([operation])
     if line is None:
         found = halves(division.surface(operation), parameter, at)
         return division.owner, division.inputs(found, division.rest([operation]))

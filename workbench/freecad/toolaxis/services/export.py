@@ -9,8 +9,8 @@ from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.machine import angles_kept, nearest
 from freecad.toolaxis.document.machine_angles import in_order
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
-from freecad.toolaxis.document.read_operation import Standing
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_operation import OperationRecord
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.services.arguments import operation_of, progress_of
 
@@ -118,10 +118,10 @@ def plan_task(operations):
     """
     inputs = [_inputs(operation) for operation in operations]
     together = _together(operations, inputs)
-    source, rows = Source.of(together), []
+    source, rows = ShapesRead.of(together), []
     offsets = _offsets(together)
     for operation, one in zip(operations, inputs, strict=True):
-        standing = Standing.of(operation) if operation.Motions else None
+        standing = OperationRecord.of(operation) if operation.Motions else None
         details = json.loads(operation.Details)
         before = offsets[one.faces[0][0].Name]
         rows.append((standing, operation.AxisMap, _numbered(details, before), angles_kept(operation)))
@@ -135,7 +135,7 @@ def plan_task(operations):
 
         part, bodies = source.read(progress)
         for row in rows:
-            part = Standing(None, None, None, row[2]).joined(part)
+            part = OperationRecord(None, None, None, row[2]).joined(part)
         made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
         mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
@@ -200,7 +200,7 @@ def _operation(number, part, row):
 
     standing, axis_map, details = row
     if standing is None:
-        lost = Standing(None, None, None, details)
+        lost = OperationRecord(None, None, None, details)
         return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))
     standing = replace(standing, details=details)
     return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
@@ -237,11 +237,11 @@ def _verdict(operations):
 def _write(plan, folder, wish, told):
     """Make all files beside the folder, then move them there."""
     from toolaxis.errors import InvalidInput
-    from toolaxis.job.files.plan_folder import staged, write_plan
+    from toolaxis.job.files.plan_folder import stage_folder, write_plan
 
     verdict, progress = told
     try:
-        with staged(folder) as stage:
+        with stage_folder(folder) as stage:
             inner = stage.folder / folder.resolve().name  # the page is called by its folder
             inner.mkdir()
             progress.report("writing the plan", 0, 1)
@@ -267,8 +267,8 @@ def _write(plan, folder, wish, told):
 def _program(plan, wish, name, verdict):
     """The files of a program."""
     from toolaxis.cad.machines import load_machine
-    from toolaxis.job.output.post import posted
+    from toolaxis.job.output.post import post_plan
     from toolaxis.machine.setup import Mounting
 
     mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None
-    return posted(plan, wish.dialect, mounting, name=name, verdict=verdict)
+    return post_plan(plan, wish.dialect, mounting, name=name, verdict=verdict)

@@ -1,7 +1,7 @@
 """What panels do, as lines of a macro that do the same again without a panel."""
 
 import FreeCAD
-from freecad.toolaxis.document.inputs import Inputs
+from freecad.toolaxis.document.inputs import JobInputs
 
 import __main__
 
@@ -62,9 +62,9 @@ def plan_line(inputs):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     """
-    usual = Inputs()
+    usual = JobInputs()
     faces = [f"{thing.Name}.{name}" for thing, name in inputs.faces]
     given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}
     given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
@@ -84,7 +84,7 @@ def again_lines(operation, before, inputs):
     Parameters
     ----------
     operation : App.DocumentObject
-    before, inputs : freecad.toolaxis.document.inputs.Inputs
+    before, inputs : freecad.toolaxis.document.inputs.JobInputs
         What it had been planned with, and what it was planned with now.
     """
     thing = thing_of(operation)

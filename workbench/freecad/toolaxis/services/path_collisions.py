@@ -6,7 +6,7 @@ from freecad.toolaxis.services import collisions
 
 
 @dataclass(frozen=True)
-class Bump:
+class PathCollision:
     """Motions one after the other on which the same part of the tool meets the same face.
 
     Attributes
@@ -23,12 +23,12 @@ class Bump:
 
 
 @dataclass(frozen=True)
-class Bumps:
+class PathCollisions:
     """All of an operation.
 
     Attributes
     ----------
-    found : tuple of Bump
+    found : tuple of PathCollision
     checked : tuple of str
         What was looked at of "cutter", "shank" and "holder": what is known of the tool.
     """
@@ -54,19 +54,19 @@ def bumps(tool, path, found, progress):
     tool : toolaxis.tools.tool.Tool
     path : toolaxis.cldata.toolpath.ToolPath
         In the document's space.
-    found : sequence of freecad.toolaxis.services.collisions.Copy
+    found : sequence of freecad.toolaxis.services.collisions.ShapeCopy
     progress : toolaxis.progress.Progress
 
     Returns
     -------
-    Bumps
+    PathCollisions
         The tool touches what it cuts: only what lies deeper than `collisions.DEPTH` counts.  Where the
         axis moves it is looked for at the points of the path, else on all of the way between them.
     """
     import numpy as np
 
     from toolaxis.contact.clearance.surroundings import Surroundings
-    from toolaxis.progress import heard
+    from toolaxis.progress import activate_progress
 
     names, faces = [], []
     for name, _, read in collisions.read(found, progress):
@@ -75,12 +75,12 @@ def bumps(tool, path, found, progress):
     around = Surroundings(tuple(faces), np.full((len(faces), 3), -collisions.DEPTH))
     moves = bool(np.ptp(path.axis, axis=0).max(initial=0.0) > 1e-9)
     progress.report("looking for collisions", 0, 1)
-    with heard(progress):
+    with activate_progress(progress):
         bad, some = collisions.met_by_tool(tool, (path.cl, path.axis), around, moves)
     end = 0 if moves else 1  # motion k leads from point k - 1 to point k
     checked = ("cutter", *(name for name in ("shank", "holder") if name in tool.outlines))
     known = {k + end: rest for k, *rest in some}
-    return Bumps(_joined(known, (bad + end).tolist(), names), checked)
+    return PathCollisions(_joined(known, (bad + end).tolist(), names), checked)
 
 
 def _joined(at, bad, names):
@@ -96,5 +96,6 @@ def _joined(at, bad, names):
             last["last"], last["depth"] = motion, max(last["depth"], depth)
         else:
             made.append({"key": (member, face), "first": motion, "last": motion, "depth": depth})
-    return tuple(Bump(one["first"], one["last"],
-                      f"the {one['key'][0]} meets {names[one['key'][1]]} by {one['depth']:.1f} mm") for one in made)
+    return tuple(PathCollision(one["first"], one["last"],
+                               f"the {one['key'][0]} meets {names[one['key'][1]]} by {one['depth']:.1f} mm")
+                 for one in made)

@@ -12,7 +12,7 @@ _SOON = 5.0
 _STEP = 5
 
 
-class Remaining:
+class TimeLeft:
     """Hears the reports of one computation.
 
     Parameters

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import FreeCAD
 from freecad.toolaxis.document.axis_lines import show_axes
-from freecad.toolaxis.document.blade_links import Tree, quiet
+from freecad.toolaxis.document.blade_links import PlanTree, quiet
 from freecad.toolaxis.document.children import GROUP, child, frame_of, loose
 from freecad.toolaxis.document.face_identity import facts_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in
@@ -36,7 +36,7 @@ def apply(document, inputs, plan, replaces=None):
     Parameters
     ----------
     document : App.Document
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
         What was planned with.
     plan : toolaxis.plan.plan.Plan
     replaces : App.DocumentObject, optional
@@ -59,7 +59,7 @@ def apply(document, inputs, plan, replaces=None):
     owners = owners_of(inputs, plan)
     with one_step(document, translate("ToolAxis", "Plan orientations")):
         group, standing = _place_for(document, inputs, plan, replaces)
-        tree = Tree(document, group, plan)
+        tree = PlanTree(document, group, plan)
         made, colours = [], _colours(plan, standing)
         for op, owner in zip(plan.operations, owners, strict=True):
             if op.number in tree.copies:
@@ -84,7 +84,7 @@ def owners_of(inputs, plan):
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs
+    inputs : freecad.toolaxis.document.inputs.JobInputs
     plan : toolaxis.plan.plan.Plan
     """
     from toolaxis.cad.freecad.documents import shape_of
@@ -293,7 +293,7 @@ def keep_verdict(operation, verdicts, maps=None):
     operation : App.DocumentObject
     verdicts : sequence of toolaxis.verify.verdict.OperationVerdict
         On this operation; the first one counts.
-    maps : list of freecad.toolaxis.document.verdict_maps.Drawn, optional
+    maps : list of freecad.toolaxis.document.verdict_maps.MapMesh, optional
         Its maps, where they were drawn already.
 
     Returns

@@ -9,7 +9,7 @@ from freecad.toolaxis.document.machine_limits import available
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.paths import RESOURCES
-from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.export import Wish, task
 from freecad.toolaxis.services.macros import list_of, record
 from PySide import QtWidgets
@@ -100,7 +100,7 @@ class ExportPanel(Panel):
         except Exception as reason:
             tell(form.message, sentence(reason), bad=True)
             return
-        self.work = Work(compute)
+        self.work = BackgroundWork(compute)
         self.work.progressed.connect(lambda stage, share: self._progressed(stage, share))
         self.work.done.connect(lambda names: self._done(folder, wish, names))
         self.work.failed.connect(lambda text: self._ended(text, True))

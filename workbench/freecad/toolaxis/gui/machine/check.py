@@ -3,7 +3,7 @@
 import numpy as np
 from freecad.toolaxis.document.machine_angles import in_order
 from freecad.toolaxis.document.machine_limits import mounting
-from freecad.toolaxis.gui.machine.motion import Journey
+from freecad.toolaxis.gui.machine.motion import MachineTour
 from freecad.toolaxis.services import collisions
 
 
@@ -26,8 +26,8 @@ def met_by(mounted, planned, copies, stations, progress):
         for column, way in enumerate(ways):
             progress.report("looking for collisions", row, len(rows))
             held[row, column] = known.on_passes(row, way.rotary, paths[row].cl)
-    journey = Journey.through(mounted, [(tip_of(paths[row], held[row, column]), rows[row][0][column].rotary)
-                                        for row, column in stations], lengths_at(stations, tools))
+    journey = MachineTour.through(mounted, [(tip_of(paths[row], held[row, column]), rows[row][0][column].rotary)
+                                            for row, column in stations], lengths_at(stations, tools))
     return held, journey, collisions.along(known, journey, [row for row, _ in stations], progress)
 
 

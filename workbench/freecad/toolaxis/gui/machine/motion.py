@@ -11,7 +11,7 @@ _ABOVE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Journey:
+class MachineTour:
     """Stations of a machine and the index moves between them.
 
     Attributes
@@ -92,7 +92,7 @@ def corners(body, around=24):
 
     Parameters
     ----------
-    body : toolaxis.machine.bodies.Body
+    body : toolaxis.machine.bodies.MachineBody
     around : int
         Points around a circle.
     """
@@ -129,14 +129,14 @@ def places(mounted, joints):
     dict of str to (4, 4) array
         By what carries them; "bed" always among them.
     """
-    from toolaxis.machine.body_poses import bed_from_body, carried_by, part_from_bed
+    from toolaxis.machine.body_poses import axes_carrying, bed_from_body, part_from_bed
 
     machine, rotary = mounted.machine, joints[3:]
     part_from = part_from_bed(machine, rotary, mounted.table_from_part)
     found = {"bed": part_from}
     for name in {body.carried for body in machine.bodies} - {"bed"}:
         matrix = bed_from_body(machine, name, rotary)
-        matrix[:3, 3] += machine.directions @ carried_by(machine, name) @ joints[:3]
+        matrix[:3, 3] += machine.directions @ axes_carrying(machine, name) @ joints[:3]
         found[name] = part_from @ matrix
     return found
 

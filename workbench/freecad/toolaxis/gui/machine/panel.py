@@ -8,16 +8,16 @@ from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.machine import machine_of, place_machine
 from freecad.toolaxis.document.machine_angles import texts_of
 from freecad.toolaxis.document.machine_limits import available, text_of
-from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.gui.machine.check import lengths_at, looked_at, met_by, middle_of, names_of, things_of, tip_of
-from freecad.toolaxis.gui.machine.motion import Journey, meeting
+from freecad.toolaxis.gui.machine.motion import MachineTour, meeting
 from freecad.toolaxis.gui.machine.scene import MachineScene
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.table_entries import data_of, put
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import collisions
-from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.background import BackgroundWork, sentence
 from PySide import QtCore, QtGui, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -141,14 +141,14 @@ class MachinePanel(Panel):
             self._not_found(translate("ToolAxis", "The operations were deleted: there is no axis to hold"))
             return
         try:
-            stands = [Standing.of(operation) for operation in self.operations]
+            stands = [OperationRecord.of(operation) for operation in self.operations]
             tools = [inputs_of(operation).assembled() for operation in self.operations]
             self.copies = collisions.copies(self.operations)
         except Exception as reason:
             self._not_found(sentence(reason))
             return
         text = text_of(self.machine, self.offset)
-        self.work = Work(lambda progress: looked_at(text, stands, tools))
+        self.work = BackgroundWork(lambda progress: looked_at(text, stands, tools))
         self.work.done.connect(lambda found: self._looked(found, stands))
         self.work.failed.connect(self._not_found)
         tell(self.form.message, translate("ToolAxis", "Looking at all operations"))
@@ -191,7 +191,7 @@ class MachinePanel(Panel):
         """Look for what the tool and the machine meet of parts and clamps, off the GUI thread."""
         mounted, rows, tools = self.found
         paths, copies, stations = [stand.path for stand in self.stands], self.copies, list(self.stations)
-        self.work = Work(lambda progress: met_by(mounted, (rows, tools, paths), copies, stations, progress))
+        self.work = BackgroundWork(lambda progress: met_by(mounted, (rows, tools, paths), copies, stations, progress))
         self.work.done.connect(self._looked_out)
         self.work.failed.connect(lambda text: self._not_looked_out(text))
         self.work.start()
@@ -230,8 +230,8 @@ class MachinePanel(Panel):
     def _travel(self, stands):
         """Show the machine on its way through the operations."""
         mounted, rows, tools = self.found
-        self.journey = Journey.through(mounted, [(middle_of(stands[k].path), rows[k][0][way].rotary)
-                                                 for k, way in self.stations], lengths_at(self.stations, tools))
+        self.journey = MachineTour.through(mounted, [(middle_of(stands[k].path), rows[k][0][way].rotary)
+                                                     for k, way in self.stations], lengths_at(self.stations, tools))
         self.stands = stands
         self.form.slide.setMaximum(max(1000 * (len(self.stations) - 1), 1))
         blocked = self.form.slide.blockSignals(True)
@@ -314,7 +314,7 @@ class MachinePanel(Panel):
             return
         mounted, rows = self._holding(row), self.found[1]
         way, path, one = rows[row][0][column], self.stands[row].path, self.held.get((row, column))
-        joints = Journey.through(mounted, [(tip_of(path, one), way.rotary)]).joints[0]
+        joints = MachineTour.through(mounted, [(tip_of(path, one), way.rotary)]).joints[0]
         red, _ = meeting(mounted, joints)
         self.scene.stand(joints, red | names_of(one), self.form.still.isChecked(), row)
         self.scene.redden(things_of(one, self.document))

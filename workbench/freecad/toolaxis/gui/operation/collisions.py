@@ -3,13 +3,13 @@
 from contextlib import suppress
 
 import FreeCAD
-from freecad.toolaxis.document.passes import Stations
-from freecad.toolaxis.document.read_operation import Standing
+from freecad.toolaxis.document.passes import PassStations
+from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.gui.machine.scene import red_over
 from freecad.toolaxis.gui.plan.preview import view_of
 from freecad.toolaxis.gui.widgets.fields import tell
 from freecad.toolaxis.services import collisions
-from freecad.toolaxis.services.background import Work
+from freecad.toolaxis.services.background import BackgroundWork
 from freecad.toolaxis.services.path_collisions import bumps
 
 translate = FreeCAD.Qt.translate
@@ -35,13 +35,13 @@ class Collisions:
         """Begin to look for them."""
         self.leave()
         try:
-            path, copies = Standing.of(self.operation).path, collisions.copies([self.operation])
+            path, copies = OperationRecord.of(self.operation).path, collisions.copies([self.operation])
             whole = collisions.tool_of(self.operation)
-            self.stations = Stations(self.tool.Passes)
+            self.stations = PassStations(self.tool.Passes)
         except Exception as reason:  # the part is gone: nothing to look at
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return
-        self.work = Work(lambda progress: bumps(whole, path, copies, progress))
+        self.work = BackgroundWork(lambda progress: bumps(whole, path, copies, progress))
         self.work.done.connect(self._looked)
         self.work.failed.connect(self._not_looked)
         tell(self.label, translate("ToolAxis", "Looking for collisions"))

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.inputs import inputs_of
-from freecad.toolaxis.document.read_shapes import Source
+from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.raster import marked, picture_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill, measures
@@ -20,7 +20,7 @@ from freecad.toolaxis.gui.widgets.message_box import warn
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
-from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.export import plan_task
 from freecad.toolaxis.services.pictures import drawn
 from PySide import QtCore, QtWidgets
@@ -126,12 +126,12 @@ class OperationPanel(Panel):
         if found is None or found.map is None:
             return
         try:
-            source = Source.of(inputs_of(self.operation))
+            source = ShapesRead.of(inputs_of(self.operation))
         except Exception as reason:  # the part is gone: no map
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             return
         self.map.empty = translate("ToolAxis", "The map is being drawn.")
-        self.work = Work(lambda progress: _picture(source, number, found, progress))
+        self.work = BackgroundWork(lambda progress: _picture(source, number, found, progress))
         self.work.done.connect(self._drawn)
         self.work.failed.connect(self._not_drawn)
         self.work.start()
@@ -155,7 +155,7 @@ class OperationPanel(Panel):
         except Exception as reason:
             tell(self.form.message, sentence(reason), bad=True)
             return
-        self.drawing = Work(lambda progress: drawn(plan(progress), progress))
+        self.drawing = BackgroundWork(lambda progress: drawn(plan(progress), progress))
         self.drawing.done.connect(self._show_pictures)
         self.drawing.failed.connect(self._no_pictures)
         tell(self.form.message, translate("ToolAxis", "Drawing"))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import degrees
 
 import FreeCAD
-from freecad.toolaxis.document.inputs import Inputs, flute_of
+from freecad.toolaxis.document.inputs import JobInputs, flute_of
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
@@ -248,7 +248,7 @@ class PlanForm:
 
         Parameters
         ----------
-        inputs : freecad.toolaxis.document.inputs.Inputs
+        inputs : freecad.toolaxis.document.inputs.JobInputs
         """
         self.unshown, inputs = _shown(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
@@ -271,7 +271,7 @@ class PlanForm:
         self.set_limits(inputs.limits)
 
     def read(self):
-        """What the fields hold, as keyword arguments of `freecad.toolaxis.document.inputs.Inputs`.
+        """What the fields hold, as keyword arguments of `freecad.toolaxis.document.inputs.JobInputs`.
 
         Raises
         ------
@@ -310,11 +310,11 @@ class PlanForm:
 def _shown(inputs, fastest):
     """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
     from toolaxis.errors import InvalidInput
-    from toolaxis.partition.partition import checked_count
+    from toolaxis.partition.partition import check_count
     from toolaxis.tools.tool import Tool
 
-    checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: checked_count(inputs.regions),
-              "orientations": lambda: checked_count(inputs.orientations, "orientations"),
+    checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: check_count(inputs.regions),
+              "orientations": lambda: check_count(inputs.orientations, "orientations"),
               "spindle": lambda: _check_spindle(inputs.spindle, fastest)}
     reasons = {}
     for name, look in checks.items():
@@ -322,7 +322,7 @@ def _shown(inputs, fastest):
             look()
         except InvalidInput as reason:
             reasons[name] = " ".join(str(reason).split()).rstrip(".")
-    usual = Inputs()
+    usual = JobInputs()
     return "; ".join(reasons.values()), replace(inputs, **{name: getattr(usual, name) for name in reasons})
 
 
@@ -351,7 +351,7 @@ def check(values):
 
     if values["stickout"] <= 0:
         raise InvalidInput(f"stick-out is {values['stickout']:g} mm: it must be above zero")
-    inputs = Inputs(**{**values, "faces": (), "obstacles": ()})
+    inputs = JobInputs(**{**values, "faces": (), "obstacles": ()})
     inputs.job().check_tool(inputs.assembled())
     inputs.check_counts()
     if values["limits"].startswith(PREFIX):

@@ -1,15 +1,15 @@
 """Which axes and feeds of a plan are locked, and the sub-surfaces that are kept for that."""
 
-from freecad.toolaxis.document.inputs import Piece
+from freecad.toolaxis.document.inputs import KeptSubSurface
 from freecad.toolaxis.services.write_results import owners_of, region_of
 
 
-class Locks:
+class AxisLocks:
     """Locks of a plan that is not in the document yet, by the operations' numbers.
 
     Parameters
     ----------
-    inputs : freecad.toolaxis.document.inputs.Inputs, optional
+    inputs : freecad.toolaxis.document.inputs.JobInputs, optional
         What the plan was made with.
     plan : toolaxis.plan.plan.Plan, optional
     """
@@ -48,10 +48,11 @@ class Locks:
             thing, name, _ = self.owners[op.number]
             locked = op.number in self.axis and op.done
             region = region_of(op, plan) or ()
-            found.append(Piece(thing, name, tuple(tuple(map(tuple, loop)) for loop in region),
-                               tuple(map(float, op.orientation.axis)) if locked else None,
-                               op.orientation.feed if op.number in self.feed and op.done else "", locked, _suffix(op),
-                               op.number in self.drawn))
+            found.append(KeptSubSurface(thing, name, tuple(tuple(map(tuple, loop)) for loop in region),
+                                        tuple(map(float, op.orientation.axis)) if locked else None,
+                                        op.orientation.feed if op.number in self.feed and op.done else "", locked,
+                                        _suffix(op),
+                                        op.number in self.drawn))
         return tuple(found)
 
 

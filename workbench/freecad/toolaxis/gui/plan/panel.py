@@ -6,7 +6,7 @@ from dataclasses import replace
 import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.document.cam_probe import speeds
-from freecad.toolaxis.document.inputs import Inputs, inputs_of
+from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
@@ -14,17 +14,17 @@ from freecad.toolaxis.document.read_shapes import titles_of
 from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.form import PlanForm
-from freecad.toolaxis.gui.plan.locks import Locks
+from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import selected_faces, tools_in
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
-from freecad.toolaxis.gui.widgets.progress_line import Ongoing
+from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
-from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.defaults import defaults
 from freecad.toolaxis.services.macros import again_lines, plan_line, record
 from freecad.toolaxis.services.obstacles import bodies_in
@@ -46,7 +46,7 @@ class PlanPanel(Panel):
     Parameters
     ----------
     document : App.Document
-    inputs : freecad.toolaxis.document.inputs.Inputs, optional
+    inputs : freecad.toolaxis.document.inputs.JobInputs, optional
         What the fields show at first; sensible defaults for the selection unless given.
     operation : object, optional
         The operation that is planned again.
@@ -59,7 +59,7 @@ class PlanPanel(Panel):
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
-        self.ongoing = Ongoing(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
+        self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed = None
         self.outrun = False
         self._fill(inputs)
@@ -216,7 +216,7 @@ class PlanPanel(Panel):
             self._show_state()
             return
         self.problem, self.outrun = "", False
-        inputs = Inputs(**self.fields.read(), pieces=self._pieces())
+        inputs = JobInputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
         try:
@@ -226,7 +226,7 @@ class PlanPanel(Panel):
             self._show_state()
             return
         titles = titles_of(inputs)
-        self.work = Work(lambda progress: _planned(task, progress), None, _growing)
+        self.work = BackgroundWork(lambda progress: _planned(task, progress), None, _growing)
         self.work.interim.connect(lambda found: self._growing(*found, titles))
         self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
@@ -242,7 +242,7 @@ class PlanPanel(Panel):
         if plan is None or self.work is not None:
             return
         self.view.leave()
-        self.work = Work(lambda progress: drawn(plan, progress))
+        self.work = BackgroundWork(lambda progress: drawn(plan, progress))
         self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(self._drawn)
         self.work.failed.connect(self._not_computed)
@@ -298,7 +298,7 @@ class PlanPanel(Panel):
             return
         self.computed = None if self.outrun else inputs
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
-        self.view.show(plan, pictures, titles, Locks(inputs, plan))
+        self.view.show(plan, pictures, titles, AxisLocks(inputs, plan))
         self.form.tabs.setCurrentWidget(self.form.resultTab)
         self._show_state()
 

@@ -62,7 +62,7 @@ class Preview:
         self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
                       *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
                       *((tool, partial(_revolved, *solid)) for solid in solids(plan.tool))]
-        self.stations = Stations(op.path)
+        self.stations = PreviewStations(op.path)
         self.root, self.view = root, view
         view.getSceneGraph().addChild(root)
         self._timer.start()
@@ -121,7 +121,7 @@ def view_of(name):
     return found[0] if found else None
 
 
-class Stations:
+class PreviewStations:
     """Places of the tool along the motions that are no links, by their share of the length.
 
     Parameters

@@ -5,10 +5,10 @@ import numpy as np
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.result_rows import fill, fill_baselines, measures, sentences
 from freecad.toolaxis.gui.axis_map.widget import HemisphereMap, no_map
-from freecad.toolaxis.gui.plan.locks import Locks
+from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.orientation_curve import OrientationCurve
 from freecad.toolaxis.gui.plan.outcome import left_to_clean_up
-from freecad.toolaxis.services.background import Work
+from freecad.toolaxis.services.background import BackgroundWork
 from PySide import QtCore
 
 translate = FreeCAD.Qt.translate
@@ -41,7 +41,7 @@ class AxisView(QtCore.QObject):
         self.curve = OrientationCurve(form)
         form.curveLayout.addWidget(self.curve)
         self.curve.hovered.connect(form.pointer.setText)
-        self.locks = Locks()
+        self.locks = AxisLocks()
         self.plan = self.found = None
         self.pictures, self.titles, self.left = {}, {}, set()
         self.growing, self.computed = {}, None
@@ -68,7 +68,7 @@ class AxisView(QtCore.QObject):
         """Show no plan."""
         self.leave()
         self.plan, self.found, self.pictures, self.growing = None, None, {}, {}
-        self.locks = Locks()
+        self.locks = AxisLocks()
         self.curve.show_options(())
         fill_baselines(self.form.baselines, ())
         self._offer([], -1)
@@ -84,9 +84,9 @@ class AxisView(QtCore.QObject):
             By the operations' numbers.
         titles : dict of int to str, optional
             What the faces are called, by their numbers.
-        locks : Locks, optional
+        locks : AxisLocks, optional
         """
-        self.titles, self.locks = titles or {}, locks or Locks()
+        self.titles, self.locks = titles or {}, locks or AxisLocks()
         self.curve.show_options(plan.options)
         fill_baselines(self.form.baselines, plan.baselines)
         self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
@@ -274,7 +274,7 @@ class AxisView(QtCore.QObject):
         self.map.show_tried(axis)
         self.legend.show_picture(self.map.picture, tried=True)
         self.form.cost.setText(translate("ToolAxis", "Trying this axis..."))
-        self.work = Work(lambda progress: try_axis(plan, op, axis, feed, progress=progress))
+        self.work = BackgroundWork(lambda progress: try_axis(plan, op, axis, feed, progress=progress))
         self.work.progressed.connect(self._trying)
         self.work.done.connect(self._tried)
         self.work.failed.connect(self._failed)

@@ -15,7 +15,7 @@ _NEARER = -50000.0
 
 
 @dataclass(eq=False)
-class Skin:
+class PaintedFace:
     """One face as triangles with a value at each corner.
 
     Attributes
@@ -52,8 +52,8 @@ def skins_of(found):
 
 def _piece(found, triangle):
     rows, inverse = np.unique(triangle, return_inverse=True)
-    return Skin(found.point[rows], inverse.reshape(triangle.shape), found.remaining[rows], found.gouge[rows],
-                found.declared[rows])
+    return PaintedFace(found.point[rows], inverse.reshape(triangle.shape), found.remaining[rows], found.gouge[rows],
+                       found.declared[rows])
 
 
 class Paint:
@@ -76,7 +76,7 @@ class Paint:
 
         Parameters
         ----------
-        skins : sequence of Skin
+        skins : sequence of PaintedFace
         what : str
             "remaining" or "gouge".
         limit : float

@@ -16,7 +16,7 @@ from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.quantity import fine_text, length_text
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
-from freecad.toolaxis.services.background import Work, sentence
+from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.macros import record, thing_of
 from freecad.toolaxis.services.write_results import keep_verdict
 from PySide import QtWidgets
@@ -69,8 +69,8 @@ class VerifyPanel(Panel):
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             return
-        self.work = Work(lambda progress: [_judged(judge, frame, progress)
-                                           for judge, frame in zip(judges, frames, strict=True)])
+        self.work = BackgroundWork(lambda progress: [_judged(judge, frame, progress)
+                                                     for judge, frame in zip(judges, frames, strict=True)])
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(self._done)
         self.work.failed.connect(lambda text: self._ended(text))

@@ -3,7 +3,7 @@
 import FreeCAD
 
 
-class Watch:
+class DocumentObserver:
     """A document observer that tells one panel.
 
     Parameters

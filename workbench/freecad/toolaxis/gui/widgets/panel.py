@@ -1,7 +1,7 @@
 """What the task panels have in common: the document is watched, work is left, and everything is let go of once."""
 
 import FreeCADGui
-from freecad.toolaxis.gui.widgets.document_observer import Watch
+from freecad.toolaxis.gui.widgets.document_observer import DocumentObserver
 from PySide import QtCore, QtWidgets
 
 
@@ -48,7 +48,7 @@ class Panel:
 
     def _follow(self):
         """Watch the document, and the form: FreeCAD may take it away without asking."""
-        self.watch = Watch(self.document, self)
+        self.watch = DocumentObserver(self.document, self)
         self.form.destroyed.connect(self._close)
 
     def _leave(self):

@@ -2,14 +2,14 @@
 
 from time import monotonic
 
-from freecad.toolaxis.services.time_left import Remaining
+from freecad.toolaxis.services.time_left import TimeLeft
 from PySide import QtCore
 
 #: How often it is told how long it goes on, ms.
 _CLOCK = 1000
 
 
-class Ongoing:
+class ProgressLine:
     """Tells of one computation at a time, until another sentence takes its place.
 
     Parameters
@@ -24,7 +24,7 @@ class Ongoing:
 
     def __init__(self, form, tell, listens):
         self.bar, self.tell, self.listens = form.progress, tell, listens
-        self.remaining, self.stage = Remaining(0.0), ("", -1.0)
+        self.remaining, self.stage = TimeLeft(0.0), ("", -1.0)
         self.timer = QtCore.QTimer(form)
         self.timer.setInterval(_CLOCK)
         self.timer.timeout.connect(self._show)
@@ -37,7 +37,7 @@ class Ongoing:
         stage : str
             The first step.
         """
-        self.remaining = Remaining(monotonic())
+        self.remaining = TimeLeft(monotonic())
         self.timer.start()
         self.report(stage, -1.0)
 
