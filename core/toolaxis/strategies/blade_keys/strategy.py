@@ -1,9 +1,9 @@
 """The strategy `blade-keys`: as `blade`, with tool angles by key points and rounded corners."""
 
-from toolaxis.strategies.blade.strategy import Blade
+from toolaxis.strategies.blade.strategy import BladeStrategy
 
 
-class BladeKeys(Blade):
+class BladeKeys(BladeStrategy):
     """Tool angles by key points, as in the paper."""
 
     name = "blade-keys"
