@@ -10,9 +10,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 TREES = {"core": ROOT / "core" / "toolaxis", "workbench": ROOT / "workbench" / "freecad" / "toolaxis"}
 #: Participles that do not end in "ed".
-_IRREGULAR = set("""begun bent bound broken brought built chosen dealt drawn driven fallen fed found given gone heard held
-                 hidden kept known laid left lost made met risen seen sent shown sought spent spoken stood sunk taken
-                 thrown told torn worn wound written""".split())
+_IRREGULAR = set("""begun bent bound broken brought built chosen dealt drawn driven fallen fed found given gone heard
+                 held hidden kept known laid left lost made met risen seen sent shown sought spent spoken stood sunk
+                 taken thrown told torn worn wound written""".split())
 _NO_PARTICIPLES = {"exceed", "feed", "need", "proceed", "seed", "shed", "speed"}
 _NO_CODE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENCODING,
             tokenize.ENDMARKER}
