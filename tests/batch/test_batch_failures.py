@@ -107,7 +107,7 @@ def test_memory_that_planning_asks_for_beyond_the_limit_is_refused(domes: Made, 
             "import toolaxis as ta\n"
             "face = ta.Face.from_bspline(points)\n"
             "task = read_jobs([dict(name='a', part=face, tool='ball:2', scallop=0.1, memory=900)])[0].task()\n"
-            "answer = labour.carried_out(task, Path(sys.argv[1]), {})\n"
+            "answer = labour.answer_task(task, Path(sys.argv[1]), {})\n"
             "assert (answer.cause, answer.reason) == ('memory', 'it ran out of memory: its limit is 900 MB'), answer\n")
     subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True, timeout=120)
     assert list(tmp_path.iterdir()) == []

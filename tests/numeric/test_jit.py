@@ -25,11 +25,12 @@ def test_without_numba_the_twins_run(tmp_path: Path) -> None:
 import sys, numpy as np
 from toolaxis.numeric import bspline
 from toolaxis.numeric import jit as compiled
-from toolaxis.shape.analytic import Sphere
+from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 assert compiled.available == ("numba" in sys.modules) == (sys.argv[-1] == "with")
-face = Face(Sphere(20.0, (0.0, 1.5), (-1.0, 1.0)).nurbs(), (np.array([[0.1, -0.5], [1.2, -0.5], [0.7, 0.8]]),))
+sphere = SphericalSurface(20.0, (0.0, 1.5), (-1.0, 1.0))
+face = Face(sphere.nurbs(), (np.array([[0.1, -0.5], [1.2, -0.5], [0.7, 0.8]]),))
 uv = face.grid(9, 9)
 work, out = np.empty(bspline.WORK_SHAPE), np.empty((6, 3))
 bspline.surface_derivatives(face.surface.data, *uv[0], out, work)
@@ -69,9 +70,9 @@ def test_without_compilation_kernels_are_plain_functions(tmp_path: Path) -> None
 
 def test_kept_code_expires_with_what_it_calls(tmp_path: Path) -> None:
     pytest.importorskip("numba")
-    inner = "from toolaxis.numeric.jit import compiled\n\n\n@compiled\ndef inner(x):\n    return x + {}\n"
+    inner = "from toolaxis.numeric.jit import jit\n\n\n@jit\ndef inner(x):\n    return x + {}\n"
     (tmp_path / "outer_kernel.py").write_text("from inner_kernel import inner\nfrom toolaxis.numeric.jit import "
-                                              "compiled\n\n\n@compiled\ndef outer(x):\n    return inner(x)\n")
+                                              "jit\n\n\n@jit\ndef outer(x):\n    return inner(x)\n")
     script = "from outer_kernel import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
     source, answers = tmp_path / "inner_kernel.py", []
     for term in ("1.0", None, "20.0"):
@@ -86,7 +87,7 @@ def test_kept_code_serves_another_clone(tmp_path: Path) -> None:
     """The text of the sources decides, not where they lie or when they were written."""
     pytest.importorskip("numba")
     script = "from twice_kernel import twice; print(twice(1.5), sum(twice.stats.cache_hits.values()))"
-    source = "from toolaxis.numeric.jit import compiled\n\n\n@compiled\ndef twice(x):\n    return {} * x\n"
+    source = "from toolaxis.numeric.jit import jit\n\n\n@jit\ndef twice(x):\n    return {} * x\n"
     first, second = tmp_path / "first", tmp_path / "second"
     first.mkdir()
     (first / "twice_kernel.py").write_text(source.format("2.0"))
@@ -103,7 +104,7 @@ def test_kept_code_serves_another_clone(tmp_path: Path) -> None:
 def test_kept_code_expires_with_imported_constants(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     (tmp_path / "scaled_kernel.py").write_text("from scale import SCALE\nfrom toolaxis.numeric.jit import "
-                                               "compiled\n\n\n@compiled\ndef scaled(x):\n    return SCALE * x\n")
+                                               "jit\n\n\n@jit\ndef scaled(x):\n    return SCALE * x\n")
     script = "from scaled_kernel import scaled; print(scaled(1.5), sum(scaled.stats.cache_hits.values()))"
     answers = []
     for scale in ("2.0", "2.0", "4.0"):
@@ -115,8 +116,8 @@ def test_kept_code_expires_with_imported_constants(tmp_path: Path) -> None:
 def test_kept_code_expires_when_fields_change_places(tmp_path: Path) -> None:
     """Also where the kernel's module does not know the named tuple that it is handed."""
     pytest.importorskip("numba")
-    (tmp_path / "first_kernel.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
-                                              "@compiled\ndef low(pair):\n    return pair[0].low\n")
+    (tmp_path / "first_kernel.py").write_text("from toolaxis.numeric.jit import jit\n\n\n"
+                                              "@jit\ndef low(pair):\n    return pair[0].low\n")
     script = ("from first_kernel import low\nfrom span import Span\n"
               "print(low((Span(low=1.0, high=2.0), 3)), sum(low.stats.cache_hits.values()))")
     answers = []
@@ -127,11 +128,26 @@ def test_kept_code_expires_when_fields_change_places(tmp_path: Path) -> None:
     assert answers == [["1.0", "0"], ["1.0", "1"], ["1.0", "0"]]
 
 
+def test_kept_code_of_a_class_that_is_gone_is_compiled_anew(tmp_path: Path) -> None:
+    """An earlier version kept code for arguments of a class that another one does not have any more."""
+    pytest.importorskip("numba")
+    (tmp_path / "low_kernel.py").write_text("from toolaxis.numeric.jit import jit\n\n\n"
+                                            "@jit\ndef low(pair):\n    return pair[0].low\n")
+    answers = []
+    for name in ("Span", "Range", "Range"):
+        (tmp_path / "span.py").write_text("from typing import NamedTuple\n\n\n"
+                                          f"class {name}(NamedTuple):\n    low: float\n")
+        script = (f"from low_kernel import low\nfrom span import {name}\n"
+                  f"print(low(({name}(low=1.0), 3)), sum(low.stats.cache_hits.values()))")
+        answers.append(run(script, tmp_path).split())
+    assert answers == [["1.0", "0"], ["1.0", "0"], ["1.0", "1"]]
+
+
 def test_kept_code_for_other_arguments_is_not_taken(tmp_path: Path) -> None:
     """Two processes that compile at the same time may both write the file of the first's code."""
     pytest.importorskip("numba")
-    (tmp_path / "half_kernel.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
-                                             "@compiled\ndef half(x):\n    return x[0] / 2\n")
+    (tmp_path / "half_kernel.py").write_text("from toolaxis.numeric.jit import jit\n\n\n"
+                                             "@jit\ndef half(x):\n    return x[0] / 2\n")
     script = ("import numpy as np\nfrom half_kernel import half\n"
               "print(half(np.array([3.0])), half(np.array([3])), sum(half.stats.cache_hits.values()))")
     answers = [run(script, tmp_path).split()]
@@ -151,8 +167,8 @@ def test_nothing_else_imports_numba() -> None:
 
 
 def test_what_has_to_be_compiled_is_counted(tmp_path: Path) -> None:
-    (tmp_path / "one.py").write_text("from toolaxis.numeric.jit import compiled\n\n\n"
-                                     "@compiled\ndef double(x):\n    return 2 * x\n")
+    (tmp_path / "one.py").write_text("from toolaxis.numeric.jit import jit\n\n\n"
+                                     "@jit\ndef double(x):\n    return 2 * x\n")
     script = ("from toolaxis.numeric.jit import compilations\nseen = compilations()\nimport one\n"
               "assert one.double(1.5) == 3.0\nprint('seen', seen())")
     counts = [run(script, tmp_path, **environment) for environment in ({}, {}, {"TOOLAXIS_NUMBA": "0"})]

@@ -63,7 +63,7 @@ class PathSegment:
     ----------
     kind : Motion
     begin, end : int
-        Points of the `Following` between which it runs.
+        Points of the `AxisTrajectory` between which it runs.
     turning : bool
         Whether the tool axis turns.
     rapid : bool

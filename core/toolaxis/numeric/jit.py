@@ -133,19 +133,29 @@ def _check(store: Any, stamp: str) -> None:
     numba names the file in a list that it writes before the file.  Two processes that compile a kernel for different
     arguments at the same time may choose the same file, and the code for the one is called with the other's arguments.
     Nor does it compare the names of a named tuple's fields: code kept from before two of them changed places reads the
-    one for the other.
+    one for the other.  And a list of code for arguments of a class that is gone, kept by an earlier version, cannot be
+    read at all; it is begun anew.
     """
-    save, load = store.save, store.load
+    save, load, read = store.save, store.load, store._load_index
+
+    def listed() -> Any:
+        try:
+            return read()
+        except Exception:  # what reading a pickle may raise is anything
+            return {}
 
     def marked(key: Any, code: Any) -> None:
         save(key, (stamp, _fields_in(key[0]), key, code))
 
     def checked(key: Any) -> Any:
-        found = load(key)
+        try:
+            found = load(key)
+        except Exception:
+            return None
         fits = isinstance(found, tuple) and found[:3] == (stamp, _fields_in(key[0]), key)
         return found[3] if fits else None
 
-    store.save, store.load = marked, checked
+    store.save, store.load, store._load_index = marked, checked, listed
 
 
 def _fields_in(types: Any) -> tuple[Any, ...]:

@@ -25,7 +25,7 @@ def threads():
 
 
 def preferred_inputs():
-    """Fields of `document.inputs.Inputs` that the user prefers for new plans; what is left open is not there.
+    """Fields of `document.inputs.JobInputs` that the user prefers for new plans; what is left open is not there.
 
     Returns
     -------

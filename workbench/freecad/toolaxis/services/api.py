@@ -106,7 +106,7 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
         mm
     progress : toolaxis.progress.Progress, optional
     **given
-        Further fields of `Inputs`, `regions`, `orientations`, `method` and `strategy` among them; what is not given
+        Further fields of `JobInputs`, `regions`, `orientations`, `method` and `strategy` among them; what is not given
         comes from the part.
 
     Returns

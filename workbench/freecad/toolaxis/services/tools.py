@@ -6,7 +6,7 @@ from freecad.toolaxis.services.arguments import tool_of
 
 
 def tool_fields(tool):
-    """The fields of `Inputs` that a tool fills.
+    """The fields of `JobInputs` that a tool fills.
 
     Parameters
     ----------
