@@ -15,7 +15,7 @@ from nc_plans import a_plan, axes_at
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
-from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
@@ -93,7 +93,7 @@ def test_a_new_plan_takes_old_programs_away(folder: Path) -> None:
     assert main(["post", str(folder), "--dialect", "fanuc", "--machine", "mikron-ucp-710"]) == 0
     with stage_folder(folder) as stage:
         write_plan(plan_at(ANGLES[:1]), stage.folder)
-        stage.publish()
+        stage.publish(OF_PLAN)
     assert not list(folder.glob("program-*")) and not list(folder.glob("setup-*"))
 
 

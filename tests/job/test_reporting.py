@@ -17,7 +17,7 @@ import pytest
 
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput, MissingBackend
-from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_json, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, read_plan, stage_folder, write_json, write_plan
 from toolaxis.job.files.verdict_maps import read_views, write_views
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document, verify_plan
@@ -86,7 +86,7 @@ def judged(folder: Path) -> Path:
 def written(plan: Plan, folder: Path) -> Path:
     with stage_folder(folder) as stage:
         write_plan(plan, stage.folder)
-        stage.publish()
+        stage.publish(OF_PLAN)
     return folder
 
 

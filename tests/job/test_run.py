@@ -159,7 +159,7 @@ def test_faces_by_number_and_by_default() -> None:
 def test_a_face_that_cannot_be_computed_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
     import toolaxis.search.fixed_axis as job
 
-    search = job.searched
+    search = job.find_axis
 
     def fails_on_the_first(task: FaceProblem, *rest: object, **more: object) -> object:
         if task.worth.face.number == 1:
