@@ -49,8 +49,7 @@ def test_a_path_is_proven_among_the_machine_s_bodies_and_the_judge_says_the_same
     assert "collision with the machine itself" not in plan.not_checked
     for gap, free in ((3.0, True), (0.7, False)):
         built = with_bodies(plan, MachineBody("table", "C", "cylinder", np.array([[0.0, 0, -40], [0, 0, 0]]), 100.0),
-                            SPINDLE,
-                            post_beside(plan, gap))
+                            SPINDLE, post_beside(plan, gap))
         made = sequence_operations(built)
         assert made.operations[0].done is free and (made.outcome == "complete") is free
         if not free:

@@ -64,8 +64,7 @@ def crowded(passes, points, faces, size=20.0):
     around = small_faces(faces, size / 2 + 8, 3.0, 2 + faces)
     target = rectangle([-size / 2, -size / 2, 0], [size, 0, 0], [0, size, 0], 1)
     return VerificationTask("crowded", tips, np.tile(UP, (len(tips), 1)), kind, Profile(0, 3, 0, 20), (target,), 0.001,
-                            skin=skin,
-                            surroundings=around, outlines={"holder": HOLDER - np.array([0.0, 15.0])})
+                            skin=skin, surroundings=around, outlines={"holder": HOLDER - np.array([0.0, 15.0])})
 
 
 def turning(count):

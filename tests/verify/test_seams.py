@@ -22,8 +22,7 @@ def judged(faces, tips, tolerance, role="skin", tool=BALL, axis=UP):
     kind = np.full(len(tips), Motion.CUT, dtype=np.int8)
     given = {role: faces[1:]}
     return judge(VerificationTask("op", np.asarray(tips), np.tile(axis, (len(tips), 1)), kind, tool.profile, faces[:1],
-                                  0.02,
-                                  left=faces[:1], tolerance=Tolerance(gouge=tolerance), **given), spacing=0.25)
+                                  0.02, left=faces[:1], tolerance=Tolerance(gouge=tolerance), **given), spacing=0.25)
 
 
 def along(x, z):

@@ -53,8 +53,7 @@ def source(plane_passes):
     offsets = -8 + 0.999 * WIDTH * (np.arange(int(np.ceil(16 / WIDTH)) + 1) - 0.25)
     tips, axes, kind = plane_passes((6, 1), np.radians(10), offsets, span=(-10.0, 10.0))
     return VerificationTask("source", tips, axes, kind, Profile(5, 1, 0, 24), (FLOOR,), 0.02, outlines=HOLDER,
-                            touching=(SIDE,),
-                            surroundings=(BESIDE, HUB), tolerance=Tolerance(gouge=0.01))
+                            touching=(SIDE,), surroundings=(BESIDE, HUB), tolerance=Tolerance(gouge=0.01))
 
 
 def copied(task, degrees=72.0, **change):

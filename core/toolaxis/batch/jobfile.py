@@ -83,8 +83,7 @@ class CheckedJob:
                    "orientations": self.spec.orientations, "offset": self.spec.place, "compare": self.own["compare"],
                    "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"])}
         return BatchTask(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options,
-                         self.own["verify"],
-                         self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
+                         self.own["verify"], self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
 
 
 def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[CheckedJob, ...]:

@@ -71,8 +71,7 @@ def _repost_file(given: Namespace, file: Path) -> int:
     else:
         options = Options(given.retract, _words(given.clamp), _words(given.unclamp))
         files = repost_locations(found, given.dialect, Mounting(load_machine(given.machine), offset), options,
-                                 name=file.stem,
-                                 feedrate=given.feedrate, spindle=given.spindle)
+                                 name=file.stem, feedrate=given.feedrate, spindle=given.spindle)
     targets = []
     for name, text in files.items():
         target = file.with_name(name)

@@ -160,8 +160,7 @@ def nearest_meeting(mounting: Mounting, rotary: ArrayLike, tips: ArrayLike, arou
 
 
 def meeting_on(mounting: Mounting, rotary: ArrayLike, ways: ConvexBodies, around: MachineSurroundings, *,
-               with_tool: bool = True,
-               most: float | None = None, over_table: bool = True) -> CollisionPoint | None:
+               with_tool: bool = True, most: float | None = None, over_table: bool = True) -> CollisionPoint | None:
     """The same where linear axes move inside some bodies, such as the rectangle that two of them may take any way in.
 
     Parameters

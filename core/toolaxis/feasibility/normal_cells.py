@@ -110,8 +110,7 @@ class NormalCells:
     def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
         """The quarters of cells, those of one after those of the other, and how many there are of each."""
         return self._made(_quarter_rectangles(cells.rect), np.repeat(cells.bounds, 4, axis=0),
-                          np.repeat(cells.crossed, 4),
-                          len(cells.rect))
+                          np.repeat(cells.crossed, 4), len(cells.rect))
 
     def _made(self, rect: Array, bounds: Array, crossed: Bools, parents: int = 1) -> tuple[TrimmedFaceCells, Index]:
         """Cells from rectangles, a few thousand at once; of those that an edge may cross, those that hold something."""

@@ -46,8 +46,7 @@ class ConvexBodies(NamedTuple):
         centre = self.centre @ turn + matrix[..., None, :3, 3]
         size = (len(centre), self.radius.shape[1])
         return ConvexBodies(centre, self.axis @ turn, np.broadcast_to(self.radius, size),
-                            np.broadcast_to(self.ball, size),
-                            self.spread @ turn)
+                            np.broadcast_to(self.ball, size), self.spread @ turn)
 
     def support(self, ways: Array) -> Array:
         """The point of each body that is farthest along a direction, (n, 3).

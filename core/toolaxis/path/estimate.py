@@ -307,8 +307,7 @@ def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, si
 
 
 def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float],
-                   passes: Array,
-                   length: Array) -> None:
+                   passes: Array, length: Array) -> None:
     """The plain twin of the summing kernel, written on whole arrays.
 
     Parameters

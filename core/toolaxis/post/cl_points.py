@@ -51,8 +51,7 @@ class CutterLocations:
 
 
 def gather_locations(rows: list[Array], kinds: list[int], rates: list[float], starts: list[int], *, told: bool,
-                     spindle: float,
-                     source: str) -> CutterLocations:
+                     spindle: float, source: str) -> CutterLocations:
     """Cutter locations from what was read point by point.
 
     Parameters

@@ -226,5 +226,4 @@ def _station(op: Operation, mounting: Mounting, angles: Array, number: int) -> I
     tilt = float(angle_between(spindle, np.array([0.0, 0.0, 1.0])))
     lean = float(np.max(angle_between(op.path.axis, mounting.axis_at(angles))))
     return IndexedPosition(op, angles, both.joints[0][apart], both.within[0][apart], matrix, (), op.path.cl,
-                           op.path.rapid,
-                           number, lean, tilt if tilt > FIXED else 0.0)
+                           op.path.rapid, number, lean, tilt if tilt > FIXED else 0.0)

@@ -243,5 +243,4 @@ def read_nc(text: str, machine: Machine, offset: ArrayLike | None = None, tool_l
         raise InvalidInput(f"NC program ends at line {number} without M2, M30 or END PGM, after {len(control.rows)} "
                            "points: it was cut short")
     return gather_locations(control.rows, control.kinds, control.rates, [], told=bool(control.names),
-                            spindle=control.spindle,
-                            source="NC program")
+                            spindle=control.spindle, source="NC program")

@@ -529,8 +529,7 @@ def evaluate_axis(face: Face, tool: Tool, axis: ArrayLike, scallop: float, machi
     if feed not in (None, *FEEDS):
         raise InvalidInput(f"feed is {feed!r}: it must be 'u' or 'v'")
     job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
-               skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
+               skin=skin, surroundings=surroundings, tolerance=tolerance, allowance=allowance, progress=progress)
     t = unit(as_rows(axis, 3, "axis")[0])
     ledger = AxisTable(job.feasibility, job.worth, progress)
     feeds = [k for k, name in enumerate(FEEDS) if feed in (None, name)]

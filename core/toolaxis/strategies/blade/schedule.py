@@ -285,8 +285,7 @@ def reschedule(layers: Sequence[Layer], swing: SwivelAxis, tool: Tool | None = N
 
 
 def schedule_layers(planes: Sequence[SThetaLayer], swing: SwivelAxis, *, curve: str = "keys",
-                    clearance: float = CLEARANCE,
-                    progress: Progress = NO_PROGRESS) -> tuple[ScheduledLayer, ...]:
+                    clearance: float = CLEARANCE, progress: Progress = NO_PROGRESS) -> tuple[ScheduledLayer, ...]:
     """Tool angles for layers in their S-theta planes.
 
     Parameters

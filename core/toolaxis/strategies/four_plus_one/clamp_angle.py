@@ -147,8 +147,7 @@ class ClampSearch:
         return self._candidate(clamp, feed, angles, widths, widest(widths, angles, gates), gates, known)
 
     def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array, chosen: Index | None,
-                   gates: SingularSides,
-                   known: Bools) -> ClampCandidate | None:
+                   gates: SingularSides, known: Bools) -> ClampCandidate | None:
         if chosen is None:
             return None
         nodes, least = self.nodes[feed], narrowest(widths, chosen)

@@ -175,8 +175,7 @@ class RoughnessSearch:
             beside = float(np.diff(steps)[max(k - 1, 0):k + 1].max(initial=0.0))
             gap = beside * contact_forms(self.face, uv, feed, True)[:, 12]
         return PassConstraints(self.face, self.tool, self.mounting.machine, self.turn, wish or self.wish, feed, places,
-                               uv, inside,
-                               gap, np.full(len(places), self.wish.leans[0]), self.speed, knots_of(places),
+                               uv, inside, gap, np.full(len(places), self.wish.leans[0]), self.speed, knots_of(places),
                                self.job.worth.allowance)
 
     def _uv(self, along: Array, step: float, feed: str) -> Array:

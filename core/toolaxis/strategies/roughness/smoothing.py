@@ -174,8 +174,7 @@ def _through(lane: PassConstraints, control: Array, ends: Array) -> Array:
 
 
 def _corrected(lane: PassConstraints, here: tuple[Array, Array, Array], tried: tuple[Array, _Tried],
-               sizes: tuple[float, float],
-               ends: Array | None) -> Array:
+               sizes: tuple[float, float], ends: Array | None) -> Array:
     """The step with conditions as they came out at its end in the place of what their slopes had promised there."""
     control, slopes, _ = here
     step, new = tried

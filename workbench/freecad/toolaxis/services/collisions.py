@@ -284,8 +284,7 @@ def around(mounted, tools, found, progress):
                 cells.append(forest(tuple(every[-len(faces):])))
     near = Near(tuple(every), np.full((len(every), 3), -DEPTH))
     return CollisionModel(mounted, tuple(MachineSurroundings(tool, tuple(cells), -DEPTH) for tool in tools), names,
-                          near,
-                          tuple(face.label for face in every))
+                          near, tuple(face.label for face in every))
 
 
 def along(known, journey, rows, progress):

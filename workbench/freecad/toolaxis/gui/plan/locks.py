@@ -51,8 +51,7 @@ class AxisLocks:
             found.append(KeptSubSurface(thing, name, tuple(tuple(map(tuple, loop)) for loop in region),
                                         tuple(map(float, op.orientation.axis)) if locked else None,
                                         op.orientation.feed if op.number in self.feed and op.done else "", locked,
-                                        _suffix(op),
-                                        op.number in self.drawn))
+                                        _suffix(op), op.number in self.drawn))
         return tuple(found)
 
 
