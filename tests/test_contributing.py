@@ -97,7 +97,7 @@ def _planned(sheet: str, folder: Path, *words: str) -> Plan:
 
 
 def test_a_strategy_is_one_folder(add, sheet: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(ta.InvalidInput, match="strategy is 'steep'"):
+    with pytest.raises(ta.InvalidInput, match="strategy 'steep' is unknown"):
         ta.plan(_face(), "torus:12x1", SCALLOP, strategy="steep", workers=1)
     add("Add a strategy", "steep")
     made = ta.plan(_face(), "torus:12x1", SCALLOP, strategy="steep", workers=1)
@@ -108,8 +108,9 @@ def test_a_strategy_is_one_folder(add, sheet: str, tmp_path: Path, capsys: pytes
     assert ta.verify(made).passed
     assert "checked at points" in str(plan_table(made).caption) and title_of("steep") == "five axes, lead of 20 degrees"
     for given, words in (({"tool": "ball:8"}, "has no flat bottom: take a torus"),
-                         ({"machine": "three-axes-fixture"}, "'steep' moves two rotary axes while it cuts"),
-                         ({"objective": "time"}, "by length or passes"), ({"roughness": 0.001}, "does not look at it")):
+                         ({"machine": "three-axes-fixture"}, "'steep' needs two driven rotary axes"),
+                         ({"objective": "time"}, "not time: leave out"),
+                         ({"roughness": 0.001}, "applies to strategy 'multiscale' only")):
         with pytest.raises(ta.InvalidInput, match=words):
             ta.plan(_face(), **{"tool": "torus:12x1", "scallop": SCALLOP, "strategy": "steep", **given})
     again = _planned(sheet, tmp_path / "out", "--tool=torus:12x1", "--strategy=steep")
@@ -125,7 +126,7 @@ def test_a_dialect_is_one_module(add, sheet: str, tmp_path: Path, capsys: pytest
     made = _planned(sheet, tmp_path / "out", "--tool=ball:8", "--method=normal", "--machine=bc-table-table",
                     "--no-pictures")
     assert main(["post", str(tmp_path / "out"), "--dialect=bare"]) == 2
-    assert "dialect 'bare' is not known" in capsys.readouterr().err
+    assert "dialect 'bare' is unknown" in capsys.readouterr().err
     add("Add a dialect", "bare")
     for dialect in ("bare", "fanuc"):
         assert main(["post", str(tmp_path / "out"), f"--dialect={dialect}"]) == 0

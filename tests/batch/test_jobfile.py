@@ -122,7 +122,7 @@ def test_roughness_is_told_in_micrometres_and_only_where_it_is_looked_at(here: P
     job = {"part": here / "a.step", "tool": "torus:10x3", "scallop": 0.1, "machine": "bc-table-table"}
     asked = [{"strategy": "multiscale", "roughness": 0.8}, {"strategy": "multiscale"}, {}]
     assert [read_jobs([{**job, **more}])[0].task().options["roughness"] for more in asked] == [0.0008, None, None]
-    for wrong, said in (({"roughness": 0.8}, "does not look at it"),
+    for wrong, said in (({"roughness": 0.8}, "applies to strategy 'multiscale' only"),
                         ({"strategy": "multiscale", "roughness": -1}, "above zero"),
                         ({"strategy": "multiscale", "tool": "ball:8"}, "a smaller corner radius"),
                         ({"strategy": "multiscale", "machine": None}, "name a machine")):

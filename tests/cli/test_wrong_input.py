@@ -75,7 +75,7 @@ GOOD = {"--tool": "torus:12x1", "--scallop": "0.02"}
     ("sheet.step", {"--regions": "0"}, "number of sub-surfaces is 0: it must be a whole number from 1 to 16"),
     ("sheet.step", {"--regions": "few"}, "--regions.*few"),
     ("sheet.step", {"--orientations": "0"}, "number of orientations is 0: it must be a whole number from 1 to 16"),
-    ("sheet.step", {"--strategy": "five-axis"}, "strategy is .five-axis.: use indexed, sturz"),
+    ("sheet.step", {"--strategy": "five-axis"}, "strategy .five-axis. is unknown: use indexed, sturz"),
     ("sheet.step", {"--obstacles": "nowhere.step"}, "nowhere.step"),
     ("missing.step", {}, "missing.step"),
     ("empty.step", {}, "empty"),

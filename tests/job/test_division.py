@@ -88,7 +88,7 @@ def test_what_is_not_covered_is_told() -> None:
     ([ta.SubSurface(1, LEFT), ta.SubSurface(1)], {}, "sub-surfaces 1a and 1b overlap"),
     ([ta.SubSurface(1, (2 * LEFT[0] + 0.3,))], {}, "sub-surface 1 leaves face 1"),
     ([ta.SubSurface(7)], {}, "face 7"),
-    ([ta.SubSurface(1, LEFT, feed="u")], {"method": "one"}, "leave out either the method or the lock")])
+    ([ta.SubSurface(1, LEFT, feed="u")], {"method": "one"}, "leave out the method, or remove the lock")])
 def test_what_cannot_be_is_refused(division: list[ta.SubSurface], more: dict[str, str], words: str) -> None:
     with pytest.raises(ta.InvalidInput, match=words):
         planned(*division, **more)

@@ -101,9 +101,10 @@ def test_the_command_plans_a_whole_step_face_and_the_judge_passes_it(tmp_path, c
 
 @pytest.mark.parametrize("given, what", [
     ({"tool": "ball:10"}, "the radius of the cutter"), ({"tool": "flat:10"}, "a sharp corner"),
-    ({"machine": None}, "name a machine"), ({"machine": "three-axes-fixture"}, "moves two rotary axes"),
-    ({"roughness": 0.0}, "roughness is 0 um"), ({"objective": "time"}, "by length or passes"),
-    ({"strategy": "sturz"}, "does not look at it"), ({"strategy": "indexed"}, "does not look at it")])
+    ({"machine": None}, "name a machine"), ({"machine": "three-axes-fixture"}, "needs two driven rotary axes"),
+    ({"roughness": 0.0}, "roughness is 0 um"), ({"objective": "time"}, "not time: leave out"),
+    ({"strategy": "sturz"}, "applies to strategy 'multiscale' only"),
+    ({"strategy": "indexed"}, "applies to strategy 'multiscale' only")])
 def test_what_makes_no_sense_is_refused(given, what) -> None:
     asked = {"tool": "torus:10x3", "machine": "bc-table-table", "strategy": "multiscale", "roughness": RA} | given
     with pytest.raises(InvalidInput, match=what):

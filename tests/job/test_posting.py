@@ -117,7 +117,7 @@ def test_clamp_words_stand_around_the_index(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("words, said", [
-    (["--dialect", "fanuk", "--machine", "mikron-ucp-710"], "dialect 'fanuk' is not known"),
+    (["--dialect", "fanuk", "--machine", "mikron-ucp-710"], "dialect 'fanuk' is unknown"),
     (["--dialect", "fanuc"], "give --machine"),
     (["--dialect", "fanuc", "--machine", "nothing"], "'nothing' is neither a file"),
     (["--dialect", "fanuc", "--machine", "three-axes-fixture"], "set by hand"),

@@ -135,8 +135,8 @@ def test_the_number_of_orientations_is_chosen_from_their_curve(tmp_path: Path) -
 
 @pytest.mark.parametrize("change, said", [
     ({"regions": 0}, "number of sub-surfaces is 0"), ({"orientations": 17}, "number of orientations is 17"),
-    ({"strategy": "five-axis"}, "strategy is 'five-axis'"), ({"faces": []}, "list of faces is empty"),
-    ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method is 'guess'"),
+    ({"strategy": "five-axis"}, "strategy 'five-axis' is unknown"), ({"faces": []}, "list of faces is empty"),
+    ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method 'guess' is unknown"),
     ({"machine": 7}, "machine is a int"), ({"datum": (0, 0)}, "datum"), ({"allowance": -1}, "allowance"),
 ])
 def test_wrong_arguments(change: dict[str, object], said: str) -> None:
@@ -258,5 +258,5 @@ def test_operations_are_carried_out_axis_by_axis() -> None:
 
 
 def test_methods_that_name_their_axes_share_none() -> None:
-    with pytest.raises(ta.InvalidInput, match="leave out either"):
+    with pytest.raises(ta.InvalidInput, match="leave out one of the two"):
         ta.plan(ta.Face.from_bspline(net(1.0)), "torus:12x1", 0.1, method="roman", orientations=2)

@@ -115,14 +115,14 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    ({"strategy": "six-axis"}, "strategy is 'six-axis': use indexed, sturz"),
-    ({"strategy": "sturz", "method": "roman"}, "method 'roman' finds fixed axes"),
-    ({"method": "sturz"}, "ask for the strategy 'sturz' instead"),
-    ({"strategy": "sturz", "objective": "time"}, "by length or passes"),
-    ({"strategy": "sturz", "orientations": 3}, "sub-surfaces share none: leave out the number of axes"),
-    ({"method": "roman", "orientations": 3}, "leave out either the method"),
-    ({"method": "best"}, "method is 'best': use sphere, sectors, roman, normal, one or ball"),
-    ({"strategy": "sturz", "machine": "three-axes-fixture"}, "moves two rotary axes while it cuts")])
+    ({"strategy": "six-axis"}, "strategy 'six-axis' is unknown: use indexed, sturz"),
+    ({"strategy": "sturz", "method": "roman"}, "method 'roman' is for fixed axes"),
+    ({"method": "sturz"}, "give it as the strategy instead"),
+    ({"strategy": "sturz", "objective": "time"}, "not time: leave out"),
+    ({"strategy": "sturz", "orientations": 3}, "no shared axes to count: leave out the number of orientations"),
+    ({"method": "roman", "orientations": 3}, "leave out one of the two"),
+    ({"method": "best"}, "method 'best' is unknown: use sphere, sectors, roman, normal, one or ball"),
+    ({"strategy": "sturz", "machine": "three-axes-fixture"}, "needs two driven rotary axes")])
 def test_what_does_not_go_with_a_moving_axis_is_refused(words, message) -> None:
     with pytest.raises(ta.InvalidInput, match=message):
         ta.plan(_face(), TOOL, 0.05, **words)
@@ -133,5 +133,5 @@ def test_names_of_strategies() -> None:
     assert strategy_of("roman").name == "indexed" and strategy_of("sturz").name == "sturz"
     assert title_of("roman") == "Roman's rule" and title_of("sturz") == "five axes, constant lead"
     for method in ("indexed", "best"):
-        with pytest.raises(ta.InvalidInput, match=f"method is '{method}': use sphere, "):
+        with pytest.raises(ta.InvalidInput, match=f"method '{method}' is unknown: use sphere, "):
             strategy_of(method)

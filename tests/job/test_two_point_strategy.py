@@ -54,9 +54,10 @@ def test_a_convex_face_is_said_to_have_one_contact() -> None:
 
 
 @pytest.mark.parametrize("given, what", [({"tool": "ball:8"}, "no flat bottom"), ({"tool": "tapered:6x1x4"}, "no flat"),
-                                         ({"objective": "time"}, "by length or passes"),
-                                         ({"method": "roman"}, "finds fixed axes"),
-                                         ({"machine": "three-axes-fixture"}, "'two-point' moves two rotary axes")])
+                                         ({"objective": "time"}, "not time: leave out"),
+                                         ({"method": "roman"}, "is for fixed axes"),
+                                         ({"machine": "three-axes-fixture"},
+                                          "'two-point' needs two driven rotary axes")])
 def test_what_makes_no_sense_is_refused(given, what) -> None:
     asked = {"tool": "flat:20", "strategy": "two-point", **given}
     with pytest.raises(InvalidInput, match=what):

@@ -115,7 +115,7 @@ def test_objects_that_cannot_be_planned(document, part, elsewhere):
     ({"obstacles": "Nobody"}, ("obstacles[0] names 'Nobody'",)),
     ({"limits": 5}, ("limits is 5", "cone:0,0,1,60")),
     ({"limits": "nonsense"}, ("nonsense",)),
-    ({"objective": "fun"}, ("objective is 'fun'", "length")),
+    ({"objective": "fun"}, ("objective 'fun' is unknown", "length")),
     ({"direction": 1}, ("direction is 1", "zigzag")),
     ({"progress": 7}, ("progress is 7", "Progress")),
     ({"scalop": 0.1}, ("'scalop' is no argument of plan", "scallop"))])

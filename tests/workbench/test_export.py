@@ -88,7 +88,7 @@ def test_what_cannot_be_written_leaves_the_folder_as_it_was(made, tmp_path):
     before = files(folder)
     with pytest.raises(InvalidInput, match="names no machine"):
         export(operations, folder, Wish("linuxcnc"))
-    with pytest.raises(InvalidInput, match="dialect 'basic' is not known"):
+    with pytest.raises(InvalidInput, match="dialect 'basic' is unknown"):
         export(operations, folder, Wish("basic", MACHINE))
     operations[1].FeedRate = 5
     with pytest.raises(InvalidInput, match="is stale"):

@@ -116,14 +116,14 @@ def test_jobs_with_fixed_planes_are_refused(planned):
 
 @pytest.mark.parametrize(("given", "words"), [
     ({"strategy": "four-plus-one"}, "choose a machine among the limits"),
-    ({"strategy": "four-plus-one", "limits": "machine:four-axis-a"}, "moves two rotary axes"),
+    ({"strategy": "four-plus-one", "limits": "machine:four-axis-a"}, "needs two driven rotary axes"),
     ({"strategy": "two-point", "tool": "ball:6"}, "no flat bottom"),
     ({"strategy": "blade"}, "no ball end"),
     ({"strategy": "multiscale", "tool": "ball:6"}, "smaller corner radius"),
     ({"strategy": "multiscale", "roughness": 0.0}, "above zero"),
-    ({"strategy": "sturz", "roughness": 1.0}, "does not look at it"),
+    ({"strategy": "sturz", "roughness": 1.0}, "applies to strategy 'multiscale' only"),
     ({"strategy": "sturz", "orientations": 2}, "leave out the number of axes"),
-    ({"strategy": "sturz", "method": "roman"}, "leave out one of both"),
+    ({"strategy": "sturz", "method": "roman"}, "leave out one of the two"),
     ({"strategy": "best"}, "use indexed, sturz")])
 def test_what_does_not_go_with_a_strategy_is_told_and_nothing_is_made(document, parts, given, words):
     block = parts.block(document)

@@ -285,8 +285,8 @@ def test_clean_up_zones_are_hatched(document, whole_parts):
 
 @pytest.mark.parametrize(("given", "words"), [
     ({"regions": 0}, "number of sub-surfaces is 0"), ({"orientations": 40}, "number of orientations is 40"),
-    ({"method": "best"}, "method is 'best'"), ({"regions": "some"}, "number of sub-surfaces is 'some'"),
-    ({"orientations": 2, "method": "roman"}, "names its own axes")])
+    ({"method": "best"}, "method 'best' is unknown"), ({"regions": "some"}, "number of sub-surfaces is 'some'"),
+    ({"orientations": 2, "method": "roman"}, "one axis for each sub-surface")])
 def test_what_cannot_be_is_a_sentence_and_leaves_nothing(document, whole_parts, given, words):
     thing, name = whole_parts.roof(document)
     before = [one.Name for one in document.Objects]

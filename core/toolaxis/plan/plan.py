@@ -13,6 +13,7 @@ from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.timing import Order
+from toolaxis.plugins import one_of
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -26,9 +27,9 @@ DIRECTIONS = ("zigzag", "climb", "conventional")
 INDEX_SECONDS = 6.0
 
 
-def _one_of(name: str, value: str, choices: tuple[str, ...]) -> None:
+def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
     if value not in choices:
-        raise InvalidInput(f"{name} is {value!r}: use {', '.join(choices[:-1])} or {choices[-1]}")
+        raise InvalidInput(f"{name} {value!r} is unknown: use {one_of(choices)}")
 
 
 @dataclass(frozen=True)
@@ -95,8 +96,8 @@ class PlanInputs:
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")
-        _one_of("objective", self.objective, OBJECTIVES)
-        _one_of("direction", self.direction, DIRECTIONS)
+        _check_choice("objective", self.objective, OBJECTIVES)
+        _check_choice("direction", self.direction, DIRECTIONS)
 
     @property
     def chord(self) -> float:

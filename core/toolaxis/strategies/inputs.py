@@ -6,7 +6,8 @@ from toolaxis.errors import InvalidInput
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import SPHERE, Asked, Strategy
 
-_COUNTS = {1: "one rotary axis", 2: "two rotary axes"}
+_NEEDED = {1: "one driven rotary axis", 2: "two driven rotary axes"}
+_HAS = ("none", "one")
 
 
 def check_strategy(name: str, asked: Asked) -> Strategy:
@@ -27,7 +28,7 @@ def check_strategy(name: str, asked: Asked) -> Strategy:
     if strategy.moves:
         _check_moving(strategy, asked)
     elif any(one.moves and asked.method == one.name for one in strategies().values()):
-        raise InvalidInput(f"method {asked.method!r} moves the axis: ask for the strategy {asked.method!r} instead")
+        raise InvalidInput(f"method {asked.method!r} moves the axis: give it as the strategy instead")
     strategy.check(asked)
     if strategy.moves:
         _check_machine(strategy, asked)
@@ -51,8 +52,8 @@ def check_roughness(name: str, roughness: float | None) -> None:
         return
     if not strategy_named(name).roughness:
         others = " or ".join(repr(one.name) for one in strategies().values() if one.roughness)
-        raise InvalidInput(f"roughness is given and strategy {name!r} does not look at it: leave it out, or "
-                           f"ask for the strategy {others}")
+        raise InvalidInput(f"roughness applies to strategy {others} only, not to {name!r}: leave out the roughness, or "
+                           "change the strategy")
     if not (isfinite(roughness) and roughness > 0):
         raise InvalidInput(f"roughness is {1000 * roughness:g} um: it must be finite and above zero")
 
@@ -61,16 +62,16 @@ def _check_moving(strategy: Strategy, asked: Asked) -> None:
     """Check what all strategies have in common that move the axis."""
     name = strategy.name
     if asked.method not in (SPHERE, name):
-        raise InvalidInput(f"method {asked.method!r} finds fixed axes and strategy {name!r} moves them: leave out one "
-                           "of both")
+        raise InvalidInput(f"method {asked.method!r} is for fixed axes and strategy {name!r} moves the axis: leave out "
+                           "one of the two")
     if asked.objective == "time":
-        raise InvalidInput(f"strategy {name!r} chooses how to lean by length or passes: leave out the objective time")
+        raise InvalidInput(f"strategy {name!r} minimises cutting length or number of passes, not time: leave out the "
+                           "objective 'time'")
     if asked.orientations is not None:
-        raise InvalidInput(f"strategy {name!r} moves the axis, so that sub-surfaces share none: leave out the number "
-                           "of axes")
+        raise InvalidInput(f"strategy {name!r} moves the axis, so there are no shared axes to count: leave out the "
+                           "number of orientations")
     if asked.held:
-        raise InvalidInput(f"strategy {name!r} moves the axis, and {asked.held}: take the lock away, or choose fixed "
-                           "axes")
+        raise InvalidInput(f"strategy {name!r} moves the axis, but {asked.held}: remove the lock, or use fixed axes")
 
 
 def _check_machine(strategy: Strategy, asked: Asked) -> None:
@@ -78,9 +79,9 @@ def _check_machine(strategy: Strategy, asked: Asked) -> None:
     name, machine = strategy.name, asked.machine
     if machine is None:
         if strategy.machine_use:
-            raise InvalidInput(f"strategy {name!r} {strategy.machine_use}: {asked.remedy}")
+            raise InvalidInput(f"strategy {name!r} needs a machine, because it {strategy.machine_use}: {asked.remedy}")
         return
     driven = sum(not axis.by_hand for axis in machine.rotary)
     if driven < strategy.rotary_axes:
-        raise InvalidInput(f"strategy {name!r} moves {_COUNTS[strategy.rotary_axes]} while it cuts and {machine.name} "
-                           f"drives {driven}: name another machine or leave out the strategy")
+        raise InvalidInput(f"strategy {name!r} needs {_NEEDED[strategy.rotary_axes]} and {machine.name} has "
+                           f"{_HAS[driven]}: name another machine, or leave out the strategy")

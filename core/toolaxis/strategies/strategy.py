@@ -78,8 +78,8 @@ class Strategy(Protocol):
     rotary_axes : int
         Driven rotary axes of a machine that it moves while it cuts; 0 for a fixed axis.
     machine_use : str
-        What it does with a machine that it cannot do without ("clamps one rotary axis of a machine"); empty where it
-        needs none.
+        What it does with a machine that it cannot do without ("clamps one of its rotary axes"); empty where it needs
+        none.
     roughness : float
         Ra that it keeps unless another is given, mm; 0 where it looks at none.
     in_layers : bool

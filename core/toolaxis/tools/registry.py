@@ -2,10 +2,8 @@
 
 from collections.abc import Mapping
 from functools import cache
-from importlib import import_module
-from pkgutil import iter_modules
 
-from toolaxis.errors import InvalidInput
+from toolaxis.plugins import modules_in, pick
 from toolaxis.tools import cutters as _package
 from toolaxis.tools.cutter import Cutter
 
@@ -13,8 +11,7 @@ from toolaxis.tools.cutter import Cutter
 @cache
 def cutters() -> Mapping[str, Cutter]:
     """The kinds by name, in the order in which they are listed."""
-    found: list[Cutter] = [import_module(module.name).CUTTER
-                           for module in iter_modules(_package.__path__, f"{_package.__name__}.")]
+    found: list[Cutter] = [module.CUTTER for module in modules_in(_package)]
     found.sort(key=lambda one: (one.rank, one.name))
     return {one.name: one for one in found}
 
@@ -31,10 +28,7 @@ def cutter_named(kind: str) -> Cutter:
     InvalidInput
         When there is none.
     """
-    known = cutters()
-    if kind not in known:
-        raise InvalidInput(f"tool is a {kind!r}: use {', '.join(known)}")
-    return known[kind]
+    return pick(cutters(), "tool kind", kind)
 
 
 def cutter_of_bit(shape: str) -> Cutter | None:

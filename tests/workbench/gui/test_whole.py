@@ -195,7 +195,7 @@ def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, rem
     getattr(form, f"{field}Number").setValue(value)
     if field == "orientations":
         form.method.setCurrentIndex(3)
-        assert not form.compute.isEnabled() and "names its own axes" in form.message.text()
+        assert not form.compute.isEnabled() and "one axis for each sub-surface" in form.message.text()
         desk.shot("66-refused-division")
         return
     desk.type(form.scallop, "0.4 mm")

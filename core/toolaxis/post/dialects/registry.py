@@ -1,11 +1,10 @@
 """All dialects: the modules beside this one that offer some, and their tool centre point controls."""
 
 from collections.abc import Iterator
-from importlib import import_module
-from pkgutil import iter_modules
 from types import ModuleType
 
 from toolaxis.errors import InvalidInput
+from toolaxis.plugins import modules_in, pick
 from toolaxis.post import dialects as _package
 from toolaxis.post.program import Dialect
 from toolaxis.post.tcp_program import TipControl
@@ -25,9 +24,7 @@ def tip_controls() -> dict[str, TipControl]:
 
 
 def _modules() -> Iterator[ModuleType]:
-    for found in iter_modules(_package.__path__, f"{_package.__name__}."):
-        if found.name != __name__:
-            yield import_module(found.name)
+    return (module for module in modules_in(_package) if module.__name__ != __name__)
 
 
 def dialect_named(name: str) -> Dialect:
@@ -42,10 +39,7 @@ def dialect_named(name: str) -> Dialect:
     InvalidInput
         When there is none.
     """
-    known = dialects()
-    if name not in known:
-        raise InvalidInput(f"dialect {name!r} is not known: use {', '.join([*known, APT])}")
-    return known[name]
+    return pick(dialects(), "dialect", name, APT)
 
 
 def tip_control_of(dialect: Dialect) -> TipControl:

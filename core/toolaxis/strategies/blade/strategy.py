@@ -22,7 +22,7 @@ class BladeStrategy(Strategy):
 
     name = "blade"
     title = "blade, least acceleration"
-    summary = ("a ball end goes around blades in layers while one rotary axis swings without turning back, with least "
+    summary = ("a ball end follows layers around blades; one rotary axis swings one way only, with the least "
                "acceleration")
     note = ("A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end; of the faces around a "
             "blade one is enough.")

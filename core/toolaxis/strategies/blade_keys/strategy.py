@@ -8,7 +8,7 @@ class BladeKeys(BladeStrategy):
 
     name = "blade-keys"
     title = "blade, key points"
-    summary = "as blade, with tool angles by key points and rounded corners"
+    summary = "like blade, but with tool angles through key points and rounded corners"
     curve = "keys"
 
 

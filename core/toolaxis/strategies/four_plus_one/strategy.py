@@ -25,7 +25,7 @@ class FourPlusOne(Strategy):
     summary = "one rotary axis of the machine clamped at the best angle, the other turning along the passes"
     note = "One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits."
     rank = 4
-    machine_use = "clamps one rotary axis of a machine and turns the other"
+    machine_use = "clamps one of its rotary axes and turns the other"
     at_points = True
 
     @property

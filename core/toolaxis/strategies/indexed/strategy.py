@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from toolaxis.errors import InvalidInput
+from toolaxis.plugins import pick
 from toolaxis.strategies.strategy import INDEXED, SPHERE, Asked, Strategy
 
 if TYPE_CHECKING:
@@ -50,15 +51,13 @@ class Indexed(Strategy):
         ------
         InvalidInput
         """
-        if asked.method not in METHODS:
-            *most, last = METHODS
-            raise InvalidInput(f"method is {asked.method!r}: use {', '.join(most)} or {last}")
+        pick(METHODS, "method", asked.method)
         if asked.orientations is not None and asked.method != SPHERE:
-            raise InvalidInput(f"method {asked.method!r} names its own axes, which are not shared: leave out either "
-                               "the method or the number of orientations")
+            raise InvalidInput(f"method {asked.method!r} chooses one axis for each sub-surface, so the number of "
+                               "orientations cannot be limited: leave out one of the two")
         if asked.held and asked.method == "one":
-            raise InvalidInput(f"method 'one' takes one axis for all sub-surfaces, and {asked.held}: leave out either "
-                               "the method or the lock")
+            raise InvalidInput(f"method 'one' uses one axis for all sub-surfaces, but {asked.held}: leave out the "
+                               "method, or remove the lock")
 
     def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":

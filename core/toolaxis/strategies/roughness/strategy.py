@@ -25,11 +25,11 @@ class Roughness(Strategy):
 
     name = "multiscale"
     title = "strip width and roughness"
-    summary = "a torus keeps --roughness and an expected strip width while the machine's rotary axes turn least"
+    summary = "bull-nose finishing to a given --roughness and strip width with minimal rotary motion"
     note = ("Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab "
             "Limits.")
     rank = 5
-    machine_use = "has the rotary axes of a machine turn least"
+    machine_use = "minimises the motion of its rotary axes"
     roughness = ROUGHNESS
     at_points = True
 
