@@ -24,10 +24,10 @@ def modules(tree: str) -> Iterator[tuple[str, str]]:
         yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
 
 
-def class_homes(tree: str) -> dict[str, list[str]]:
-    """Where each class is defined, by its name."""
+def class_homes() -> dict[str, list[str]]:
+    """Where each class of both trees is defined, by its name."""
     homes = defaultdict(list)
-    for path, text in modules(tree):
+    for path, text in (found for tree in TREES for found in modules(tree)):
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.ClassDef):
                 homes[node.name].append(path)
@@ -72,12 +72,14 @@ def main() -> None:
     """Print the figures."""
     for tree in TREES:
         names = functions(tree)
-        twice = {name: homes for name, homes in class_homes(tree).items() if len(homes) > 1}
         share = 100 * sum(map(is_participle, names)) / len(names)
-        print(f"{tree}: {density(tree):.1f} tokens a line, {share:.1f} % of {len(names)} functions named by a "
-              f"participle, {len(class_homes(tree))} classes, {len(twice)} names of classes defined twice")
-        for name, homes in sorted(twice.items()):
-            print(f"  {name}: {', '.join(homes)}")
+        print(f"{tree}: {density(tree):.1f} tokens a line, "
+              f"{share:.1f} % of {len(names)} functions named by a participle")
+    homes = class_homes()
+    twice = {name: found for name, found in homes.items() if len(found) > 1}
+    print(f"{len(homes)} names of classes, {len(twice)} defined twice")
+    for name, found in sorted(twice.items()):
+        print(f"  {name}: {', '.join(found)}")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import pytest
 
 from toolaxis.cli import stopping
 from toolaxis.cli.main import main
-from toolaxis.cli.stopping import Ended, SignalHearing, writing
+from toolaxis.cli.stopping import Ended, StopSignals, writing
 from toolaxis.job.files.plan_folder import read_plan
 from toolaxis.job.output.post import verdict_of
 
@@ -164,7 +164,7 @@ def test_signals_close_together_are_one_and_a_later_one_ends(monkeypatch: pytest
     now = [100.0]
     monkeypatch.setattr(stopping.time, "monotonic", lambda: now[0])
     before = signal.getsignal(signal.SIGTERM)
-    with SignalHearing() as heard:
+    with StopSignals() as heard:
         assert not heard.asked()
         for sign in (signal.SIGTERM, signal.SIGTERM, signal.SIGINT):
             os.kill(os.getpid(), sign)

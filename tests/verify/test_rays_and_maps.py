@@ -6,7 +6,7 @@ import pytest
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.verify.maps import surface_map
-from toolaxis.verify.material_removal import RemainingMaterial
+from toolaxis.verify.material_removal import RestMaterial
 from toolaxis.verify.rays import border_points, default_spacing, face_rays
 
 
@@ -30,7 +30,7 @@ def made_of(height):
     def judge(point, normal):
         value = height(point)
         index = np.zeros(len(point), dtype=np.int64)
-        return RemainingMaterial(value, np.where(np.isfinite(value), 0.1 * value, 0.0), index, index, 0.0)
+        return RestMaterial(value, np.where(np.isfinite(value), 0.1 * value, 0.0), index, index, 0.0)
     return judge
 
 

@@ -21,7 +21,7 @@ from freecad.toolaxis.cam.jobs import make_jobs
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_operation, is_plan, operations_in
 from freecad.toolaxis.document.machine import machine_of
-from freecad.toolaxis.document.operation import Operation
+from freecad.toolaxis.document.operation import OperationProxy
 from freecad.toolaxis.document.passes import moves
 from freecad.toolaxis.document.plan_group import WholePlan
 from freecad.toolaxis.document.strategies import STRATEGIES
@@ -124,7 +124,7 @@ def test_a_whole_plan_opens_and_goes_on(whole):
     for _ in range(2):
         assert not any(one.Stale for one in (plan, *operations)), [one.StaleReasons for one in (plan, *operations)]
         document.recompute(None, True)
-    assert {one.name for one in Operation.properties} <= set(operations[0].PropertiesList)
+    assert {one.name for one in OperationProxy.properties} <= set(operations[0].PropertiesList)
     assert {one.name for one in WholePlan.properties} <= set(plan.PropertiesList)
     assert [one.Strategy for one in operations] == ["indexed", "indexed", "sturz"][:2 + moving]
     assert [one.AxisLocked for one in operations[:2]] == [True, False] and machine_of(document).Offset.z == 20
@@ -170,7 +170,7 @@ def test_files_left_over_from_a_former_package_hide_nothing(tmp_path, monkeypatc
     monkeypatch.setattr(freecad.toolaxis, "__path__", [str(tmp_path), *freecad.toolaxis.__path__])
     for name in [name for name in sys.modules if name.startswith("freecad.toolaxis.objects")]:
         monkeypatch.delitem(sys.modules, name)
-    assert import_module("freecad.toolaxis.objects.operation").Operation is Operation
+    assert import_module("freecad.toolaxis.objects.operation").Operation is OperationProxy
     with pytest.raises(ModuleNotFoundError):
         import_module("freecad.toolaxis.objects.nothing")
 
@@ -196,7 +196,7 @@ def test_all_kinds_of_objects_open_and_go_on(layers, parts, tmp_path):
     kinds = {thing: getattr(getattr(thing, "Proxy", None), "Type", "") for thing in layers.Objects}
     ours = [thing for thing, kind in kinds.items() if kind.startswith("ToolAxis")]
     assert sorted(type(thing.Proxy).__name__ for thing in ours) == [
-        "Machine", *["Operation"] * 3, *["ToolOnPasses"] * 3, "WholePlan"]
+        "MachineProxy", *["OperationProxy"] * 3, *["ToolOnPasses"] * 3, "WholePlan"]
     operations, plan = list(filter(is_operation, ours)), next(filter(is_plan, ours))
     assert operations_in(plan) == operations[1:] and machine_of(layers).Offset.z == 20
     layers.recompute(None, True)

@@ -19,7 +19,7 @@ STRAIGHT = np.radians(0.5)
 _MEETS = 1e-6
 
 
-class NearestOnBlades(NamedTuple):
+class BladeGapPoints(NamedTuple):
     """The two nearest points of a face and of others.
 
     distance : mm;  here, there : (3,) their places, mm;  number : of the other's face;  straight : whether `there`
@@ -33,7 +33,7 @@ class NearestOnBlades(NamedTuple):
     straight: bool
 
 
-def nearness(face: Face, others: Sequence[Face]) -> NearestOnBlades:
+def nearness(face: Face, others: Sequence[Face]) -> BladeGapPoints:
     """The two nearest points of a face and of others, by walking downhill from the nearest samples.
 
     Parameters
@@ -50,7 +50,7 @@ def nearness(face: Face, others: Sequence[Face]) -> NearestOnBlades:
 
     mine = _samples(face)
     points = face.evaluate(mine).point
-    best: NearestOnBlades | None = None
+    best: BladeGapPoints | None = None
     for other in others:
         theirs = _samples(other)
         away, index = cKDTree(other.evaluate(theirs).point).query(points)
@@ -69,7 +69,7 @@ def _samples(face: Face) -> Array:
     return np.concatenate([face.grid(_GRID, _GRID), border[::max(1, len(border) // 64)]])
 
 
-def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> NearestOnBlades:
+def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> BladeGapPoints:
     """Downhill in the parameters of both faces from a place on each, and where trims end that, to and fro."""
     here, there = _slid(face, other, start)
     if not (face.contains(here[None])[0] and other.contains(there[None])[0]):
@@ -77,7 +77,7 @@ def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> Neare
     a, b = face.evaluate(here[None]).point[0], other.evaluate(there[None]).point[0]
     length = float(np.linalg.norm(b - a))
     straight = length > 0 and float(face.normal(here[None])[0] @ (b - a)) >= length * np.cos(STRAIGHT)
-    return NearestOnBlades(length, a, b, other.number, straight)
+    return BladeGapPoints(length, a, b, other.number, straight)
 
 
 def _slid(face: Face, other: Face, start: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -114,7 +114,7 @@ def _to_and_fro(face: Face, other: Face, start: Array) -> tuple[Array, Array]:
     return here.uv[0], there.uv[0]
 
 
-def ahead(face: Face, others: Sequence[Face]) -> NearestOnBlades | None:
+def ahead(face: Face, others: Sequence[Face]) -> BladeGapPoints | None:
     """The least distance straight along the normals of a face to others, at samples of the face.
 
     Parameters
@@ -124,7 +124,7 @@ def ahead(face: Face, others: Sequence[Face]) -> NearestOnBlades | None:
 
     Returns
     -------
-    NearestOnBlades, or None where no normal meets another face.
+    BladeGapPoints, or None where no normal meets another face.
 
     Notes
     -----
@@ -133,13 +133,13 @@ def ahead(face: Face, others: Sequence[Face]) -> NearestOnBlades | None:
     """
     mine = _samples(face)
     points, normals = face.evaluate(mine).point, face.normal(mine)
-    best: NearestOnBlades | None = None
+    best: BladeGapPoints | None = None
     for other in others:
         length, uv = _ray_hits(points, normals, other)
         k = int(np.argmin(length))
         if np.isfinite(length[k]) and (best is None or length[k] < best.distance):
             there = other.evaluate(uv[k:k + 1]).point[0]
-            best = NearestOnBlades(float(length[k]), points[k], there, other.number, True)
+            best = BladeGapPoints(float(length[k]), points[k], there, other.number, True)
     return best
 
 
@@ -164,12 +164,12 @@ def _ray_hits(points: Array, normals: Array, other: Face) -> tuple[Array, Array]
     return np.where((off < _MEETS) & (length > _MEETS) & other.contains(uv), length, np.inf), uv
 
 
-def widest(gap: NearestOnBlades, clearance: float) -> float:
+def widest(gap: BladeGapPoints, clearance: float) -> float:
     """Diameter of the widest cutter that can machine a place which others stand straight ahead of, mm.
 
     Parameters
     ----------
-    gap : NearestOnBlades
+    gap : BladeGapPoints
     clearance : float
         What the cutter has to keep from the others, mm.
 

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import NoReturn
 
 from toolaxis import __version__
-from toolaxis.cli.stopping import SignalHearing
+from toolaxis.cli.stopping import StopSignals
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import INDEXED, SPHERE
@@ -257,12 +257,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = parser().parse_args(arguments)
     work = import_module(given.module).run
-    with SignalHearing() as stopping:
+    with StopSignals() as stopping:
         return _answer(work, given, stopping)
 
 
 def _answer(work: Callable[[argparse.Namespace, Callable[[], bool]], int], given: argparse.Namespace,
-            stopping: SignalHearing) -> int:
+            stopping: StopSignals) -> int:
     try:
         code = work(given, stopping.asked)
         sys.stdout.flush()

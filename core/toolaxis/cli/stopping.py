@@ -24,7 +24,7 @@ class Ended(KeyboardInterrupt):
     """
 
 
-class SignalHearing:
+class StopSignals:
     """Hears the signals while it is entered."""
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class SignalHearing:
             self._ended = True  # one more would only disturb the clearing up
             raise Ended
 
-    def __enter__(self) -> "SignalHearing":
+    def __enter__(self) -> "StopSignals":
         global _current
         with suppress(ValueError):  # not the main thread: no signal comes here
             for number in (signal.SIGINT, signal.SIGTERM):
@@ -74,7 +74,7 @@ class SignalHearing:
 
 
 #: Signals are the process's, and so is who hears them.
-_current: SignalHearing | None = None
+_current: StopSignals | None = None
 
 
 @contextmanager

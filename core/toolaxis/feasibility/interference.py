@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import NearestFound, keeps_limits, lower_bounds, motions
+from toolaxis.contact.clearance.queries import DistanceBounds, keeps_limits, lower_bounds, motions
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import CUTTER, FREE, GOUGE, Violations
 from toolaxis.shape.face import Face
@@ -159,7 +159,7 @@ def _into_neighbours(scene: InterferenceScene, group: CheckSurfaces, moves: Arra
     return into
 
 
-def _beside(tool: Tool, group: CheckSurfaces, moves: Array, at: tuple[NearestFound, Bools]) -> Bools:
+def _beside(tool: Tool, group: CheckSurfaces, moves: Array, at: tuple[DistanceBounds, Bools]) -> Bools:
     """Which of the positions come too near to a wall that is near them."""
     found, near = at
     amount = group.required - found.lower
@@ -179,7 +179,7 @@ def _beside(tool: Tool, group: CheckSurfaces, moves: Array, at: tuple[NearestFou
     return beside
 
 
-def _worse(worst: Violations, found: NearestFound, which: tuple[CheckSurfaces, int], wall: Bools) -> Violations:
+def _worse(worst: Violations, found: DistanceBounds, which: tuple[CheckSurfaces, int], wall: Bools) -> Violations:
     """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
     group, number = which
     for c in range(3):

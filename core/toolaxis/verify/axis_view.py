@@ -20,7 +20,7 @@ _REACH = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class MaterialView:
+class RestMaterialView:
     """What is left on the faces of an operation, in square cells of a plane.
 
     Attributes
@@ -41,7 +41,7 @@ class MaterialView:
 
 
 def view_along(maps: Sequence[SurfaceMap], x: ArrayLike, y: ArrayLike, origin: ArrayLike,
-               most: int = MOST_CELLS) -> MaterialView:
+               most: int = MOST_CELLS) -> RestMaterialView:
     """The maps of an operation's faces in a plane.
 
     Parameters
@@ -87,15 +87,15 @@ def view_along(maps: Sequence[SurfaceMap], x: ArrayLike, y: ArrayLike, origin: A
         np.maximum.at(cells, index, value)
         cells[np.flatnonzero(empty)[found]] = value[near[found]]
         views.append(np.where(cells == -np.inf, np.nan, cells).reshape(rows, columns).astype(np.float32))
-    return MaterialView(low, cell, *views)
+    return RestMaterialView(low, cell, *views)
 
 
-def coarser(view: MaterialView, most: int) -> MaterialView:
+def coarser(view: RestMaterialView, most: int) -> RestMaterialView:
     """A view in larger cells, the greatest value of the smaller ones in each.
 
     Parameters
     ----------
-    view : MaterialView
+    view : RestMaterialView
     most : int
         About how many cells.
     """
@@ -111,4 +111,4 @@ def coarser(view: MaterialView, most: int) -> MaterialView:
         most_of = padded.reshape(high // step, step, wide // step, step).max(axis=(1, 3))
         return np.where(most_of == -np.inf, np.nan, most_of).astype(np.float32)
 
-    return MaterialView(view.corner, view.cell * step, _pooled(view.scallop), _pooled(view.gouge))
+    return RestMaterialView(view.corner, view.cell * step, _pooled(view.scallop), _pooled(view.gouge))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
 from toolaxis.verify.convex_edges import depth_at_edges
-from toolaxis.verify.material_removal import RemainingMaterial
+from toolaxis.verify.material_removal import RestMaterial
 from toolaxis.verify.seams import SeamSteps, depth_taken_off, steps_of
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.thin_walls import wall_depth
@@ -33,10 +33,10 @@ class Depths:
         `removal` with everything but rays and their depth given.
     """
 
-    def __init__(self, task: VerificationTask, cut: Callable[..., RemainingMaterial]) -> None:
+    def __init__(self, task: VerificationTask, cut: Callable[..., RestMaterial]) -> None:
         self.task, self.cut = task, cut
 
-    def correct(self, face: Face, rays: tuple[Array, Array], left: RemainingMaterial) -> None:
+    def correct(self, face: Face, rays: tuple[Array, Array], left: RestMaterial) -> None:
         """Replace the depths of rays that are laid bare deeper than allowed by those below the part's surface.
 
         Parameters
@@ -45,7 +45,7 @@ class Depths:
             On which the rays stand.
         rays : (m, 3) and (m, 3) array
             Points of the face, mm, and normals out of the material.
-        left : RemainingMaterial
+        left : RestMaterial
             Of these rays; its gouges are changed.
         """
         task = self.task
@@ -68,7 +68,7 @@ class Depths:
     def _laid_bare(self, feet: Array, ways: Array, depth: Array) -> Array:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
-    def _in_walls(self, rays: tuple[Array, Array], left: RemainingMaterial, deep: NDArray[np.int64],
+    def _in_walls(self, rays: tuple[Array, Array], left: RestMaterial, deep: NDArray[np.int64],
                   asked: NDArray[np.bool_]) -> None:
         """Follow rays in thin walls to their middle only: each half belongs to its own side."""
         foot, normal = rays[0][asked] + self.task.allowance * rays[1][asked], rays[1][asked]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.shape.face import Face
-from toolaxis.verify.material_removal import RemainingMaterial
+from toolaxis.verify.material_removal import RestMaterial
 from toolaxis.verify.rays import Rays, face_rays, patch_around
 
 Array = NDArray[np.float64]
@@ -229,7 +229,7 @@ def place_at(face: Face, uv: Array, point: Array, found: tuple[float, int]) -> M
     return MapPoint(face.label, (float(uv[0]), float(uv[1])), _triple(point), *found)
 
 
-def surface_map(face: Face, judge: Callable[[Array, Array], RemainingMaterial], spacing: float | None = None, *,
+def surface_map(face: Face, judge: Callable[[Array, Array], RestMaterial], spacing: float | None = None, *,
                 declared: Declared | None = None, heights: bool = True) -> SurfaceMap:
     """Maps of one face.
 
@@ -255,7 +255,7 @@ def surface_map(face: Face, judge: Callable[[Array, Array], RemainingMaterial], 
                       left.gouged_by, rays.spacing, worst_scallop, worst_gouge, aside)
 
 
-def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], RemainingMaterial],
+def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], RestMaterial],
                coarse: tuple[str, Array, NDArray[np.int64]],
                aside: Declared | None = None) -> MapPoint | None:
     """The worst place, looked for in ever smaller patches around the worst rays, and not where it is aside."""

@@ -45,7 +45,7 @@ class RemovalTables(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class RemainingMaterial:
+class RestMaterial:
     """What is left on each ray.
 
     Attributes
@@ -302,7 +302,7 @@ class Removal:
         return NUMERICAL + self._tiles.uncertainty
 
     def along(self, rays: tuple[ArrayLike, ArrayLike], *, depth: ArrayLike = 1.0, height: ArrayLike = 10.0,
-              cutting: tuple[int, ...] = (Motion.CUT,)) -> RemainingMaterial:
+              cutting: tuple[int, ...] = (Motion.CUT,)) -> RestMaterial:
         """Remove material and measure what is left along rays.
 
         Parameters
@@ -331,7 +331,7 @@ class Removal:
                 table = np.column_stack([foot[rows], unit(direction[rows]), low[rows], high[rows]])
                 blocks = (np.ascontiguousarray(table), ball[some], first[start:start + TILE + 1] - first[start])
                 self._act(cutting, blocks, rows, found)
-        return RemainingMaterial(*found, self.uncertainty)
+        return RestMaterial(*found, self.uncertainty)
 
     def _within(self, foot: Array, lever: float) -> Index:
         """Rows of the rays whose feet may lie within a distance of the cutter on any motion, mm."""
@@ -376,7 +376,7 @@ def _nothing(count: int) -> Found:
 def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: tuple[ArrayLike, ArrayLike], *,
             depth: ArrayLike = 1.0, height: ArrayLike = 10.0, cutting: tuple[int, ...] = (Motion.CUT,),
             among: tuple[int, ...] | None = None, threads: int = 1,
-            progress: Progress = NO_PROGRESS) -> RemainingMaterial:
+            progress: Progress = NO_PROGRESS) -> RestMaterial:
     """Remove material with a cutter along cutter location data and measure what is left along rays.
 
     Parameters
@@ -400,7 +400,7 @@ def removal(cl: tuple[ArrayLike, ArrayLike, ArrayLike], profile: Profile, rays: 
 
     Returns
     -------
-    RemainingMaterial
+    RestMaterial
 
     Raises
     ------

@@ -17,7 +17,7 @@ from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
-from toolaxis.verify.material_removal import RemainingMaterial, Removal
+from toolaxis.verify.material_removal import Removal, RestMaterial
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.task import VerificationTask, motion_of, spot
@@ -205,7 +205,7 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
 
     depths = Depths(task, cut)
 
-    def along(face: Face, point: Array, normal: Array) -> RemainingMaterial:
+    def along(face: Face, point: Array, normal: Array) -> RestMaterial:
         left = cut((point + task.allowance * normal, normal), depth=task.depth)
         depths.correct(face, (point, normal), left)
         return left
@@ -264,7 +264,7 @@ def _standing(task: VerificationTask) -> float:
 
 
 def _link_cut(task: VerificationTask, maps: tuple[SurfaceMap, ...],
-              links: Callable[..., RemainingMaterial]) -> MapPoint | None:
+              links: Callable[..., RestMaterial]) -> MapPoint | None:
     """Where a link goes deepest into what the cutting motions leave above the targets."""
     worst: MapPoint | None = None
     for one in maps:

@@ -45,10 +45,10 @@ def test_the_map_is_painted_and_a_click_zooms(desk, planned):
 
 def test_what_is_left_to_clean_up_is_passed_over(desk, planned):
     """Another operation of the document, which has no axis and no passes, does not keep this one from being judged."""
-    from freecad.toolaxis.document.operation import Operation
+    from freecad.toolaxis.document.operation import OperationProxy
 
     other = planned.addObject("App::DocumentObjectGroupPython", "Operation")
-    Operation(other)
+    OperationProxy(other)
     form = judged(desk)
     assert "nside tolerance" in form.message.text() and form.worst.count() > 0
 

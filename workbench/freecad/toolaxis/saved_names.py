@@ -22,6 +22,8 @@ TODAY = {
     # Not in documents: the panel that exports wrote it into macros.
     "exporting": "services.export",
 }
+#: Classes in these modules, by their former names.
+CLASSES = {"Machine": "MachineProxy", "Operation": "OperationProxy"}
 #: Packages that the former names stand in.
 FORMER_PACKAGES = {name.rpartition(".")[0] for name in TODAY} - {""}
 
@@ -53,7 +55,12 @@ class FormerModules(MetaPathFinder, Loader):
         """
         name = _within(module.__name__)
         if name in TODAY:
-            module.__getattr__ = partial(getattr, import_module(f"{__package__}.{TODAY[name]}"))
+            module.__getattr__ = partial(_look_up, import_module(f"{__package__}.{TODAY[name]}"))
+
+
+def _look_up(module, name):
+    """What a module of today has by a name, or by the one that stands for a former class."""
+    return getattr(module, name) if hasattr(module, name) else getattr(module, CLASSES.get(name, name))
 
 
 def _within(fullname):

@@ -26,7 +26,7 @@ _MOTIONS_AT_ONCE = 256
 _QUESTION, _MOTION = 2000, 20
 
 
-class NearestFound(NamedTuple):
+class DistanceBounds(NamedTuple):
     """Answers for n positions or motions.
 
     lower : (n, 3) lower bounds of the signed distance of cutter, shank and holder, mm;
@@ -93,7 +93,7 @@ def _axes(axis: ArrayLike, count: int) -> Array:
 
 
 def lower_bounds(cells: BoundingTree, tool: Tool, moves: Array, cutoff: ArrayLike, resolution: float,
-                 required: Array | None = None) -> NearestFound:
+                 required: Array | None = None) -> DistanceBounds:
     """Lower bounds of the distances, at most ``resolution`` (and the faces' tolerance) below the true ones.
 
     Depths beyond 0.1 mm are only told to a twentieth.
@@ -115,7 +115,7 @@ def lower_bounds(cells: BoundingTree, tool: Tool, moves: Array, cutoff: ArrayLik
     return _run(cells, tool, moves, (limits, np.broadcast_to(np.asarray(cutoff, dtype=float), 3), resolution))
 
 
-def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array) -> NearestFound:
+def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array) -> DistanceBounds:
     """Whether every component is proven to keep its limits: ``blocked`` is -1 there.
 
     Parameters
@@ -130,22 +130,22 @@ def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array)
     return _run(cells, tool, moves, (np.ascontiguousarray(required), np.full(3, np.inf), -1.0))
 
 
-def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> NearestFound:
+def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> DistanceBounds:
     limits, cutoff, resolution = ask
     pieces = tool.pieces
     asked = np.asarray((limits > -np.inf).any(axis=0))
     pieces = pieces[asked[pieces[:, 7].astype(int)]]
     n = len(moves)
     relief = no_relief(len(cells.faces)) if cells.mismatch is None else cells.mismatch.plain
-    total = NearestFound(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1),
-                         np.zeros(n, int))
+    total = DistanceBounds(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1),
+                           np.zeros(n, int))
     for first in range(0, len(pieces), _PIECES_AT_ONCE):
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
         asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
         values, tags = _descended(cells, asked_of, moves, cutoff)
-        total = _merged(total, NearestFound(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
-                                            *tags[:, 3:].T))
+        total = _merged(total, DistanceBounds(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
+                                              *tags[:, 3:].T))
     return total
 
 
@@ -165,8 +165,8 @@ def _descended(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array)
     return values, tags
 
 
-def _merged(one: NearestFound, other: NearestFound) -> NearestFound:
+def _merged(one: DistanceBounds, other: DistanceBounds) -> DistanceBounds:
     nearer = (other.lower < one.lower) | (one.face < 0)
-    return NearestFound(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
-                        np.where(nearer[..., None], other.point, one.point),
-                        np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)
+    return DistanceBounds(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
+                          np.where(nearer[..., None], other.point, one.point),
+                          np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)

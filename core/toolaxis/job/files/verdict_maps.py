@@ -9,7 +9,7 @@ import numpy as np
 
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.plan import Plan
-from toolaxis.verify.axis_view import MaterialView, view_along
+from toolaxis.verify.axis_view import RestMaterialView, view_along
 from toolaxis.verify.verdict import Verdict
 
 NAME = "verdict-maps.npz"
@@ -41,7 +41,7 @@ def write_views(plan: Plan, verdict: Verdict, folder: Path) -> None:
         np.savez_compressed(file, **arrays)
 
 
-def read_views(folder: Path) -> dict[str, MaterialView]:
+def read_views(folder: Path) -> dict[str, RestMaterialView]:
     """The maps that `write_views` wrote, by the names of operations; empty where there are none.
 
     Parameters
@@ -65,8 +65,8 @@ def read_views(folder: Path) -> dict[str, MaterialView]:
         raise InvalidInput(f"{path} is damaged ({reason}): run toolaxis verify again") from reason
 
 
-def _view(where: np.ndarray, scallop: np.ndarray, gouge: np.ndarray) -> MaterialView:
+def _view(where: np.ndarray, scallop: np.ndarray, gouge: np.ndarray) -> RestMaterialView:
     if where.shape != (3,) or scallop.ndim != 2 or scallop.shape != gouge.shape or not scallop.size:
         raise ValueError(f"shapes {where.shape}, {scallop.shape} and {gouge.shape} are no map")
-    return MaterialView(np.array(where[:2], dtype=float), float(where[2]), scallop.astype(np.float32),
-                        gouge.astype(np.float32))
+    return RestMaterialView(np.array(where[:2], dtype=float), float(where[2]), scallop.astype(np.float32),
+                            gouge.astype(np.float32))

@@ -15,7 +15,7 @@ from toolaxis.plan.plan import Plan
 if TYPE_CHECKING:
     import trimesh
 
-    from toolaxis.verify.axis_view import MaterialView
+    from toolaxis.verify.axis_view import RestMaterialView
     from toolaxis.verify.verdict import Verdict
 
 STEP, GLTF = (".step", ".stp"), (".glb",)
@@ -105,7 +105,7 @@ def to_trimesh(plan: Plan, *, colour: str = "sub-surface", verdict: "Verdict | N
     return _scene(plan, colour, _views(plan, verdict))
 
 
-def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, MaterialView]":
+def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, RestMaterialView]":
     from toolaxis.verify.axis_view import view_along
 
     frames = {op.name: op.frame for op in plan.operations if op.frame is not None}
@@ -114,7 +114,7 @@ def _views(plan: Plan, verdict: "Verdict | None") -> "dict[str, MaterialView]":
             if (frame := frames.get(found.name)) is not None}
 
 
-def _scene(plan: Plan, colour: str, views: "dict[str, MaterialView]") -> Any:
+def _scene(plan: Plan, colour: str, views: "dict[str, RestMaterialView]") -> Any:
     if colour not in COLOURINGS:
         raise InvalidInput(f"colour is {colour!r}: use {', '.join(COLOURINGS[:-1])} or {COLOURINGS[-1]}")
     if colour != COLOURINGS[0] and not views:
@@ -126,7 +126,7 @@ def _scene(plan: Plan, colour: str, views: "dict[str, MaterialView]") -> Any:
     return plan_scene(plan, colour, views)
 
 
-def _gltf(plan: Plan, colour: str, views: "dict[str, MaterialView]", name: str) -> bytes:
+def _gltf(plan: Plan, colour: str, views: "dict[str, RestMaterialView]", name: str) -> bytes:
     scene = _scene(plan, colour, views)
     made = type(scene)(base_frame="world")
     made.graph.update(frame_from="world", frame_to=name, matrix=_GLTF_FROM_PART)

@@ -15,8 +15,6 @@ from toolaxis.strategies.registry import strategy_named, strategy_of
 from toolaxis.strategies.strategy import INDEXED
 from toolaxis.verify.verdict import Verdict
 
-DPI = 110
-
 
 def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> None:
     """Draw the whole part where it has several operations, and every operation: passes and tool, and what its strategy
@@ -35,23 +33,23 @@ def draw_plan(plan: Plan, folder: Path, progress: Progress = NO_PROGRESS) -> Non
     progress : Progress
     """
     if len(plan.operations) > 1:
-        overview_picture(plan).savefig(folder / "plan.png", dpi=DPI)
+        overview_picture(plan).savefig(folder / "plan.png")
     if plan.options:
-        options_picture(plan.options).savefig(folder / "orientations.png", dpi=DPI)
+        options_picture(plan.options).savefig(folder / "orientations.png")
     if plan.baselines:
-        baselines_picture(plan.baselines).savefig(folder / "baselines.png", dpi=DPI)
+        baselines_picture(plan.baselines).savefig(folder / "baselines.png")
     if has_machine_picture(plan):
-        machine_picture(plan).savefig(folder / "machine.png", dpi=DPI)
+        machine_picture(plan).savefig(folder / "machine.png")
     closest = tightest(plan, progress)
     if closest is not None:
-        tightest_picture(plan, closest.operation, closest).savefig(folder / "tightest.png", dpi=DPI)
+        tightest_picture(plan, closest.operation, closest).savefig(folder / "tightest.png")
     copies = {} if plan.blades is None else plan.blades.copies
     originals = [op for op in plan.operations if op.number not in copies]
     for index, op in enumerate(originals):
         progress.report("drawing", index, len(originals))
         job = search_task(plan, op, Progress(None, progress.cancelled))
         if op.done:
-            operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png", dpi=DPI)
+            operation_picture(plan, op).savefig(folder / f"{op.name}-passes.png")
         # A strategy that moves the axis may have found a fixed one to be better.
         moves = op.done and op.orientation.lead is not None
         strategy = strategy_of(plan.inputs.method) if moves else strategy_named(INDEXED)
@@ -78,4 +76,4 @@ def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress 
         assert axis is not None
         targets = found.maps[:len(found.faces)]
         map_picture(targets, found.scallop_limit, found.gouge_allowed, found.name,
-                    axis).savefig(folder / f"{found.name}-verdict.png", dpi=DPI)
+                    axis).savefig(folder / f"{found.name}-verdict.png")

@@ -152,7 +152,6 @@ def _still(plan: Plan) -> bytes:
     """A picture of the plan, as PNG."""
     from io import BytesIO
 
-    from toolaxis.job.output.pictures import DPI
     from toolaxis.report.figures.plan_overview import overview_picture
     from toolaxis.report.figures.plots import operation_picture
 
@@ -162,5 +161,5 @@ def _still(plan: Plan) -> bytes:
     alone = len(plan.operations) == 1 and only.done and only.frame is not None
     made = operation_picture(plan, only) if alone else overview_picture(plan)
     file = BytesIO()
-    made.savefig(file, dpi=DPI, format="png", metadata={"Software": None})
+    made.savefig(file, format="png", metadata={"Software": None})
     return file.getvalue()

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.queries import NearestFound, lower_bounds, motions, segment_motions
+from toolaxis.contact.clearance.queries import DistanceBounds, lower_bounds, motions, segment_motions
 from toolaxis.feasibility.surroundings import OTHER, CheckSurfaces, group_surroundings
 from toolaxis.plan.blades import BladeClearance, Blades
 from toolaxis.plan.operation import Operation
@@ -98,7 +98,7 @@ def _nearest(plan: Plan, op: Operation, group: CheckSurfaces,
     best = np.array([below.get(c, 0.0) for c in range(3)])
     found: dict[int, tuple[float, int, Array, Array]] = {}
     for first in range(0, len(moves), _BATCH):
-        some: NearestFound = lower_bounds(group.cells, plan.tool, moves[first:first + _BATCH], best, ROUGH, asked)
+        some: DistanceBounds = lower_bounds(group.cells, plan.tool, moves[first:first + _BATCH], best, ROUGH, asked)
         for c in below:
             i = int(some.lower[:, c].argmin())
             k = int(some.face[i, c])

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.bladed.blade_gap import NearestOnBlades, ahead, nearness, reach_along_normal, widest
+from toolaxis.bladed.blade_gap import BladeGapPoints, ahead, nearness, reach_along_normal, widest
 from toolaxis.bladed.counterparts import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.bladed.find_blades import Bladed, NoPattern, blades_of
 from toolaxis.bladed.strips import strips
@@ -217,7 +217,7 @@ def too_narrow(pattern: Pattern, tool: Tool, clearance: float) -> dict[int, str]
     return found
 
 
-def _refusal(name: str, number: int, gap: NearestOnBlades, tool: Tool, clearance: float) -> str:
+def _refusal(name: str, number: int, gap: BladeGapPoints, tool: Tool, clearance: float) -> str:
     here, there = (", ".join(f"{x:.2f}" for x in place) for place in (gap.here, gap.there))
     passes = widest(gap, clearance)
     return (f"infeasible: the {name} side, face {number}, comes within {gap.distance:.3f} mm of face {gap.number} of "

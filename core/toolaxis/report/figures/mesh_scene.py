@@ -20,7 +20,7 @@ from toolaxis.report.figures.plots import BLUE, GREY, VERMILION, cutting_lines
 from toolaxis.report.figures.tessellation import triangles
 from toolaxis.report.html.charts import SCALE, SLACK
 from toolaxis.shape.face import Face
-from toolaxis.verify.axis_view import MaterialView
+from toolaxis.verify.axis_view import RestMaterialView
 
 Array = NDArray[np.float64]
 
@@ -35,8 +35,8 @@ _MOST = 1_000_000
 _PART = (0.86, 0.86, 0.86)
 
 
-def plan_scene(plan: Plan, colour: str = "sub-surface", views: Mapping[str,
-                                                                       MaterialView] | None = None) -> trimesh.Scene:
+def plan_scene(plan: Plan, colour: str = "sub-surface",
+               views: Mapping[str, RestMaterialView] | None = None) -> trimesh.Scene:
     """A plan as a trimesh scene in mm, in the part's frame.
 
     Parameters
@@ -96,7 +96,7 @@ def _lines(lines: list[Array], frame: WorkCoordinates) -> Path3D:
     return Path3D(entities, frame.from_part(np.concatenate(lines)), process=False)
 
 
-def _judged(mesh: trimesh.Trimesh, plan: Plan, op: Operation, view: MaterialView | None,
+def _judged(mesh: trimesh.Trimesh, plan: Plan, op: Operation, view: RestMaterialView | None,
             asked: tuple[str, int]) -> trimesh.Trimesh:
     """A sub-surface in triangles as fine as the map, coloured by it."""
     colour, most = asked
@@ -114,7 +114,7 @@ def _judged(mesh: trimesh.Trimesh, plan: Plan, op: Operation, view: MaterialView
     return mesh
 
 
-def _values(points: Array, frame: WorkCoordinates, view: MaterialView, cells: NDArray[np.float32]) -> Array:
+def _values(points: Array, frame: WorkCoordinates, view: RestMaterialView, cells: NDArray[np.float32]) -> Array:
     """What a map has at points: the value of the cell, or of the nearest one beside that has one."""
     from scipy.spatial import cKDTree
 

@@ -42,6 +42,8 @@ BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE, GREY = (
     "#0072B2", "#56B4E9", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#8C8C8C")
 _FACE, _PART, _CUTTER, _SHANK, _HOLDER = (
     (0.80, 0.89, 0.96), (0.84, 0.84, 0.84), (0.96, 0.80, 0.35), (0.75, 0.75, 0.78), (0.55, 0.58, 0.64))
+#: Pixels an inch of all pictures.
+DPI = 110
 #: What lies in clean-up zones on maps of the judge.
 _ASIDE = "#e8e8e8"
 
@@ -54,7 +56,7 @@ def figure(width: float, height: float) -> Figure:
     width, height : float
         Inches.
     """
-    made = Figure(figsize=(width, height), layout="constrained")
+    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
     FigureCanvasAgg(made)
     return made
 

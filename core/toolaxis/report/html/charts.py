@@ -21,7 +21,7 @@ from toolaxis.plan.orientation import REASONS, AxisMap
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from toolaxis.report.figures.splat_renderer import tool_outlines
 from toolaxis.tools.tool import Tool
-from toolaxis.verify.axis_view import MaterialView
+from toolaxis.verify.axis_view import RestMaterialView
 
 Array = NDArray[np.float64]
 
@@ -149,12 +149,12 @@ def _axis_said(found: AxisMap, k: int, width: float, pole: Array) -> str:
             f"{away:.1f}° from the mean normal")
 
 
-def map_chart(view: MaterialView, what: str, limit: float, name: str) -> PageFigure:
+def map_chart(view: RestMaterialView, what: str, limit: float, name: str) -> PageFigure:
     """Scallop height left or depth of gouges, seen along the axis, in the work coordinate system.
 
     Parameters
     ----------
-    view : MaterialView
+    view : RestMaterialView
     what : str
         "scallop" or "gouge".
     limit : float

@@ -36,7 +36,7 @@ from toolaxis.report.html.page_tables import (
 from toolaxis.report.html.scene_3d import scene
 from toolaxis.report.tables import baselines_table, number, options_table, plan_table, reckoning
 from toolaxis.report.warnings import warnings_of
-from toolaxis.verify.axis_view import MaterialView, coarser
+from toolaxis.verify.axis_view import RestMaterialView, coarser
 
 Array = NDArray[np.float64]
 Curve = tuple[Array, Array]
@@ -70,7 +70,7 @@ class PlanFiles:
     """
 
     verdict: Mapping[str, Any] | None = None
-    views: Mapping[str, MaterialView] = field(default_factory=dict)
+    views: Mapping[str, RestMaterialView] = field(default_factory=dict)
     widths: Mapping[str, Sequence[Curve]] = field(default_factory=dict)
     feeds: Mapping[str, Curve] = field(default_factory=dict)
     files: Sequence[tuple[str, int, str]] = ()

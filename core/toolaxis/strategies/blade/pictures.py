@@ -25,7 +25,6 @@ _COLOURS = {"unscheduled": GREY, "quaternions": ORANGE, "key points": BLUE, "lea
 _TITLES = {"least": "least acceleration", "keys": "key points"}
 #: Points along a layer of the curves, and of the motions of the axes.
 _FINE, _ALONG = 2000, 4000
-_DPI = 110
 #: What curves are compared with.
 _BEFORE = ("unscheduled", "quaternions")
 #: Velocity below which an axis stands still, mm/s or rad/s.
@@ -57,13 +56,13 @@ def draw_blade(plan: Plan, op: Operation, job: FaceProblem, folder: Path, curve:
     others = {"unscheduled": constant_angles(smooth, s), "quaternions": by_quaternions(smooth, s)}
     name = f"{op.name}, layer {k + 1} of {len(planes)}"
     angles_picture(curves, {title: (s, theta) for title, theta in others.items()},
-                   name).savefig(folder / f"{op.name}-angles.png", dpi=_DPI)
+                   name).savefig(folder / f"{op.name}-angles.png")
     if plan.machine is None:
         return
     angles = {**others, **{title: one.curve.at(s)[0] for title, one in curves.items()}}
     speed = plan.inputs.feedrate / 60
     motions = {title: _motion(plan, first, (search.swing, theta), s, speed) for title, theta in angles.items()}
-    axes_picture(motions, speed, name).savefig(folder / f"{op.name}-motion.png", dpi=_DPI)
+    axes_picture(motions, speed, name).savefig(folder / f"{op.name}-motion.png")
 
 
 def _clearance(op: Operation) -> float:

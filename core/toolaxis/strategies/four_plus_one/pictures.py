@@ -19,7 +19,6 @@ from toolaxis.report.figures.splat_renderer import camera, mean_direction
 
 Array = NDArray[np.float64]
 
-_DPI = 110
 
 #: Colours of angles and of passes in their order.
 _MAP, _ORDER = "twilight_shifted", "viridis"
@@ -83,7 +82,7 @@ def draw_free_angle(plan: Plan, op: Operation, folder: Path) -> None:
     """
     turning = turning_of(plan, op)
     if turning is not None:
-        free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png", dpi=_DPI)
+        free_angle_picture(turning, op).savefig(folder / f"{op.name}-angle.png")
 
 
 def free_angle_picture(turning: FreeAxisMotion, op: Operation) -> Figure:

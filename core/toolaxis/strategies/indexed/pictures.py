@@ -26,7 +26,6 @@ from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
-_DPI = 110
 _ANGLES = 9
 _POINTS = 60
 
@@ -48,10 +47,10 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
     if op.orientation.map is not None:
         marks = {**_marks(op), **_baselines(plan, task, op is studied)}
         hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
-                           op.name).savefig(folder / f"{op.name}-axes.png", dpi=_DPI)
+                           op.name).savefig(folder / f"{op.name}-axes.png")
     if op.done:
         widths_picture(width_lines(plan, op, task), (op.face, plan.tool),
-                       op.name).savefig(folder / f"{op.name}-widths.png", dpi=_DPI)
+                       op.name).savefig(folder / f"{op.name}-widths.png")
     if op is studied:
         _draw_study(plan, op, task, folder)
 
@@ -125,7 +124,7 @@ def _draw_study(plan: Plan, op: Operation, job: FaceProblem, folder: Path) -> No
     study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed,
                         usable=lambda axis: job.feasibility.witness(axis) is None)
     if len(study.angle) > 1:
-        study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png", dpi=_DPI)
+        study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png")
 
 
 def width_study(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str, *,

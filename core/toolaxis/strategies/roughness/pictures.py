@@ -29,7 +29,6 @@ from toolaxis.strategies.roughness.section_width import expect_widths, section_w
 
 Array = NDArray[np.float64]
 
-_DPI = 110
 #: Points of all passes at which strip widths are shown.
 _POINTS = 4000
 
@@ -74,7 +73,7 @@ def draw_roughness(plan: Plan, op: Operation, folder: Path) -> None:
         With a path.
     folder : Path
     """
-    roughness_picture(study(plan, op), op.name).savefig(folder / f"{op.name}-roughness.png", dpi=_DPI)
+    roughness_picture(study(plan, op), op.name).savefig(folder / f"{op.name}-roughness.png")
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,6 @@ from toolaxis.strategies.two_point.rings import FRONT, MIDDLE, ContactSet, Corne
 
 Array = NDArray[np.float64]
 
-_DPI = 110
 #: Places of a path among which the one with two contacts is chosen.
 _PLACES = 200
 
@@ -47,7 +46,7 @@ def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
     best = int(np.argmin(np.where(stand.lift > 0.9 * stand.lift.max(), sides, np.inf)))
     one = setting.rows(np.array([best]))
     ring = rings(one, stand.rows(np.array([best])))
-    contacts_picture(one, ring, op.name).savefig(folder / f"{op.name}-contacts.png", dpi=_DPI)
+    contacts_picture(one, ring, op.name).savefig(folder / f"{op.name}-contacts.png")
 
 
 def contacts_picture(setting: ContactSet, ring: CornerCircles, name: str) -> Figure:

@@ -17,7 +17,7 @@ _ANGLES = (Property("StringList", "RotaryAngles", _GROUP,
                     "Where the rotary axes stand, both solutions, the one that is taken first", True),)
 
 
-class Machine(Proxy):
+class MachineProxy(Proxy):
     """Keeps a machine; computes nothing.
 
     Parameters
@@ -45,7 +45,7 @@ def machine_of(document):
     document : App.Document
     """
     return next((thing for thing in document.Objects
-                 if getattr(getattr(thing, "Proxy", None), "Type", "") == Machine.Type), None)
+                 if getattr(getattr(thing, "Proxy", None), "Type", "") == MachineProxy.Type), None)
 
 
 def place_machine(document, name, offset, found):
@@ -72,7 +72,7 @@ def place_machine(document, name, offset, found):
         thing = machine_of(document)
         if thing is None:
             thing = document.addObject("App::FeaturePython", "Machine")
-            Machine(thing)
+            MachineProxy(thing)
             attach_view(thing)
         thing.Label = translate("ToolAxis", "Machine {}").format(machine.name)
         assign(thing, Machine=name, Offset=FreeCAD.Vector(*offset), Source=machine.source,

@@ -89,7 +89,7 @@ CLEARANCES = ("cutter", "shank", "holder")
 _FAR = 1e6
 
 
-class Operation(Proxy):
+class OperationProxy(Proxy):
     """Marks results stale when the part, an obstacle or an input changes.
 
     Parameters

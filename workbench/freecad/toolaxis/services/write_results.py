@@ -10,7 +10,7 @@ from freecad.toolaxis.document.children import GROUP, child, frame_of, loose
 from freecad.toolaxis.document.face_identity import facts_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in
 from freecad.toolaxis.document.machine import keep_angles
-from freecad.toolaxis.document.operation import Operation, mark, set_inputs, set_results
+from freecad.toolaxis.document.operation import OperationProxy, mark, set_inputs, set_results
 from freecad.toolaxis.document.passes import commands, fill_passes, keep_axes
 from freecad.toolaxis.document.placement import chain_of, placement_from
 from freecad.toolaxis.document.plan_group import WholePlan, keep_figures, keep_plan
@@ -166,7 +166,7 @@ def _colours(plan, standing):
 
 def _added(document, group):
     operation = document.addObject("App::DocumentObjectGroupPython", "Operation")
-    Operation(operation)
+    OperationProxy(operation)
     attach_view(operation)
     group.addObject(operation)
     return operation
