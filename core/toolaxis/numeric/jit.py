@@ -84,38 +84,57 @@ def jit_inline(function: _Function) -> _Function:
     return _compile(function, False, True)
 
 
+def _kernel_class() -> Any:
+    """The class of kernels that are built into one another, or None where this numba has no place for it."""
+    try:
+        from toolaxis.numeric.kernel import Kernel, can_build_in
+    except (ImportError, AttributeError):
+        return None
+    return Kernel if can_build_in() else None
+
+
 def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool = False) -> _Function:
-    if _numba is None:
+    if _numba is None or _numba.config.DISABLE_JIT:
         return function
-    options = {"fastmath": fastmath, "forceinline": forceinline}
-    kernel = _numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
-    if kernel is not function:  # numba hands the function back when NUMBA_DISABLE_JIT is set
-        _stamp(kernel, repr(options))
+    options = {"nogil": True, "error_model": "numpy", "fastmath": fastmath, "forceinline": forceinline}
+    own, stamp = _digest_of(function.__code__.co_filename), _stamp_of(function, repr(options))
+    keep = functools.partial(_stamp, stamp if own else None)
+    kind = _kernel_class()
+    if kind is not None:
+        kernel = kind(function, options, keep)
+    else:
+        kernel = _numba.njit(cache=True, **options)(function)
+        keep(kernel)
+    kernel.source_stamp = stamp
     result: _Function = kernel
     return result
 
 
-def _stamp(kernel: Any, options: str) -> None:
-    """Let code kept on disk expire with the text of every kernel it calls, and with the constants it was given.
+def _stamp_of(function: Callable[..., Any], options: str) -> str:
+    """What code kept on disk depends on: the text of every kernel it calls, and the constants it was given.
 
     numba compares the file of the kernel itself only, although the kernels it calls and the numbers that its module
     imports are built into it; older releases compare when the file was written, which says nothing in a fresh clone.
     """
-    store: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
-    own = _digest_of(kernel.py_func.__code__.co_filename) or getattr(store, "_source_stamp", None)
     called, constants = set(), []
-    for name, value in kernel.py_func.__globals__.items():
-        if type(value) is type(kernel) and hasattr(value, "source_stamp"):
+    for name, value in function.__globals__.items():
+        if hasattr(value, "py_func") and hasattr(value, "source_stamp"):
             called.add(value.source_stamp)
         elif type(value) in (bool, int, float, str, tuple) and not name.startswith("__"):
             constants.append((name, repr(value)))
         elif isinstance(value, type) and hasattr(value, "_fields"):
             constants.append((name, repr(value._fields)))
+    own = _digest_of(function.__code__.co_filename) or function.__code__.co_code.hex()
     told = (own, options, numpy.__version__, sorted(called), sorted(constants))
-    kernel.source_stamp = hashlib.sha256(repr(told).encode()).hexdigest()
-    if own is not None and store is not None:
-        store._source_stamp = kernel.source_stamp
-        _check(store, kernel.source_stamp)
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+def _stamp(stamp: str | None, kernel: Any) -> None:
+    """Let a kernel's code on disk expire with what it depends on; without a stamp numba's own rules stay."""
+    store: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if stamp is not None and store is not None:
+        store._source_stamp = stamp
+        _check(store, stamp)
 
 
 @functools.cache
