@@ -113,6 +113,23 @@ def test_kernels_within_others_are_no_machine_code_of_their_own(tmp_path: Path) 
     assert len(list((tmp_path / "kept").rglob("*.nbc"))) == 4
 
 
+def test_a_kernel_is_compiled_by_one_process_while_others_wait(tmp_path: Path) -> None:
+    """The second takes from disk what the first compiled meanwhile; the first holds its lock for two seconds more."""
+    pytest.importorskip("numba")
+    (tmp_path / "nested.py").write_text(NESTED)
+    slow = ("import time\nfrom numba.core.dispatcher import Dispatcher\ncompiled = Dispatcher.compile\n"
+            "def late(kernel, types):\n    print('begun', flush=True)\n    time.sleep(2)\n"
+            "    return compiled(kernel, types)\n"
+            "import nested\nnested.outer.entry\nDispatcher.compile = late\n")
+    tell = "print(nested.outer(1.0), sum(nested.outer.stats.cache_hits.values()))"
+    settings = {"PYTHONPATH": os.pathsep.join([str(CORE), str(tmp_path)]), "NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    with subprocess.Popen([sys.executable, "-c", slow + tell], stdout=subprocess.PIPE, text=True,
+                          env={**os.environ, **settings}) as first:
+        assert first.stdout is not None and first.stdout.readline().strip() == "begun"
+        assert run("import nested\n" + tell, tmp_path).split() == ["6.0", "1"]
+        assert first.communicate(timeout=60)[0].splitlines()[-1] == "6.0 0"
+
+
 def test_where_numba_cannot_build_kernels_in_each_is_compiled(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     (tmp_path / "nested.py").write_text(NESTED)

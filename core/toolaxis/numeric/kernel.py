@@ -5,17 +5,25 @@ for Python, at each level of calls anew.  Here a kernel that another one calls i
 calls is optimized as a whole and kept on disk.  That takes half the time, and the numbers stay the same.
 """
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cached_property
-from typing import Any
+from typing import IO, Any
 
-from numba import njit
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+#: How long another process is waited for that compiles the same kernel, and between looks, s.
+_PATIENCE, _PAUSE = 120.0, 0.02
 #: What of numba's own must be there for it; where a release does without, each kernel is compiled as numba does.
 _STEPS = ("_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals",
           "_verify_declare_only_symbols", "_finalized")
@@ -85,6 +93,52 @@ class PartCompiler(CompilerBase):
         return [passes]
 
 
+class KeptKernel(CPUDispatcher):
+    """What Python calls: compiled as a whole and kept on disk, by one process while others wait for it."""
+
+    def compile(self, sig: Any) -> Any:
+        """The code for arguments of given types, from disk where it is there."""
+        with _alone(self):
+            return super().compile(sig)
+
+
+@contextmanager
+def _alone(kernel: Any) -> Iterator[None]:
+    """Until it is left, other processes that want the same kernel's code wait, but not for ever.
+
+    Where there are no locks, or no place for them, nobody waits.
+    """
+    index = getattr(getattr(kernel._cache, "_cache_file", None), "_index_path", None)
+    if fcntl is None or index is None:
+        yield
+        return
+    try:
+        lock = open(f"{index}.lock", "ab")
+    except OSError:
+        yield
+        return
+    with lock:
+        end = time.monotonic() + _PATIENCE
+        while not _locked(lock) and time.monotonic() < end:
+            time.sleep(_PAUSE)
+        try:
+            yield
+        finally:
+            with suppress(OSError):  # for forked processes too, which hold the file open
+                fcntl.flock(lock, fcntl.LOCK_UN)
+
+
+def _locked(lock: IO[bytes]) -> bool:
+    """Whether it is this process's now, or nobody's as this file system has no locks."""
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
 class Kernel(CPUDispatcher):
     """A part to kernels that call it, and compiled by itself where Python does.
 
@@ -99,8 +153,8 @@ class Kernel(CPUDispatcher):
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any],
                  keep: Callable[[Any], None]) -> None:
-        super().__init__(py_func=function, locals={}, targetoptions={"nopython": True, "boundscheck": None, **options},
-                         pipeline_class=PartCompiler)
+        options = {"nopython": True, "boundscheck": None, **options}
+        super().__init__(py_func=function, locals={}, targetoptions=options, pipeline_class=PartCompiler)
         self._options, self._keep = options, keep
 
     def add_overload(self, cres: Any) -> None:
@@ -110,7 +164,8 @@ class Kernel(CPUDispatcher):
     @cached_property
     def entry(self) -> Any:
         """What Python calls."""
-        made = njit(cache=True, **self._options)(self.py_func)
+        made = KeptKernel(py_func=self.py_func, locals={}, targetoptions=self._options)
+        made.enable_caching()
         self._keep(made)
         return made
 
