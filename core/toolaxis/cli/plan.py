@@ -40,9 +40,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     check_strategy(given.strategy, Asked(tool, load_machine(spec.machine) if spec.machine else None, given.method,
                                          given.objective, _roughness(given), given.orientations))
     with stage_folder(Path(given.out)) as stage:
+        from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
 
-        with show_progress(asked) as progress:
+        with compiling_ahead(), show_progress(asked) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,

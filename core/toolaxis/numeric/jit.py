@@ -184,6 +184,18 @@ def _fields_in(types: Any) -> tuple[Any, ...]:
     return (fields, *(_fields_in(one) for one in within))
 
 
+def is_kept(kernel: Any) -> bool:
+    """Whether there is code of a kernel on disk, for whatever arguments; true where nothing is ever compiled.
+
+    Parameters
+    ----------
+    kernel : callable
+        Of `jit`.
+    """
+    store: Any = getattr(getattr(getattr(kernel, "entry", kernel), "_cache", None), "_cache_file", None)
+    return store is None or bool(store._load_index())
+
+
 def compilations() -> Callable[[], int]:
     """Begin to count the kernels that have to be compiled as there is no code for them on disk yet.
 

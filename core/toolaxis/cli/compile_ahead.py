@@ -1,0 +1,68 @@
+"""The first run on a machine compiles on two cores: another process begins with what a plan needs later.
+
+Whichever of the two comes to a kernel first compiles it; the other one waits and takes it from disk.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.strip.half_widths import step_half_widths
+from toolaxis.numeric.jit import is_kept
+
+#: Control points along either edge of the small face that is planned, the length of the edge, and the scallop, mm.
+_POINTS, _EDGE, _SCALLOP = 5, 20.0, 0.1
+#: What it is trimmed by, in its parameters.
+_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+def count_cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def compiling_ahead() -> Iterator[None]:
+    """While it is entered, a second process compiles what is not on disk yet; it ends with it at the latest."""
+    if count_cores() < 2 or is_kept(step_half_widths):
+        yield
+        return
+    other = subprocess.Popen([sys.executable, "-m", __name__], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        other.terminate()
+        other.wait()
+
+
+def compile_all() -> None:
+    """Plan and judge a small face: first what takes longest and comes last."""
+    from toolaxis.job.output.verify import verify_plan
+    from toolaxis.job.planning.pipeline import plan
+    from toolaxis.path.pass_count import count
+    from toolaxis.shape.face import Face
+    from toolaxis.shape.nurbs import NurbsSurface
+    from toolaxis.shape.part import Part
+    from toolaxis.tools.tool import Tool
+
+    u, v = np.meshgrid(np.linspace(0, 1, _POINTS), np.linspace(0, 1, _POINTS), indexing="ij")
+    knots = np.repeat([0.0, 0.5, 1.0], [4, 1, 4])
+
+    def face(number: int, height: NDArray[np.float64]) -> Face:
+        control = np.stack([_EDGE * u, _EDGE * v, height, np.ones_like(u)], axis=2)
+        return Face(NurbsSurface(knots, knots, control, (3, 3)), (_SQUARE,), number=number)
+
+    waved, below = face(1, 2 * np.sin(3 * u) * v), face(2, np.full_like(u, -_EDGE))
+    tool = Tool.of("torus", 6.0, 1.0)
+    count(waved, tool, (0.0, 0.0, 1.0), _SCALLOP)
+    verify_plan(plan(Part((waved, below)), tool, _SCALLOP, faces=[1]))
+
+
+if __name__ == "__main__":
+    compile_all()
