@@ -19,7 +19,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.placement import place
 from toolaxis.errors import ToolAxisError
 from toolaxis.machine.setup import Mounting
-from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.roughness.feasible_area import critical_curvature, least_lean
@@ -74,9 +74,9 @@ def laid(search: RoughnessSearch) -> Layout:
     """Passes on which Sturz milling has the wanted mean Ra."""
     height = 1.2 * search.height
     for _ in range(3):
-        chart = LeadChart(search.face, "u")
+        chart = MovingChart(search.face, "u")
         mean = search.face.normal(search.face.grid(9, 9)).mean(axis=0)
-        placed = lay_out(chart, LeadCut(TOOL, mean, height, 0.0, NOMINAL, "u"))
+        placed = lay_out(chart, MovingCut(TOOL, mean, height, 0.0, field=ConstantLeadField(NOMINAL, "u")))
         ra = constant_lead(search, placed, NOMINAL)[2].mean()
         if abs(ra / MEAN - 1) < 0.004:
             break
@@ -84,7 +84,7 @@ def laid(search: RoughnessSearch) -> Layout:
     return placed
 
 
-def by_the_judge(cut: LeadCut, placed: Layout, uv: np.ndarray) -> np.ndarray:
+def by_the_judge(cut: MovingCut, placed: Layout, uv: np.ndarray) -> np.ndarray:
     """Ra at places, mm, by removing material at the positions of all teeth."""
     face, tips, axes = placed.chart.face, [], []
     for low, high, step in placed.pieces:
@@ -165,7 +165,7 @@ def main() -> None:
     print(paper_loop(search, placed, OrientationRequirements(H, (LEAST[2], high), 1.0, search.wish.leans)))
 
 
-def lane_cost(lane: PassConstraints, cut: LeadCut) -> float:
+def lane_cost(lane: PassConstraints, cut: MovingCut) -> float:
     """Sum of squared angular velocities of a constant lead along a pass, (rad/s)^2."""
     return spline_along_axes(lane, cut.axes(lane.face, lane.uv)).cost(lane.places, lane.durations)
 

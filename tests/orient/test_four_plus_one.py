@@ -13,11 +13,12 @@ from toolaxis.feasibility.violations import GOUGE
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
+from toolaxis.path.moving_axis import MovingCut
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.path_check import prove_moving
 from toolaxis.strategies.four_plus_one.clamp_angle import ClampSearch
 from toolaxis.strategies.four_plus_one.links import free_angles, on_the_circle
-from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedChart, ClampedCut
+from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedAxis, ClampedChart
 from toolaxis.strategies.four_plus_one.search import (
     FourPlusOneSearch,
     _ways,
@@ -181,7 +182,8 @@ def test_a_field_that_does_not_turn_has_the_strips_of_a_fixed_axis() -> None:
     clamp, angle = Clamp(MIKRON, 0, np.radians(30.0)), np.radians(14.0)
     along, step = np.linspace(*face.bounds[:2], 5), np.linspace(*face.bounds[2:], 5)
     axis = clamp.axes(np.array([angle]))[0]
-    cut = ClampedCut(TOOL, axis, H, 0.0, 0.0, "u", clamp, AngleField(along, step, np.full((5, 5), angle)))
+    turning = ClampedAxis(clamp, AngleField(along, step, np.full((5, 5), angle)), "u")
+    cut = MovingCut(TOOL, axis, H, 0.0, field=turning)
     places = np.array([(a, s) for a in (0.2, 0.5, 0.8) for s in (0.25, 0.5, 0.75)]).T
     standing, moving = (ClampedChart(face, "u", still).half_widths(cut, *places) for still in (True, False))
     assert (standing > 0).all() and np.allclose(moving, standing, rtol=3e-2)

@@ -6,7 +6,7 @@ import pytest
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.feasibility.surroundings import SKIN, CheckSurfaces
-from toolaxis.path.constant_lead import LeadChart
+from toolaxis.path.moving_axis import MovingChart
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.common.passes import make_passes
@@ -101,7 +101,7 @@ def test_a_bowl_asks_for_the_lead_at_which_the_heel_clears_it() -> None:
 def test_a_lead_that_gouges_is_found_out_at_points() -> None:
     job = task(bowl(60.0, 10.0), Tool.flat(10), H)
     search = ConstantLeadSearch(job)
-    _, path = make_passes(job, LeadChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
+    _, path = make_passes(job, MovingChart(job.worth.face, "u"), search.cut(np.radians(2.0), "u"))
     witness = prove_moving(path, job.worth.tool, job.groups).witness
     assert witness is not None and witness.distance < -0.01
 
@@ -123,7 +123,7 @@ def test_what_is_proven_alone_is_proven_beside_wider_turns() -> None:
 
 def test_positions_looked_at_lie_close() -> None:
     job = task(seeded(5, 0.5), TOOL, H)
-    _, path = make_passes(job, LeadChart(job.worth.face, "v"), ConstantLeadSearch(job).cut(np.radians(20.0), "v"))
+    _, path = make_passes(job, MovingChart(job.worth.face, "v"), ConstantLeadSearch(job).cut(np.radians(20.0), "v"))
     spans = spans_of(path).rows(np.flatnonzero(path.kind[1:] == Motion.CUT))
     tips = standing(spans)[:, 0]
     for share in (0.0, 0.3, 0.77, 1.0):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,8 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.chord_tolerance import follow, rises
 from toolaxis.path.cl_points import climbing
-from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.links import Linking
+from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import tip_points
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.plan.orientation import Orientation
@@ -55,14 +56,14 @@ class MovingAxisResult:
     witness: Violation | None = None
     proof: PathCheck | None = None
 
-    def orientation(self, job: FaceProblem, cut: LeadCut, words: tuple[str, ...], tried: int,
+    def orientation(self, job: FaceProblem, cut: MovingCut[Any], words: tuple[str, ...], tried: int,
                     lead: float) -> Orientation:
         """What passes without a witness come to.
 
         Parameters
         ----------
         job : FaceProblem
-        cut : LeadCut
+        cut : MovingCut
         words : tuple of str
             The reasons.
         tried : int
@@ -77,15 +78,15 @@ class MovingAxisResult:
                            words, evaluations=tried, lead=lead)
 
 
-def plan_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut,
+def plan_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any],
                 finish: Callable[[ToolPath], ToolPath] = lambda path: path) -> MovingAxisResult:
     """Passes of a cut with a moving axis, made and judged.
 
     Parameters
     ----------
     job : FaceProblem
-    chart : LeadChart
-    cut : LeadCut
+    chart : MovingChart
+    cut : MovingCut
     finish : callable
         What is done to the path before it is judged.
 
@@ -110,14 +111,14 @@ def plan_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut,
     return MovingAxisResult(placed, path, proof.witness, proof)
 
 
-def make_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut) -> tuple[Layout, ToolPath]:
+def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tuple[Layout, ToolPath]:
     """Passes with their links.
 
     Parameters
     ----------
     job : FaceProblem
-    chart : LeadChart
-    cut : LeadCut
+    chart : MovingChart
+    cut : MovingCut
 
     Raises
     ------
@@ -134,7 +135,7 @@ def make_passes(job: FaceProblem, chart: LeadChart, cut: LeadCut) -> tuple[Layou
     return placed, join_moves(_ordered(strokes, placed, job.direction), _links(job, cut))
 
 
-def _links(job: FaceProblem, cut: LeadCut) -> MovingLinks:
+def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
     face = job.worth.face
     walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
                 for group in job.groups)

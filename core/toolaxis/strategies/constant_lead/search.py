@@ -17,7 +17,7 @@ from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.violations import Violation
-from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem
@@ -66,7 +66,7 @@ class ConstantLeadSearch:
         self.uv = np.concatenate([self.face.grid(_GRID, _GRID), border, middle + _BEYOND * (border - middle)])
         self.tried = 0
 
-    def cut(self, lead: float, feed: str) -> LeadCut:
+    def cut(self, lead: float, feed: str) -> MovingCut[ConstantLeadField]:
         """What cuts with a lead, its axis the mean one.
 
         Parameters
@@ -77,7 +77,7 @@ class ConstantLeadSearch:
         """
         worth = self.job.worth
         mean = self._axes(lead, feed).sum(axis=0)
-        return LeadCut(worth.tool, mean, worth.scallop, worth.allowance, lead, feed)
+        return MovingCut(worth.tool, mean, worth.scallop, worth.allowance, field=ConstantLeadField(lead, feed))
 
     def _axes(self, lead: float, feed: str) -> Array:
         return axis_from_lead_tilt(contact_frame(self.face, self.uv, feed), lead, 0.0)
@@ -141,7 +141,7 @@ class ConstantLeadSearch:
             rad
         feed : str
         """
-        chart, cut = LeadChart(self.face, feed), self.cut(lead, feed)
+        chart, cut = MovingChart(self.face, feed), self.cut(lead, feed)
         a0, a1, s0, s1 = chart.bounds
         along, step = a0 + (a1 - a0) * np.linspace(0, 1, _ALONG), s0 + (s1 - s0) * (np.arange(_ACROSS) + 0.5) / _ACROSS
         grid = [part.ravel() for part in np.meshgrid(step, along, indexing="ij")]
@@ -213,11 +213,12 @@ def _closer(search: ConstantLeadSearch, best: tuple[Orientation, ToolPath | None
     return best
 
 
-def _tried(search: ConstantLeadSearch, cut: LeadCut) -> tuple[Orientation, ToolPath | None, Violation | None]:
+def _tried(search: ConstantLeadSearch,
+           cut: MovingCut[ConstantLeadField]) -> tuple[Orientation, ToolPath | None, Violation | None]:
     """What one lead comes to: its passes made and judged."""
-    chart = LeadChart(search.face, cut.feed)
+    chart = MovingChart(search.face, cut.feed)
     found = plan_passes(search.job, chart, cut)
     if found.witness is not None:
         return Orientation(None, cut.feed), found.path, found.witness
-    words = (f"lead {degrees(cut.lead):.2f} deg towards {cut.feed}", CHECKED)
-    return found.orientation(search.job, cut, words, search.tried, cut.lead), found.path, None
+    words = (f"lead {degrees(cut.field.lead):.2f} deg towards {cut.feed}", CHECKED)
+    return found.orientation(search.job, cut, words, search.tried, cut.field.lead), found.path, None

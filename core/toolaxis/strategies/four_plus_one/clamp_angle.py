@@ -12,6 +12,7 @@ from toolaxis.contact.strip.second_order import screen_many
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.path.moving_axis import MovingCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure
 from toolaxis.path.width_correction import lean_ratios
@@ -20,7 +21,7 @@ from toolaxis.search.machine_limits import while_moving
 from toolaxis.strategies.four_plus_one.angle_grid import NODES, Nodes
 from toolaxis.strategies.four_plus_one.free_angle import SingularSides, bands, narrowest, smoothest, widest
 from toolaxis.strategies.four_plus_one.links import free_angles
-from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedChart, ClampedCut
+from toolaxis.strategies.four_plus_one.passes import AngleField, Clamp, ClampedAxis, ClampedChart
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -260,7 +261,7 @@ class ClampSearch:
             free[some] = keeps_limits(group.cells, worth.tool, moves[some], table).blocked < 0
         return free
 
-    def cut(self, one: ClampCandidate, share: float, inset: int = 0) -> tuple[ClampedCut | None, Index]:
+    def cut(self, one: ClampCandidate, share: float, inset: int = 0) -> tuple[MovingCut[ClampedAxis] | None, Index]:
         """What cuts with the smoothest angles at which no strip is narrower than a share of the narrowest of its pass.
 
         Where the tool comes too near to something between the nodes, the angles of the nodes around are moved away.
@@ -274,7 +275,7 @@ class ClampSearch:
 
         Returns
         -------
-        ClampedCut or None
+        MovingCut of ClampedAxis, or None
             None where moving does not help.
         (m,) array of int
             Places among `Nodes.fine` where something is in the way before anything is moved.
@@ -292,36 +293,34 @@ class ClampSearch:
             moves = self._away(made, bad)
             if moves is None:
                 return None, first
-            assert made.field is not None
             up, down = (self._pushed(nodes, moves, sense) for sense in (1.0, -1.0))
             if (np.minimum(up, down) > 0).any():
                 return None, first
-            low = np.where(up > 0, np.maximum(low, made.field.values + up), low)
-            high = np.where(down > 0, np.minimum(high, made.field.values - down), high)
+            low = np.where(up > 0, np.maximum(low, made.field.angles.values + up), low)
+            high = np.where(down > 0, np.minimum(high, made.field.angles.values - down), high)
             low, high = np.where(down > 0, np.minimum(low, high), low), np.where(up > 0, np.maximum(low, high), high)
         return None, np.zeros(0, dtype=np.intp) if first is None else first
 
-    def _with(self, one: ClampCandidate, values: Array) -> ClampedCut:
+    def _with(self, one: ClampCandidate, values: Array) -> MovingCut[ClampedAxis]:
         """What cuts with angles at the nodes."""
         nodes, worth = self.nodes[one.feed], self.job.worth
         axes = one.clamp.axes(values[nodes.counts])
-        return ClampedCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, 0.0, one.feed, one.clamp,
-                          AngleField(nodes.along, nodes.step, values))
+        turning = ClampedAxis(one.clamp, AngleField(nodes.along, nodes.step, values), one.feed)
+        return MovingCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, field=turning)
 
-    def _bad(self, cut: ClampedCut) -> Index:
+    def _bad(self, cut: MovingCut[ClampedAxis]) -> Index:
         """Places among those between the nodes at which something is in the way."""
-        assert cut.clamp is not None and cut.field is not None
-        nodes = self.nodes[cut.feed]
-        return np.flatnonzero(~self._free(nodes.chart.uv(*nodes.fine), cut.clamp.axes(cut.field.at(*nodes.fine))))
+        nodes, turning = self.nodes[cut.feed], cut.field
+        axes = turning.clamp.axes(turning.angles.at(*nodes.fine))
+        return np.flatnonzero(~self._free(nodes.chart.uv(*nodes.fine), axes))
 
-    def _away(self, cut: ClampedCut, bad: Index) -> _FreeingTurns | None:
+    def _away(self, cut: MovingCut[ClampedAxis], bad: Index) -> _FreeingTurns | None:
         """The least turns that help at places where something is in the way; None where none does."""
-        nodes, clamp = self.nodes[cut.feed], cut.clamp
-        assert clamp is not None and cut.field is not None
+        nodes, clamp = self.nodes[cut.feed], cut.field.clamp
         if len(bad) > _HOPELESS * len(nodes.fine[0]):
             return None
         along, step = (part[bad] for part in nodes.fine)
-        uv, here = nodes.chart.uv(along, step), cut.field.at(along, step)
+        uv, here = nodes.chart.uv(along, step), cut.field.angles.at(along, step)
         turn = np.zeros(len(bad))
         left = np.arange(len(bad))
         for size in _HELP:
@@ -344,12 +343,12 @@ class ClampSearch:
             np.maximum.at(out, (i + di, k + dk), np.abs(moves.turn[some]))
         return out
 
-    def counted(self, cut: ClampedCut, standing: bool = True) -> Count:
+    def counted(self, cut: MovingCut[ClampedAxis], standing: bool = True) -> Count:
         """Passes and cutting length by exact widths.
 
         Parameters
         ----------
-        cut : ClampedCut
+        cut : MovingCut of ClampedAxis
         standing : bool
             Whether the axis stands still at each place, which takes less time.
         """

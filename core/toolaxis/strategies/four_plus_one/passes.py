@@ -17,7 +17,7 @@ from toolaxis.contact.strip.width import step_widths
 from toolaxis.machine.kinematics import placement, tool_axes
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import unit
-from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.width_correction import lean_ratios
 from toolaxis.shape.face import Face
@@ -106,65 +106,36 @@ class Clamp:
 
 
 @dataclass(frozen=True, eq=False)
-class ClampedCut(LeadCut):
-    """What cuts with one rotary axis clamped.
+class ClampedAxis:
+    """The axis of a machine with one rotary axis clamped, while the other turns.
 
     Attributes
     ----------
-    tool, axis, scallop, allowance, feed
-        As for `LeadCut`, the axis about the mean one; its lead means nothing here.
     clamp : Clamp
-    field : AngleField
+    angles : AngleField
         The free axis over the chart with that feed.
+    feed : str
+        "u" or "v".
     """
 
-    clamp: Clamp | None = None
-    field: AngleField | None = None
+    clamp: Clamp
+    angles: AngleField
+    feed: str
 
-    def free(self, uv: Array) -> Array:
-        """Angles of the free axis at contacts, (n,) rad.
-
-        Parameters
-        ----------
-        uv : (n, 2) array
-        """
-        assert self.field is not None
-        rows = np.atleast_2d(uv)
-        a, s = (0, 1) if self.feed == "u" else (1, 0)
-        return self.field.at(rows[:, a], rows[:, s])
-
-    def axes(self, face: Face, uv: Array) -> Array:
-        """Unit axes at contacts, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        """
-        assert self.clamp is not None
-        return self.clamp.axes(self.free(uv))
-
-    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
-        """The same, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        frame : Frame
-            Of no matter here.
-        """
-        return self.axes(face, uv)
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts; see `AxisField`."""
+        along, step = (uv if self.feed == "u" else uv[:, ::-1]).T
+        return self.clamp.axes(self.angles.at(along, step))
 
 
 @dataclass(frozen=True, eq=False)
-class ClampedChart(LeadChart):
+class ClampedChart(MovingChart):
     """A face in its own parameters, for passes with one rotary axis clamped.
 
     Attributes
     ----------
     face, feed
-        As for `LeadChart`.
+        As for `MovingChart`.
     standing : bool
         Whether half widths are those of the axis that stands still where it is at each contact: for comparing fields,
         as long as turning is slow.
@@ -177,7 +148,7 @@ class ClampedChart(LeadChart):
 
         Parameters
         ----------
-        cut : ClampedCut
+        cut : MovingCut of ClampedAxis
         along, step : (n,) array
         """
         if not self.standing:
@@ -191,10 +162,10 @@ class ClampedChart(LeadChart):
 
         Parameters
         ----------
-        cut : ClampedCut
+        cut : MovingCut of ClampedAxis
         along, step : (n,) array
         """
-        assert isinstance(cut, ClampedCut)
+        assert isinstance(cut, MovingCut)
         uv = self.uv(along, step)
         axes, forms = cut.axes(self.face, uv), contact_forms(self.face, uv, self.feed, True)
         half = second_order_each(forms, axes, cut.numbers, cut.scallop)

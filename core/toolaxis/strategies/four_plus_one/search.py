@@ -20,6 +20,7 @@ from toolaxis.machine.axis import RotaryAxis
 from toolaxis.machine.kinematics import rotary_angles
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.path.moving_axis import MovingCut
 from toolaxis.path.pass_count import Count
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
@@ -29,7 +30,7 @@ from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, MovingAxisResult, plan_passes
 from toolaxis.strategies.four_plus_one.clamp_angle import ClampCandidate, ClampSearch
 from toolaxis.strategies.four_plus_one.links import on_the_circle
-from toolaxis.strategies.four_plus_one.passes import Clamp, ClampedCut
+from toolaxis.strategies.four_plus_one.passes import Clamp, ClampedAxis
 
 Array = NDArray[np.float64]
 
@@ -59,7 +60,7 @@ class ClampedPasses:
     Attributes
     ----------
     candidate : ClampCandidate
-    cut : ClampedCut
+    cut : MovingCut of ClampedAxis
     count : Count
         With exact widths, the axis standing at each place as it does there, or moving.
     tried : int
@@ -67,7 +68,7 @@ class ClampedPasses:
     """
 
     candidate: ClampCandidate
-    cut: ClampedCut
+    cut: MovingCut[ClampedAxis]
     count: Count
     tried: int
 
@@ -325,19 +326,19 @@ def _tried(search: ClampSearch, one: ClampedPasses, fixed: Orientation,
     """A clamped angle with its passes laid and proven, by the first way that the proof accepts; None without any."""
     for share, inset in _TRIES[one.tried:]:
         cut, _ = search.cut(one.candidate, share, inset)
-        if cut is None or cut.clamp is None:
+        if cut is None:
             continue
-        done = plan_passes(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.clamp))
+        done = plan_passes(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.field.clamp))
         if done.witness is None:
             return _told(search, done, cut, fixed), done.path
         refused.append(f"refused {_named(cut)}: {sentence(done.witness, search.job.feasibility)}")
     return None
 
 
-def _named(cut: ClampedCut) -> str:
-    assert cut.clamp is not None
-    name = cut.clamp.machine.rotary[cut.clamp.which].name
-    return f"{name} clamped at {degrees(cut.clamp.angle):.3f} deg, feed along {cut.feed}"
+def _named(cut: MovingCut[ClampedAxis]) -> str:
+    clamp = cut.field.clamp
+    name = clamp.machine.rotary[clamp.which].name
+    return f"{name} clamped at {degrees(clamp.angle):.3f} deg, feed along {cut.feed}"
 
 
 def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str]]:
@@ -363,12 +364,12 @@ def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str
             for row in rows]
 
 
-def _told(search: ClampSearch, done: MovingAxisResult, cut: ClampedCut, fixed: Orientation) -> Orientation:
+def _told(search: ClampSearch, done: MovingAxisResult, cut: MovingCut[ClampedAxis], fixed: Orientation) -> Orientation:
     """What passes come to, in numbers and words."""
-    assert done.path is not None and cut.clamp is not None
+    assert done.path is not None
     on = done.path.kind == Motion.CUT
     lean = float(angle_between(done.path.axis[on], done.path.normal[on]).mean())
-    first, *mirrored = _ways(search.mounting, cut.clamp.which, done.path)
+    first, *mirrored = _ways(search.mounting, cut.field.clamp.which, done.path)
     words = [f"{first[0]}, feed along {cut.feed}", f"{first[1]} along the passes"]
     words += [f"the same axes by the other solution: {where}, {turning}" for where, turning in mirrored]
     if fixed.axis is not None:

@@ -1,6 +1,7 @@
 """Passes for a roughness: a lean for each place of a face, the passes that it allows, and the splines along them."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from toolaxis.contact.placement import tips
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import tool_axes
 from toolaxis.machine.machine import Machine
-from toolaxis.path.constant_lead import LeadChart, LeadCut
+from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.rotary_spline import RotarySpline
@@ -28,22 +29,23 @@ _PROFILE, _POSITIONS, _WINDOW = 241, 21, 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class FieldCut(LeadCut):
-    """What cuts with a lead that changes over the face.
+class LeadField:
+    """A lead that changes over the face.
 
     Attributes
     ----------
-    tool, axis, scallop, allowance, lead, feed
-        As for `LeadCut`; the lead is the mean one.
+    feed : str
+        "u" or "v".
     along, step : (k,), (l,) array
         Grid of the parameters.
     leads : (k, l) array
         rad; between the grid's lines bilinear, beyond them as on the border.
     """
 
-    along: Array = field(default_factory=lambda: np.empty(0))
-    step: Array = field(default_factory=lambda: np.empty(0))
-    leads: Array = field(default_factory=lambda: np.empty((0, 0)))
+    feed: str
+    along: Array
+    step: Array
+    leads: Array
 
     def lead_at(self, uv: Array) -> Array:
         """Leads at contacts, (n,) rad.
@@ -62,40 +64,24 @@ class FieldCut(LeadCut):
         low, high = (self.leads[i, j + k] * (1 - x) + self.leads[i + 1, j + k] * x for k in (0, 1))
         return np.asarray(low * (1 - y) + high * y)
 
-    def axes(self, face: Face, uv: Array) -> Array:
-        """Unit axes at contacts, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        """
-        return axis_from_lead_tilt(contact_frame(face, uv, self.feed), self.lead_at(uv), 0.0)
-
-    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
-        """The same at contacts, beyond the face too, whose frames are known, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        frame : Frame
-        """
-        return axis_from_lead_tilt(frame, self.lead_at(uv), 0.0)
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts; see `AxisField`."""
+        there = contact_frame(face, uv, self.feed) if frame is None else frame
+        return axis_from_lead_tilt(there, self.lead_at(uv), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class FieldChart(LeadChart):
+class FieldChart(MovingChart):
     """A face in its own parameters, whose passes are laid for a field of leads whatever cuts them then.
 
     Attributes
     ----------
     face, feed
-        As for `LeadChart`.
-    laid : FieldCut
+        As for `MovingChart`.
+    laid : MovingCut of LeadField
     """
 
-    laid: FieldCut | None = None
+    laid: MovingCut[LeadField] = field(kw_only=True)
     _known: dict[bytes, Array] = field(default_factory=dict, repr=False)
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
@@ -107,7 +93,6 @@ class FieldChart(LeadChart):
             Not looked at.
         along, step : (n,) array
         """
-        assert self.laid is not None
         key = np.concatenate([along, step]).tobytes()
         if key not in self._known:
             self._known[key] = super().half_widths(self.laid, along, step)
@@ -122,18 +107,19 @@ class FieldChart(LeadChart):
             Not looked at.
         along, step : (n,) array
         """
-        assert self.laid is not None
         return super().run_outs(self.laid, along, step)
 
 
 @dataclass(frozen=True, eq=False)
-class SplineCut(LeadCut):
-    """What cuts with rotary axes that are splines along each pass.
+class SplineAxes:
+    """The axis of a machine whose rotary axes are splines along each pass.
 
     Attributes
     ----------
-    tool, axis, scallop, allowance, lead, feed
-        As for `LeadCut`; the lead is the mean lean.
+    feed : str
+        "u" or "v".
+    lean : float
+        The mean one, rad.
     machine : Machine
     turn : (3, 3) array
         From the part's directions to the table's.
@@ -143,10 +129,12 @@ class SplineCut(LeadCut):
         One for each.
     """
 
-    machine: Machine | None = None
-    turn: Array = field(default_factory=lambda: np.eye(3))
-    pieces: Array = field(default_factory=lambda: np.empty((0, 3)))
-    splines: tuple[RotarySpline, ...] = ()
+    feed: str
+    lean: float
+    machine: Machine
+    turn: Array
+    pieces: Array
+    splines: tuple[RotarySpline, ...]
 
     def owners(self, along: Array, step: Array) -> NDArray[np.intp]:
         """The piece that each place belongs to: of the pass nearest to it, that which holds it or is nearest, (n,).
@@ -160,32 +148,14 @@ class SplineCut(LeadCut):
         nearest = beside <= beside.min(axis=1, keepdims=True)
         return np.asarray(np.where(nearest, off, np.inf).argmin(axis=1))
 
-    def axes(self, face: Face, uv: Array) -> Array:
-        """Unit axes at contacts, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        """
-        assert self.machine is not None
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts; see `AxisField`."""
         along, step = (uv if self.feed == "u" else uv[:, ::-1]).T
         owner, axes = self.owners(along, step), np.empty((len(uv), 3))
         for k in np.unique(owner):
             some = owner == k
             axes[some] = tool_axes(self.machine, self.splines[k].angles(along[some])) @ self.turn
         return axes
-
-    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
-        """The same, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        frame : Frame
-        """
-        return self.axes(face, uv)
 
 
 def evaluation_length(roughness: float) -> float:
@@ -237,13 +207,13 @@ def spots(face: Face, feed: str, length: float, counts: tuple[int, int] = (10, 9
     return np.asarray(uv[on])
 
 
-def roughness_at(face: Face, cut: LeadCut, steps: Array, uv: Array, length: float) -> Array:
+def roughness_at(face: Face, cut: MovingCut[Any], steps: Array, uv: Array, length: float) -> Array:
     """Ra across the feed that passes leave at places of a face, (n,) mm.
 
     Parameters
     ----------
     face : Face
-    cut : LeadCut
+    cut : MovingCut
         What cuts, with its axes at every place of the passes.
     steps : (k,) array
         Step parameter of each pass, growing.
@@ -278,7 +248,7 @@ def _growing(x: Array, y: Array) -> tuple[Array, Array]:
     return (x, y) if x[-1] >= x[0] else (x[::-1], y[::-1])
 
 
-def _positions(face: Face, cut: LeadCut, along: Array, step: Array) -> tuple[Array, Array]:
+def _positions(face: Face, cut: MovingCut[Any], along: Array, step: Array) -> tuple[Array, Array]:
     """Tips and axes of passes around places, (n, k, 3) each."""
     ahead = 0 if cut.feed == "u" else 1
     middle = np.stack([along, step] if ahead == 0 else [step, along], axis=1)

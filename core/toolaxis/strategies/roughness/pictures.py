@@ -1,7 +1,7 @@
 """Strip width and roughness over a face, the front of one against the other, and what rotary axes do along a pass."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import radians
 from pathlib import Path
 
@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
+from toolaxis.contact.frame import Frame, axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.path.constant_lead import LeadCut
+from toolaxis.path.moving_axis import MovingCut
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
@@ -77,30 +77,25 @@ def draw_roughness(plan: Plan, op: Operation, folder: Path) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class PathCut(LeadCut):
-    """What cuts with the axes of a tool path.
+class PathAxes:
+    """The axes of a tool path.
 
     Attributes
     ----------
-    tool, axis, scallop, allowance, lead, feed
-        As for `LeadCut`.
+    feed : str
+        "u" or "v".
     steps : (k,) array
         Step parameter of each pass, growing.
     runs : tuple of pairs of (n,), (n, 3) arrays
         Along parameters of each pass, growing, and the axes there.
     """
 
-    steps: Array = field(default_factory=lambda: np.empty(0))
-    runs: tuple[tuple[Array, Array], ...] = ()
+    feed: str
+    steps: Array
+    runs: tuple[tuple[Array, Array], ...]
 
-    def axes(self, face: Face, uv: Array) -> Array:
-        """Unit axes at contacts, those of the nearest pass, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        """
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts, those of the nearest pass; see `AxisField`."""
         along, step = (uv if self.feed == "u" else uv[:, ::-1]).T
         owner = np.abs(self.steps - step[:, None]).argmin(axis=1)
         found = np.empty((len(uv), 3))
@@ -110,7 +105,7 @@ class PathCut(LeadCut):
         return np.asarray(unit(found))
 
 
-def path_cut(plan: Plan, op: Operation) -> tuple[PathCut, Array, Array]:
+def path_cut(plan: Plan, op: Operation) -> tuple[MovingCut[PathAxes], Array, Array]:
     """What cuts along the passes of an operation, and the contacts on the face with their axes, (n, 2) and (n, 3).
 
     Parameters
@@ -141,8 +136,8 @@ def path_cut(plan: Plan, op: Operation) -> tuple[PathCut, Array, Array]:
     passes.sort(key=lambda one: one[0])
     axis = op.orientation.axis
     assert axis is not None
-    cut = PathCut(plan.tool, axis, plan.inputs.scallop, plan.inputs.allowance, float(op.orientation.lead or 0.0), feed,
-                  np.array([one[0] for one in passes]), tuple(one[1] for one in passes))
+    axes = PathAxes(feed, np.array([one[0] for one in passes]), tuple(one[1] for one in passes))
+    cut = MovingCut(plan.tool, axis, plan.inputs.scallop, plan.inputs.allowance, field=axes)
     return cut, uv, path.axis[rows]
 
 
@@ -161,7 +156,7 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
     wide = section_width(face, plan.tool, uv[thin], axes[thin], plan.inputs.scallop, feed,
                          plan.inputs.allowance).sum(axis=1)
     seen = spots(face, feed, evaluation_length(ra))
-    rough = roughness_at(face, cut, cut.steps, seen, evaluation_length(ra))
+    rough = roughness_at(face, cut, cut.field.steps, seen, evaluation_length(ra))
     middle = face.grid(9, 9)
     up = np.asarray(unit(face.normal(middle).mean(axis=0)))
     across = contact_frame(face, middle[40:41], feed)
@@ -177,12 +172,12 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
                           expect_widths(plan.tool, NOMINAL, plan.inputs.scallop), 1000 * ra, speeds, names)
 
 
-def _velocities(plan: Plan, op: Operation, cut: PathCut) -> dict[str, tuple[Array, Array]]:
+def _velocities(plan: Plan, op: Operation, cut: MovingCut[PathAxes]) -> dict[str, tuple[Array, Array]]:
     """Ways and velocities along the middle pass: as planned, and with the constant lead."""
-    k = len(cut.steps) // 2
-    own = cut.runs[k][0]
+    k = len(cut.field.steps) // 2
+    own = cut.field.runs[k][0]
     along = np.linspace(float(own[0]), float(own[-1]), 200)
-    uv = np.column_stack([along, np.full(200, cut.steps[k])])
+    uv = np.column_stack([along, np.full(200, cut.field.steps[k])])
     uv = uv if cut.feed == "u" else uv[:, ::-1]
     point, normal = op.face.evaluate(uv).point, op.face.normal(uv)
     way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(point, axis=0), axis=1)))

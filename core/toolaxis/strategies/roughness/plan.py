@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.path.constant_lead import LeadCut
+from toolaxis.path.moving_axis import ConstantLeadField, MovingCut
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.cost import FEEDS
@@ -85,7 +85,7 @@ def _judged(search: RoughnessSearch, one: SmoothPasses) -> tuple[Orientation | N
     made = plan_passes(job, one.placed.chart, one.cut)  # type: ignore[arg-type]
     if made.witness is not None:
         return None, None, sentence(made.witness, job.feasibility)
-    return made.orientation(job, one.cut, words(search, one), search.tried, one.cut.lead), made.path, ""
+    return made.orientation(job, one.cut, words(search, one), search.tried, one.cut.field.lean), made.path, ""
 
 
 def words(search: RoughnessSearch, one: SmoothPasses) -> tuple[str, ...]:
@@ -136,7 +136,8 @@ def racing(rates: Array, most: Array, speed: float, points: Array) -> tuple[str,
             "no way was found that keeps it there at the programmed feed",)
 
 
-def constant_lead(search: RoughnessSearch, placed: Layout, lead: float) -> tuple[LeadCut, Array, Array]:
+def constant_lead(search: RoughnessSearch, placed: Layout,
+                  lead: float) -> tuple[MovingCut[ConstantLeadField], Array, Array]:
     """Sturz milling on the same passes: the cut, its section strip widths, and its Ra at the same places, mm.
 
     Parameters
@@ -147,7 +148,8 @@ def constant_lead(search: RoughnessSearch, placed: Layout, lead: float) -> tuple
         rad
     """
     feed = placed.chart.feed  # type: ignore[attr-defined]
-    cut = LeadCut(search.tool, placed.cut.axis, placed.cut.scallop, search.job.worth.allowance, lead, feed)
+    cut = MovingCut(search.tool, placed.cut.axis, placed.cut.scallop, search.job.worth.allowance,
+                    field=ConstantLeadField(lead, feed))
     length = evaluation_length(search.roughness)
     uv = spots(search.face, feed, length)
     a0, a1, _, _ = placed.chart.bounds

@@ -18,7 +18,7 @@ from toolaxis.contact.strip.second_order import contact_forms
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
-from toolaxis.path.constant_lead import LeadChart
+from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.machine_limits import mounting_of, while_moving
@@ -38,8 +38,8 @@ from toolaxis.strategies.roughness.pass_constraints import (
 )
 from toolaxis.strategies.roughness.passes import (
     FieldChart,
-    FieldCut,
-    SplineCut,
+    LeadField,
+    SplineAxes,
     evaluation_length,
     roughness_at,
     spots,
@@ -77,7 +77,7 @@ class SmoothPasses:
     Attributes
     ----------
     placed : Layout
-    cut : SplineCut
+    cut : MovingCut of SplineAxes
     lanes : tuple of SmoothedAxes
         One for each piece of the layout.
     uv : (n, 2) array
@@ -87,7 +87,7 @@ class SmoothPasses:
     """
 
     placed: Layout
-    cut: SplineCut
+    cut: MovingCut[SplineAxes]
     lanes: tuple[SmoothedAxes, ...]
     uv: Array
     roughness: Array
@@ -200,7 +200,7 @@ class RoughnessSearch:
         limits = while_moving(self.job.feasibility.limits)
         return bad if limits is None else bad | ~limits.allowed(axes)
 
-    def field(self, feed: str) -> FieldCut:
+    def field(self, feed: str) -> MovingCut[LeadField]:
         """The least lean along the feed at each place of the face that keeps strip width and all distances.
 
         Parameters
@@ -212,7 +212,7 @@ class RoughnessSearch:
         InvalidInput
             When some place has none.
         """
-        chart = LeadChart(self.face, feed)
+        chart = MovingChart(self.face, feed)
         a0, a1, s0, s1 = chart.bounds
         grid = np.linspace(a0, a1, _GRID[0]), np.linspace(s0, s1, _GRID[1])
         rows = np.empty(_GRID)
@@ -225,8 +225,8 @@ class RoughnessSearch:
         wide = np.pad(rows, 1, mode="edge")
         highest = np.max([wide[i:i + _GRID[0], j:j + _GRID[1]] for i in range(3) for j in range(3)], axis=0) + _ROOM
         mean = chart.face.normal(self._uv(grid[0], (s0 + s1) / 2, feed)).mean(axis=0)
-        return FieldCut(self.tool, mean, _SHARE * self.height, self.job.worth.allowance, float(highest.mean()), feed,
-                        grid[0], grid[1], highest)
+        return MovingCut(self.tool, mean, _SHARE * self.height, self.job.worth.allowance,
+                         field=LeadField(feed, grid[0], grid[1], highest))
 
     def _least(self, lane: PassConstraints) -> Array:
         """Least leans at the places of a lane, (n,)."""
@@ -272,7 +272,7 @@ class RoughnessSearch:
             When some place has no orientation, or the machine cannot follow.
         """
         leads = self.field(feed)
-        chart = FieldChart(self.face, feed, leads)
+        chart = FieldChart(self.face, feed, laid=leads)
         placed = lay_out(chart, leads, progress=self.job.progress)
         return self.along(placed, self.wish)
 
@@ -382,13 +382,14 @@ class RoughnessSearch:
                                f"{closest.sentence}")
         return min(kept, key=lambda one: one.cost)
 
-    def _cut(self, placed: Layout, lanes: tuple[SmoothedAxes, ...]) -> SplineCut:
+    def _cut(self, placed: Layout, lanes: tuple[SmoothedAxes, ...]) -> MovingCut[SplineAxes]:
         order = np.argsort(placed.pieces[:, 2], kind="stable")
         axes = np.concatenate([one.axes for one in lanes])
         lean = float(np.mean(np.concatenate([one.lane.leans(one.axes) for one in lanes])))
-        return SplineCut(self.tool, axes.mean(axis=0), self.height, self.job.worth.allowance, lean,
-                         placed.chart.feed, machine=self.mounting.machine, turn=self.turn,  # type: ignore[attr-defined]
-                         pieces=placed.pieces[order], splines=tuple(lanes[k].spline for k in order))
+        feed = placed.chart.feed  # type: ignore[attr-defined]
+        along = SplineAxes(feed, lean, self.mounting.machine, self.turn, placed.pieces[order],
+                           tuple(lanes[k].spline for k in order))
+        return MovingCut(self.tool, axes.mean(axis=0), self.height, self.job.worth.allowance, field=along)
 
 
 def _only(lane: PassConstraints, some: Bools) -> PassConstraints:

@@ -10,8 +10,8 @@ from toolaxis.contact.strip.cutter_parameters import cutter_numbers
 from toolaxis.contact.strip.swept_volume_moving_axis import _least_numpy, least_distance_to_positions
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.chord_tolerance import follow
-from toolaxis.path.constant_lead import LeadChart, LeadCut
 from toolaxis.path.links import Linking
+from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.tools.tool import Tool
@@ -21,8 +21,8 @@ from .conftest import flat, wavy  # type: ignore[import-not-found]
 H, TORUS, UP = 0.02, Tool.torus(12, 1), np.array([0.0, 0.0, 1.0])
 
 
-def _cut(lead_deg: float, feed: str = "u", tool: Tool = TORUS) -> LeadCut:
-    return LeadCut(tool, UP, H, 0.0, np.radians(lead_deg), feed)
+def _cut(lead_deg: float, feed: str = "u", tool: Tool = TORUS) -> MovingCut:
+    return MovingCut(tool, UP, H, 0.0, field=ConstantLeadField(np.radians(lead_deg), feed))
 
 
 @pytest.mark.parametrize("lead_deg", [2.0, 10.0, 30.0, -10.0])
@@ -30,14 +30,14 @@ def test_on_a_plane_strips_are_those_of_a_fixed_axis(lead_deg: float) -> None:
     face, place_ = flat(100, 80), (np.array([0.5]), np.array([0.4]))
     axis = [np.sin(np.radians(lead_deg)), 0, np.cos(np.radians(lead_deg))]
     fixed = IsoChart(face).half_widths(Cut(TORUS, np.array(axis), H), *place_)
-    assert np.allclose(LeadChart(face).half_widths(_cut(lead_deg), *place_), fixed, rtol=2e-4)
+    assert np.allclose(MovingChart(face).half_widths(_cut(lead_deg), *place_), fixed, rtol=2e-4)
 
 
 @pytest.mark.parametrize("feed", ["u", "v"])
 @pytest.mark.parametrize("seed", [1, 4])
 def test_strips_end_where_the_passing_cutter_leaves_the_scallop(seed: int, feed: str) -> None:
     face, cut = wavy(seed, height=5.0), _cut(8.0, feed)
-    chart = LeadChart(face, feed)
+    chart = MovingChart(face, feed)
     along, step = np.array([0.3, 0.6]), np.array([0.5, 0.45])
     halves = chart.half_widths(cut, along, step)
     way = np.linspace(-0.5, 0.5, 4001)
@@ -75,7 +75,7 @@ def test_kernel_and_twin_agree_and_never_lie_above_the_positions() -> None:
 
 def test_the_lead_is_constant_and_chords_keep_the_tolerance_up_the_axis_too() -> None:
     face, cut = wavy(2, height=6.0), _cut(5.0)
-    chart = LeadChart(face)
+    chart = MovingChart(face)
     pieces = np.array([[0.0, 1.0, 0.5]])
     _, along = follow(chart, cut, pieces, 1e-3)
     uv = chart.uv(along, np.full(len(along), 0.5))

@@ -1,10 +1,12 @@
-"""Passes on which the axis moves: a constant lead towards the growing parameter, no tilt (Sturz milling).
+"""Passes on which the axis moves: the axis at each place of a face is a field, and what cuts by it takes it from there.
 
 The axis is that of the contact, so it does not depend on the sense in which a pass is cut: on a zigzag every other
 pass is dragged.
 """
 
+import dataclasses
 from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +30,51 @@ _POSITIONS, _WINDOW = 16, 1.6
 _PLACES, _ROUNDS, _NEAR = 6, 5, (0.6, 1.3)
 
 
+class AxisField(Protocol):
+    """The tool axis at each place of a face."""
+
+    @property
+    def feed(self) -> str:
+        """"u" or "v": the parameter that varies along the passes that the field is for."""
+
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts, beyond the face too, (n, 3).
+
+        Parameters
+        ----------
+        face : Face
+        uv : (n, 2) array
+        frame : Frame, optional
+            Feed, left and normal there, where they are known.
+        """
+
+
+@dataclass(frozen=True)
+class ConstantLeadField:
+    """The axis leans by one angle along the feed and does not tilt (Sturz milling).
+
+    Attributes
+    ----------
+    lead : float
+        From the normal towards the growing parameter of the passes, rad.
+    feed : str
+        "u" or "v": that parameter.
+    """
+
+    lead: float
+    feed: str
+
+    def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
+        """Unit axes at contacts; see `AxisField`."""
+        return axis_from_lead_tilt(contact_frame(face, uv, self.feed) if frame is None else frame, self.lead, 0.0)
+
+
+Field = TypeVar("Field", bound=AxisField)
+
+
 @dataclass(frozen=True, eq=False)
-class LeadCut(Cut):
-    """What cuts with a constant lead.
+class MovingCut(Cut, Generic[Field]):
+    """What cuts with an axis that moves.
 
     Attributes
     ----------
@@ -38,14 +82,15 @@ class LeadCut(Cut):
         As for `Cut`.
     axis : (3,) array
         About the mean of the axes: what links and the sense of climbing go by.
-    lead : float
-        From the normal towards the growing parameter of the passes, rad.
-    feed : str
-        "u" or "v": that parameter.
+    field : AxisField
     """
 
-    lead: float = 0.0
-    feed: str = "u"
+    field: Field = dataclasses.field(kw_only=True)
+
+    @property
+    def feed(self) -> str:
+        """"u" or "v": the parameter that varies along the passes."""
+        return self.field.feed
 
     def axes(self, face: Face, uv: Array) -> Array:
         """Unit axes at contacts, (n, 3).
@@ -55,33 +100,22 @@ class LeadCut(Cut):
         face : Face
         uv : (n, 2) array
         """
-        return axis_from_lead_tilt(contact_frame(face, uv, self.feed), self.lead, 0.0)
-
-    def axes_near(self, face: Face, uv: Array, frame: Frame) -> Array:
-        """The same at contacts, beyond the face too, whose frames are known, (n, 3).
-
-        Parameters
-        ----------
-        face : Face
-        uv : (n, 2) array
-        frame : Frame
-        """
-        return axis_from_lead_tilt(frame, self.lead, 0.0)
+        return self.field.axes(face, uv)
 
 
 @dataclass(frozen=True, eq=False)
-class LeadChart(IsoChart):
-    """A face in its own parameters, for passes with a constant lead."""
+class MovingChart(IsoChart):
+    """A face in its own parameters, for passes on which the axis moves."""
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter: what the cutter leaves on its way past, its axis moving.
 
         Parameters
         ----------
-        cut : LeadCut
+        cut : MovingCut
         along, step : (n,) array
         """
-        assert isinstance(cut, LeadCut)
+        assert isinstance(cut, MovingCut)
         step = np.clip(step, *self._poles)
         uv = self.uv(along, step)
         frozen = step_widths(self.face, cut.tool, uv, cut.axes(self.face, uv), cut.scallop, self.feed, cut.allowance)
@@ -116,7 +150,7 @@ class LeadChart(IsoChart):
         d = self.face.evaluate(self.uv(along, step))
         return np.asarray(np.linalg.norm(d.sv if self.feed == "u" else d.su, axis=1))
 
-    def _positions(self, cut: "LeadCut", along: Array, step: Array) -> tuple[Array, Array]:
+    def _positions(self, cut: MovingCut[Any], along: Array, step: Array) -> tuple[Array, Array]:
         """Tips and axes along the pass around each contact, (n, k, 3) each."""
         d = self.face.evaluate(self.uv(along, step))
         speed = np.linalg.norm(d.su if self.feed == "u" else d.sv, axis=1)
@@ -124,7 +158,7 @@ class LeadChart(IsoChart):
         t = np.linspace(-1.0, 1.0, 2 * _POSITIONS + 1)
         uv = self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t)))
         near, normal = self._seen(uv)
-        axes = cut.axes_near(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
+        axes = cut.field.axes(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
         shape = (len(along), len(t), 3)
         return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
 
