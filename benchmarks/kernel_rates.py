@@ -55,11 +55,11 @@ def kernel_surface(surface: NurbsSurface) -> Any:
     """The same surface in the CAD kernel."""
     from OCP.Geom import Geom_BSplineSurface
     from OCP.gp import gp_Pnt
-    from OCP.TColgp import TColgp_Array2OfPnt
-    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
+
+    from toolaxis.cad.ocp.kernel_names import IntegerArray, PointGrid, RealArray, RealGrid
 
     nu, nv = surface.control.shape[:2]
-    poles, weights = TColgp_Array2OfPnt(1, nu, 1, nv), TColStd_Array2OfReal(1, nu, 1, nv)
+    poles, weights = PointGrid(1, nu, 1, nv), RealGrid(1, nu, 1, nv)
     for i in range(nu):
         for j in range(nv):
             w = float(surface.control[i, j, 3])
@@ -68,7 +68,7 @@ def kernel_surface(surface: NurbsSurface) -> Any:
     tables = []
     for knots in (surface.knots_u, surface.knots_v):
         values, counts = np.unique(knots, return_counts=True)
-        real, whole = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
+        real, whole = RealArray(1, len(values)), IntegerArray(1, len(values))
         for i, (value, count) in enumerate(zip(values, counts, strict=True)):
             real.SetValue(i + 1, float(value))
             whole.SetValue(i + 1, int(count))

@@ -9,8 +9,8 @@ import numpy as np
 from block import face, surface, write
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
 from OCP.BRepLib import BRepLib
-from OCP.GCE2d import GCE2d_MakeSegment
-from OCP.gp import gp_Pnt2d
+from OCP.Geom2d import Geom2d_Line, Geom2d_TrimmedCurve
+from OCP.gp import gp_Dir2d, gp_Pnt2d
 from OCP.ShapeFix import ShapeFix_Face
 
 POINTS = np.array([[[-50, -50, 0], [-50, 0, -10], [-50, 50, 0]],
@@ -25,8 +25,9 @@ def trimmed_to_square():
     patch = surface(RULES, (1, 1))
     wire = BRepBuilderAPI_MakeWire()
     for a, b in zip(SQUARE, np.roll(SQUARE, -1, axis=0), strict=True):
-        line = GCE2d_MakeSegment(gp_Pnt2d(*map(float, a)), gp_Pnt2d(*map(float, b))).Value()
-        wire.Add(BRepBuilderAPI_MakeEdge(line, patch).Edge())
+        line = Geom2d_Line(gp_Pnt2d(*map(float, a)), gp_Dir2d(*map(float, b - a)))
+        segment = Geom2d_TrimmedCurve(line, 0.0, float(np.linalg.norm(b - a)))
+        wire.Add(BRepBuilderAPI_MakeEdge(segment, patch).Edge())
     result = BRepBuilderAPI_MakeFace(patch, wire.Wire(), True).Face()
     BRepLib.BuildCurves3d_s(result)
     fixed = ShapeFix_Face(result)

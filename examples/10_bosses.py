@@ -16,8 +16,8 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_SOLID
 from OCP.TopExp import TopExp, TopExp_Explorer
-from OCP.TopoDS import TopoDS
-from OCP.TopTools import TopTools_IndexedMapOfShape
+
+from toolaxis.cad.ocp.kernel_names import ShapeMap, as_edge
 
 X, Y = np.meshgrid(np.linspace(-75, 75, 7), np.linspace(-55, 55, 6), indexing="ij")
 POINTS = np.stack([X, Y, np.round(40 + 6 * np.sin(X / 30 + Y / 90) + 5 * np.cos(Y / 24 - 0.4), 1)], -1)
@@ -54,10 +54,10 @@ def oblong():
 
 def foot(shape, x, y, radius):
     """An edge round a post where it leaves the freeform face."""
-    edges = TopTools_IndexedMapOfShape()
+    edges = ShapeMap()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, edges)
     for k in range(1, edges.Extent() + 1):
-        edge = TopoDS.Edge_s(edges.FindKey(k))
+        edge = as_edge(edges.FindKey(k))
         curve = BRepAdaptor_Curve(edge)
         start = curve.Value(curve.FirstParameter())
         if curve.GetType() == GeomAbs_BSplineCurve and np.hypot(start.X() - x, start.Y() - y) < radius:

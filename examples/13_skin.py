@@ -19,10 +19,10 @@ from OCP.BRepBuilderAPI import (
 from OCP.BRepLib import BRepLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS
+
+from toolaxis.cad.ocp.kernel_names import RealArray, as_shell, as_solid
 
 X, Y = np.meshgrid(np.linspace(-60, 60, 7), np.linspace(-40, 40, 6), indexing="ij")
 POINTS = np.stack([X, Y, np.round(30 + 5 * np.sin(X / 26 + 0.3) + 4 * np.cos(Y / 22 - X / 80), 1)], -1)
@@ -36,7 +36,7 @@ def patch(i, j):
     """A patch with parameters of its own: stretched, some with u and v exchanged, reversed, or of a higher degree."""
     piece = surface(POINTS, (3, 3))
     piece.Segment(*LINES[0][i:i + 2], *LINES[1][j:j + 2])
-    knots = TColStd_Array1OfReal(1, piece.NbUKnots())
+    knots = RealArray(1, piece.NbUKnots())
     for k in range(1, piece.NbUKnots() + 1):
         knots.SetValue(k, (1 + i) * (piece.UKnot(k) - LINES[0][i]))
     piece.SetUKnots(knots)
@@ -84,11 +84,11 @@ def skin():
     foot.Close()
     sewing.Add(BRepBuilderAPI_MakeFace(foot.Wire(), True).Face())
     sewing.Perform()
-    solid = BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(sewing.SewedShape())).Solid()
+    solid = BRepBuilderAPI_MakeSolid(as_shell(sewing.SewedShape())).Solid()
     BRepLib.OrientClosedSolid_s(solid)
     x, y, radius = HOLE
     drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(x, y, -5), gp_Dir(0, 0, 1)), radius, 60).Shape()
-    return TopoDS.Solid_s(TopExp_Explorer(BRepAlgoAPI_Cut(solid, drill).Shape(), TopAbs_SOLID).Current())
+    return as_solid(TopExp_Explorer(BRepAlgoAPI_Cut(solid, drill).Shape(), TopAbs_SOLID).Current())
 
 
 if __name__ == "__main__":

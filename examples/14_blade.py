@@ -12,9 +12,10 @@ from OCP.BRepOffsetAPI import BRepOffsetAPI_ThruSections
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.GeomAPI import GeomAPI_Interpolate
 from OCP.gp import gp_Pnt
-from OCP.TColgp import TColgp_HArray1OfPnt
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
+
+from toolaxis.cad.ocp.kernel_names import SharedPointArray
 
 SPAN, CHORD, SECTIONS, POINTS = 40.0, 60.0, 6, 72
 CAMBER, TWIST = np.radians((60.0, 40.0)), np.radians(20.0)
@@ -47,7 +48,7 @@ def section(share):
 
 def wire(points):
     """A closed smooth curve through points."""
-    rows = TColgp_HArray1OfPnt(1, len(points))
+    rows = SharedPointArray(1, len(points))
     for k, point in enumerate(points):
         rows.SetValue(k + 1, gp_Pnt(*map(float, point)))
     curve = GeomAPI_Interpolate(rows, True, 1e-9)

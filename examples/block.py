@@ -23,11 +23,9 @@ from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_Reader, STEPControl_StepModelType, STEPControl_Writer
-from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TCollection import TCollection_HAsciiString
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
-from OCP.TopoDS import TopoDS
 
+from toolaxis.cad.ocp.kernel_names import IntegerArray, PointGrid, RealArray, as_shell
 from toolaxis.shape.nurbs import uniform_knots
 
 HERE = Path(__file__).parent
@@ -36,14 +34,14 @@ HERE = Path(__file__).parent
 def surface(points, degree):
     """A kernel B-spline surface with clamped uniform knots on [0, 1] from control points (nu, nv, 3)."""
     nu, nv, _ = points.shape
-    poles = TColgp_Array2OfPnt(1, nu, 1, nv)
+    poles = PointGrid(1, nu, 1, nv)
     for i in range(nu):
         for j in range(nv):
             poles.SetValue(i + 1, j + 1, gp_Pnt(*map(float, points[i, j])))
     arrays = []
     for count, p in zip((nu, nv), degree, strict=True):
         values, repeats = np.unique(uniform_knots(count, p), return_counts=True)
-        knots, counts = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
+        knots, counts = RealArray(1, len(values)), IntegerArray(1, len(values))
         for k, (value, repeat) in enumerate(zip(values, repeats, strict=True)):
             knots.SetValue(k + 1, float(value))
             counts.SetValue(k + 1, int(repeat))
@@ -76,7 +74,7 @@ def block(points, degree, bottom):
     foot = BRepBuilderAPI_MakePolygon(*(gp_Pnt(float(x), float(y), bottom) for x, y, _ in corners), True)
     sewing.Add(BRepBuilderAPI_MakeFace(foot.Wire(), True).Face())
     sewing.Perform()
-    solid = BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(sewing.SewedShape())).Solid()
+    solid = BRepBuilderAPI_MakeSolid(as_shell(sewing.SewedShape())).Solid()
     BRepLib.OrientClosedSolid_s(solid)
     return solid
 

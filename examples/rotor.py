@@ -25,11 +25,10 @@ from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Plane
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Trsf
 from OCP.GProp import GProp_GProps
 from OCP.ShapeFix import ShapeFix_Face
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
-from OCP.TopoDS import TopoDS
 from scipy.interpolate import BSpline, make_interp_spline
 from scipy.spatial import cKDTree
+
+from toolaxis.cad.ocp.kernel_names import IntegerArray, PointArray, PointGrid, RealArray, as_shell, as_wire
 
 AXIS = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
 
@@ -280,7 +279,7 @@ def closed(ring):
 def counted(knots):
     """Knots and multiplicities as the kernel takes them."""
     values, repeats = np.unique(knots, return_counts=True)
-    places, counts = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
+    places, counts = RealArray(1, len(values)), IntegerArray(1, len(values))
     for k, (value, repeat) in enumerate(zip(values, repeats, strict=True)):
         places.SetValue(k + 1, float(value))
         counts.SetValue(k + 1, int(repeat))
@@ -290,7 +289,7 @@ def counted(knots):
 def kernel_face(net):
     """A face over the whole of a net."""
     nu, nv, _ = net.control.shape
-    poles = TColgp_Array2OfPnt(1, nu, 1, nv)
+    poles = PointGrid(1, nu, 1, nv)
     for i in range(nu):
         for j in range(nv):
             poles.SetValue(i + 1, j + 1, gp_Pnt(*map(float, net.control[i, j])))
@@ -300,7 +299,7 @@ def kernel_face(net):
 
 def kernel_edge(knots, control):
     """An edge along a cubic spline."""
-    poles = TColgp_Array1OfPnt(1, len(control))
+    poles = PointArray(1, len(control))
     for k, point in enumerate(control):
         poles.SetValue(k + 1, gp_Pnt(*map(float, point)))
     return BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, *counted(knots), 3)).Edge()
@@ -323,7 +322,7 @@ def wire(*edges):
 def bounded(surface, outer, inner=None):
     """The smaller of the two faces of a surface that a wire divides, less what another wire cuts out."""
     faces = []
-    for way in (outer, TopoDS.Wire_s(outer.Reversed())):
+    for way in (outer, as_wire(outer.Reversed())):
         making = BRepBuilderAPI_MakeFace(surface, way, True)
         if inner is not None:
             making.Add(inner)
@@ -398,7 +397,7 @@ def solid(rotor, faces, others):
     sewing.Perform()
     if sewing.NbFreeEdges():
         raise ValueError(f"{sewing.NbFreeEdges()} edges have one face only: the shell is open")
-    body = BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(sewing.SewedShape())).Solid()
+    body = BRepBuilderAPI_MakeSolid(as_shell(sewing.SewedShape())).Solid()
     BRepLib.OrientClosedSolid_s(body)
     return body
 

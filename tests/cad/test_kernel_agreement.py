@@ -11,8 +11,8 @@ from OCP.gp import gp_Dir, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_SOLID, TopAbs_State
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS
 
+from toolaxis.cad.ocp.kernel_names import as_face
 from toolaxis.cad.ocp.reader import face_map
 
 EVERYTHING = pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
@@ -63,7 +63,7 @@ class OcpShape:
 
     def __init__(self, shape):
         faces = face_map(shape)
-        self.faces = {n: OcpFace(TopoDS.Face_s(faces.FindKey(n))) for n in range(1, faces.Extent() + 1)}
+        self.faces = {n: OcpFace(as_face(faces.FindKey(n))) for n in range(1, faces.Extent() + 1)}
         self.explorer = TopExp_Explorer(shape, TopAbs_SOLID)
         self.properties = GProp_GProps()
         if self.explorer.More():

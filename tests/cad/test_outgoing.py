@@ -16,9 +16,9 @@ from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS
 
 from toolaxis.cad.ocp.export import face_shape, polyline_edge
+from toolaxis.cad.ocp.kernel_names import as_edge
 from toolaxis.cad.step.worker import read_shape
 
 
@@ -31,7 +31,7 @@ def area(shape):
 def edges(shape):
     explorer, found = TopExp_Explorer(shape, TopAbs_EDGE), []
     while explorer.More():
-        found.append(BRepAdaptor_Curve(TopoDS.Edge_s(explorer.Current())))
+        found.append(BRepAdaptor_Curve(as_edge(explorer.Current())))
         explorer.Next()
     return found
 

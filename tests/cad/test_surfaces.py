@@ -27,10 +27,9 @@ from OCP.GeomAPI import GeomAPI_Interpolate
 from OCP.GeomConvert import GeomConvert
 from OCP.GeomLProp import GeomLProp_SLProps
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt, TColgp_HArray1OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
 from toolaxis.cad.build_part import face_from_record
+from toolaxis.cad.ocp.kernel_names import IntegerArray, PointArray, PointGrid, RealArray, SharedPointArray
 from toolaxis.cad.ocp.reader import face_record, shape_record
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
@@ -57,13 +56,13 @@ def numbers(rows, kind):
 def bspline_curve():
     poles = [(20, 0, 0), (22, 1, 3), (19, 2, 6), (21, 0, 9), (23, 0, 12)]
     weights, knots = ([1.0, 2.0, 0.5, 1.5, 1.0], [0.0, 0.3, 2.0])
-    return Geom_BSplineCurve(points(poles, TColgp_Array1OfPnt), numbers(weights, TColStd_Array1OfReal),
-                             numbers(knots, TColStd_Array1OfReal), numbers([4, 1, 4], TColStd_Array1OfInteger), 3)
+    return Geom_BSplineCurve(points(poles, PointArray), numbers(weights, RealArray),
+                             numbers(knots, RealArray), numbers([4, 1, 4], IntegerArray), 3)
 
 
 def periodic_curve():
     ring = [(20 + 3 * np.cos(a), 0.3 * np.sin(2 * a), 2 * np.sin(a)) for a in np.arange(5) * 2 * np.pi / 5]
-    fit = GeomAPI_Interpolate(points(ring, TColgp_HArray1OfPnt), True, 1e-9)
+    fit = GeomAPI_Interpolate(points(ring, SharedPointArray), True, 1e-9)
     fit.Perform()
     return fit.Curve()
 
@@ -74,14 +73,14 @@ CURVES = {
     "ellipse": (lambda: Geom_Ellipse(SMALL, 5.0, 2.0), 2.0, 8.0),
     "parabola": (lambda: Geom_Parabola(SMALL, 1.5), -2.0, 3.0),
     "bspline": (bspline_curve, 0.0, 2.0),
-    "bezier": (lambda: Geom_BezierCurve(points([(20, 0, 0), (25, 1, 3), (19, 2, 6)], TColgp_Array1OfPnt)), 0.0, 1.0),
+    "bezier": (lambda: Geom_BezierCurve(points([(20, 0, 0), (25, 1, 3), (19, 2, 6)], PointArray)), 0.0, 1.0),
     "periodic": (periodic_curve, 4.0, 7.5),
     "hyperbola": (lambda: Geom_Hyperbola(SMALL, 3.0, 2.0), -0.8, 1.0),
 }
 
 
 def bezier_surface():
-    grid = TColgp_Array2OfPnt(1, 4, 1, 3)
+    grid = PointGrid(1, 4, 1, 3)
     for i in range(4):
         for j in range(3):
             grid.SetValue(i + 1, j + 1, gp_Pnt(10.0 * i, 8.0 * j, float((i - 1.5) ** 2 - 2 * j)))

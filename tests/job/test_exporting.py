@@ -39,11 +39,13 @@ def shapes_of(path: Path) -> dict[str, tuple[Any, np.ndarray, tuple[float, ...] 
     from OCP.STEPCAFControl import STEPCAFControl_Reader
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDataStd import TDataStd_Name
-    from OCP.TDF import TDF_Label, TDF_LabelSequence
+    from OCP.TDF import TDF_Label
     from OCP.TDocStd import TDocStd_Document
     from OCP.TopLoc import TopLoc_Location
     from OCP.XCAFApp import XCAFApp_Application
     from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+    from toolaxis.cad.ocp.kernel_names import LabelSequence
 
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
@@ -55,7 +57,7 @@ def shapes_of(path: Path) -> dict[str, tuple[Any, np.ndarray, tuple[float, ...] 
     found: dict[str, Any] = {}
 
     def listed(fill: Any) -> list[Any]:
-        labels = TDF_LabelSequence()
+        labels = LabelSequence()
         fill(labels)
         return [labels.Value(k + 1) for k in range(labels.Length())]
 

@@ -37,7 +37,9 @@ def bare_face():
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
     from OCP.Geom import Geom_CylindricalSurface
     from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
-    from OCP.TopoDS import TopoDS, TopoDS_Face
+    from OCP.TopoDS import TopoDS_Face
+
+    from toolaxis.cad.ocp.kernel_names import as_edge
 
     surface = Geom_CylindricalSurface(gp_Ax3(gp_Pnt(3, -2, 5), gp_Dir(1, 2, 3), gp_Dir(2, -1, 0.5)), 7.0)
     (u0, u1), (v0, v1) = (5.5, 7.5), (-3.0, 4.0)
@@ -46,7 +48,7 @@ def bare_face():
     wire = BRepBuilderAPI_MakeWire()
     for curve, start, end in edges:
         edge = BRepBuilderAPI_MakeEdge(curve, min(start, end), max(start, end)).Edge()
-        wire.Add(edge if start < end else TopoDS.Edge_s(edge.Reversed()))
+        wire.Add(edge if start < end else as_edge(edge.Reversed()))
     face, builder = TopoDS_Face(), BRep_Builder()
     builder.MakeFace(face, surface, 1e-7)
     builder.Add(face, wire.Wire())

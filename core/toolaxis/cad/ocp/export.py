@@ -14,12 +14,21 @@ from OCP.Geom2dAPI import Geom2dAPI_Interpolate
 from OCP.GeomAbs import GeomAbs_Shape
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Trsf
 from OCP.ShapeFix import ShapeFix_Shape
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt, TColgp_HArray1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal, TColStd_HArray1OfReal
 from OCP.TopAbs import TopAbs_Orientation
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Vertex, TopoDS_Wire
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Vertex, TopoDS_Wire
 
+from toolaxis.cad.ocp.kernel_names import (
+    IntegerArray,
+    Point2dArray,
+    PointArray,
+    PointGrid,
+    RealArray,
+    RealGrid,
+    SharedPoint2dArray,
+    SharedRealArray,
+    as_face,
+)
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.work_coordinates import WorkCoordinates
@@ -142,7 +151,7 @@ def face_shape(face: Face) -> Any:
     surface = bspline_surface(face)
     if not face.trims:
         made = BRepBuilderAPI_MakeFace(surface, 1e-6).Face()
-        return TopoDS.Face_s(made.Reversed()) if face.flip else made
+        return as_face(made.Reversed()) if face.flip else made
     builder, made = BRep_Builder(), TopoDS_Face()
     builder.MakeFace(made, surface, TopLoc_Location(), 1e-6)
     for loop in face.trims:
@@ -162,7 +171,7 @@ def bspline_surface(face: Face) -> Any:
     """
     surface = face.surface
     nu, nv = surface.control.shape[:2]
-    poles, weights = TColgp_Array2OfPnt(1, nu, 1, nv), TColStd_Array2OfReal(1, nu, 1, nv)
+    poles, weights = PointGrid(1, nu, 1, nv), RealGrid(1, nu, 1, nv)
     for i, j in np.ndindex(nu, nv):
         x, y, z, w = (float(value) for value in surface.control[i, j])
         poles.SetValue(i + 1, j + 1, gp_Pnt(x / w, y / w, z / w))
@@ -172,7 +181,7 @@ def bspline_surface(face: Face) -> Any:
 
 
 def _knots(values: Array, counts: NDArray[np.int64]) -> tuple[Any, Any]:
-    knots, multiplicities = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
+    knots, multiplicities = RealArray(1, len(values)), IntegerArray(1, len(values))
     for k, (value, count) in enumerate(zip(values, counts, strict=True), 1):
         knots.SetValue(k, float(value))
         multiplicities.SetValue(k, int(count))
@@ -186,14 +195,14 @@ def _polyline_knots(way: Array) -> tuple[Any, Any]:
 
 
 def _curve(rows: Array, way: Array) -> Any:
-    poles = TColgp_Array1OfPnt(1, len(rows))
+    poles = PointArray(1, len(rows))
     for k, row in enumerate(rows, 1):
         poles.SetValue(k, gp_Pnt(*map(float, row)))
     return Geom_BSplineCurve(poles, *_polyline_knots(way), 1)
 
 
 def _flat_curve(rows: Array, way: Array) -> Any:
-    poles = TColgp_Array1OfPnt2d(1, len(rows))
+    poles = Point2dArray(1, len(rows))
     for k, row in enumerate(rows, 1):
         poles.SetValue(k, gp_Pnt2d(*map(float, row)))
     return Geom2d_BSplineCurve(poles, *_polyline_knots(way), 1)
@@ -260,7 +269,7 @@ def _smooth(face: Face, run: Array) -> tuple[Any, float]:
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows, axis=0) * scale, axis=1))])
     if len(rows) == 2:
         return _flat_curve(rows, way), float(way[-1])
-    points, places = TColgp_HArray1OfPnt2d(1, len(rows)), TColStd_HArray1OfReal(1, len(rows))
+    points, places = SharedPoint2dArray(1, len(rows)), SharedRealArray(1, len(rows))
     for k, (row, at) in enumerate(zip(rows, way, strict=True), 1):
         points.SetValue(k, gp_Pnt2d(*map(float, row)))
         places.SetValue(k, float(at))

@@ -23,12 +23,12 @@ from OCP.TopAbs import (
     TopAbs_WIRE,
 )
 from OCP.TopExp import TopExp, TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Iterator
-from OCP.TopTools import TopTools_IndexedMapOfShape
+from OCP.TopoDS import TopoDS_Iterator
 
 from toolaxis.cad.faces import record_of_face, record_of_shape
 from toolaxis.cad.kernel_protocol import KernelBody
 from toolaxis.cad.ocp.geometry import OcpSurface
+from toolaxis.cad.ocp.kernel_names import ShapeMap, as_edge, as_face, as_solid, as_wire
 from toolaxis.cad.shape_data import FaceRecord, ShapeRecord
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.tolerances import Tolerance
@@ -36,9 +36,9 @@ from toolaxis.tolerances import Tolerance
 Array = NDArray[np.float64]
 
 
-def face_map(shape: Any) -> TopTools_IndexedMapOfShape:
+def face_map(shape: Any) -> ShapeMap:
     """The faces of a shape in the kernel's own order, each once; indices begin at 1."""
-    faces = TopTools_IndexedMapOfShape()
+    faces = ShapeMap()
     TopExp.MapShapes_s(shape, TopAbs_FACE, faces)
     return faces
 
@@ -66,8 +66,8 @@ def shape_record(shape: Any, selected: Sequence[Any] = (), tolerance: Tolerance 
     """
     if shape is None or shape.IsNull():
         raise InvalidInput("the CAD shape is empty: nothing was selected or transferred")
-    faces, edges = face_map(shape), TopTools_IndexedMapOfShape()
-    readers = [OcpFace(TopoDS.Face_s(faces.FindKey(index + 1)), edges) for index in range(faces.Extent())]
+    faces, edges = face_map(shape), ShapeMap()
+    readers = [OcpFace(as_face(faces.FindKey(index + 1)), edges) for index in range(faces.Extent())]
     record = record_of_shape(readers, list(_bodies(shape, faces)), tolerance, numbers, (Standard_Failure,))
     picked = {faces.FindIndex(face) for face in selected} - {0}
     record.selected = tuple(sorted(numbers[index - 1] if numbers else index for index in picked))
@@ -89,15 +89,15 @@ def face_record(face: Any, number: int = 1, share: float = 1e-5) -> tuple[FaceRe
     UnsupportedGeometry
         When the face has no surface (it is only tessellated), is endless, or cannot be approximated.
     """
-    return record_of_face(OcpFace(face, TopTools_IndexedMapOfShape()), number, share)
+    return record_of_face(OcpFace(face, ShapeMap()), number, share)
 
 
 class OcpFace:
     """A TopoDS_Face, as `KernelFace` asks; edges get their keys from a map of the whole shape."""
 
-    def __init__(self, face: Any, edges: TopTools_IndexedMapOfShape) -> None:
+    def __init__(self, face: Any, edges: ShapeMap) -> None:
         self.flip = bool(face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED)
-        self.face = TopoDS.Face_s(face.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+        self.face = as_face(face.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
         self.edges = edges
 
     @cached_property
@@ -109,7 +109,7 @@ class OcpFace:
     @cached_property
     def wires(self) -> list[list["OcpEdge"]]:
         """Edges of every wire in the order of travel."""
-        walks = (edges_of(TopoDS.Wire_s(wire), self.face) for wire in children(self.face, TopAbs_WIRE))
+        walks = (edges_of(as_wire(wire), self.face) for wire in children(self.face, TopAbs_WIRE))
         return [[OcpEdge(edge, self.face, self.edges.Add(edge)) for edge in walk] for walk in walks if walk]
 
 
@@ -143,7 +143,7 @@ class OcpEdge:
     @cached_property
     def space(self) -> BRepAdaptor_Curve:
         """The curve in space."""
-        return BRepAdaptor_Curve(TopoDS.Edge_s(self.edge.Oriented(TopAbs_Orientation.TopAbs_FORWARD)))
+        return BRepAdaptor_Curve(as_edge(self.edge.Oriented(TopAbs_Orientation.TopAbs_FORWARD)))
 
     @property
     def space_spans(self) -> int:
@@ -170,7 +170,7 @@ def edges_of(wire: Any, face: Any) -> list[Any]:
         walked.append(explorer.Current())
         explorer.Next()
     outside = (TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED)
-    listed = [TopoDS.Edge_s(e) for e in children(wire, TopAbs_EDGE) if e.Orientation() in outside]
+    listed = [as_edge(e) for e in children(wire, TopAbs_EDGE) if e.Orientation() in outside]
     return walked if len(walked) == len(listed) else listed
 
 
@@ -192,7 +192,7 @@ def _explored(shape: Any, kind: Any, avoid: Any = None) -> list[Any]:
     return found
 
 
-def _bodies(shape: Any, faces: TopTools_IndexedMapOfShape) -> Iterator[KernelBody]:
+def _bodies(shape: Any, faces: ShapeMap) -> Iterator[KernelBody]:
     """Solids, then shells outside solids, then loose faces."""
     def numbers(item: Any, *avoid: Any) -> tuple[int, ...]:
         return tuple(dict.fromkeys(faces.FindIndex(face) for face in _explored(item, TopAbs_FACE, *avoid)))
@@ -205,6 +205,6 @@ def _bodies(shape: Any, faces: TopTools_IndexedMapOfShape) -> Iterator[KernelBod
 
 
 def _inside_out(solid: Any) -> bool:
-    classifier = BRepClass3d_SolidClassifier(TopoDS.Solid_s(solid))
+    classifier = BRepClass3d_SolidClassifier(as_solid(solid))
     classifier.PerformInfinitePoint(1e-6)
     return bool(classifier.State() == TopAbs_State.TopAbs_IN)

@@ -70,12 +70,13 @@ def read_file(path: str) -> Reading:
     """
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
-    from OCP.TColStd import TColStd_SequenceOfAsciiString
+
+    from toolaxis.cad.ocp.kernel_names import TextSequence
 
     reader = STEPControl_Reader()
     if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise InvalidInput("the CAD kernel cannot parse its text: export the part again")
-    length, angle, solid = (TColStd_SequenceOfAsciiString() for _ in range(3))
+    length, angle, solid = (TextSequence() for _ in range(3))
     reader.FileUnits(length, angle, solid)
     units = dict.fromkeys(length.Value(i + 1).ToCString().lower() for i in range(length.Length()))
     reader.TransferRoots()
@@ -91,7 +92,7 @@ def ranks_of_faces(reading: Reading, faces: Any) -> list[int]:
     Parameters
     ----------
     reading : Reading
-    faces : TopTools_IndexedMapOfShape
+    faces : ShapeMap
     """
     from OCP.TopLoc import TopLoc_Location
 
@@ -113,12 +114,13 @@ def indices_of_copies(faces: Any) -> list[int]:
 
     Parameters
     ----------
-    faces : TopTools_IndexedMapOfShape
+    faces : ShapeMap
     """
     from OCP.TopLoc import TopLoc_Location
-    from OCP.TopTools import TopTools_IndexedMapOfShape
 
-    distinct = TopTools_IndexedMapOfShape()
+    from toolaxis.cad.ocp.kernel_names import ShapeMap
+
+    distinct = ShapeMap()
     return [distinct.Add(faces.FindKey(k).Located(TopLoc_Location())) for k in range(1, faces.Extent() + 1)]
 
 
