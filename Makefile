@@ -4,10 +4,11 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3.12 || command -v p
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+KERNEL8 := .venv-kernel8
 PART ?= examples/freeform.step
 OUT ?= out/demo
 
-.PHONY: setup demo test tests test-all lint bench docs clean
+.PHONY: setup demo test tests tests-kernel8 test-all lint bench docs clean
 
 setup: $(STAMP)
 
@@ -32,6 +33,15 @@ test: lint tests
 
 tests: setup
 	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 40
+
+# What stands on the CAD kernel once more, on its release 8.
+$(KERNEL8)/.installed: setup.cfg pyproject.toml
+	@test -x $(KERNEL8)/bin/python || $(PYTHON) -m venv $(KERNEL8)
+	$(KERNEL8)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[test-kernel8]'
+	@touch $@
+
+tests-kernel8: $(KERNEL8)/.installed
+	$(KERNEL8)/bin/python -m pytest -n 2 --dist loadfile tests/cad tests/job/test_exporting.py
 
 test-all: lint
 	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --long
