@@ -102,9 +102,11 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
     sub.add_argument("--method", default=SPHERE, choices=tuple(strategy_named(INDEXED).methods),
-                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; "
-                          "to compare: roman (the axis of Roman's rule), normal (the mean normal), one (one axis for "
-                          "all), ball (a ball end of the same radius along the mean normal)")
+                     help="how each sub-surface gets its axis: sphere (default), the whole hemisphere; sectors, the "
+                          "projection planes and sectors of zhu2016; jerk, the rotary angles of --machine at which its "
+                          "linear axes together have most jerk along the passes; to compare: roman (the axis of "
+                          "Roman's rule), normal (the mean normal), one (one axis for all), ball (a ball end of the "
+                          "same radius along the mean normal)")
     sub.add_argument("--compare", action="store_true",
                      help="also plan the same faces by the other methods: a table of passes, lengths and times")
     sub.add_argument("--objective", default="length", choices=("length", "passes", "time"),

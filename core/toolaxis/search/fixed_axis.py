@@ -1,6 +1,6 @@
 """The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -31,6 +31,7 @@ from toolaxis.search.cost import FEEDS, MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
+from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
 from toolaxis.search.link_heights import OVER, LinkClearance, height_over
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import (
@@ -66,9 +67,28 @@ from toolaxis.work import OutOfWork, better_may_exist, up_to
 
 Array = NDArray[np.float64]
 
-METHODS = {"sphere": search, "sectors": sectors, "roman": by_roman, "normal": by_mean_normal}
-#: Methods that only name an axis: where that is refused, none beside it is tried.
-RULES = ("roman", "normal")
+
+class Method(NamedTuple):
+    """A way to find a fixed axis.
+
+    find : takes an empty `AxisTable` and returns the best axes, best first
+    next_axis : another axis in the place of one that the proof of the passes refused; None where none is tried
+    by_cost : whether it looks for the least cost, and so is worth a second run where the machine turned out to need
+        more room
+    any_feed : whether its axes go with either feed
+    describe : what it found, in words; None where there is nothing to say
+    """
+
+    find: Callable[[AxisTable], list[CountedAxis]]
+    next_axis: Callable[[AxisTable, CountedAxis, Violation, int], CountedAxis | None] | None = next_in_lobe
+    by_cost: bool = True
+    any_feed: bool = True
+    describe: Callable[[AxisTable, Array, ToolPath], str] | None = None
+
+
+METHODS = {"sphere": Method(search), "sectors": Method(sectors),
+           "jerk": Method(by_jerk, next_by_jerk, by_cost=False, any_feed=False, describe=describe_jerk),
+           "roman": Method(by_roman, None, by_cost=False), "normal": Method(by_mean_normal, None, by_cost=False)}
 
 #: Height above everything at which links cross at least, mm.
 CROSSING = 5.0
@@ -240,7 +260,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.
     method : str
-        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; for comparison "roman":
+        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; "jerk": the axis at
+        whose rotary angles the linear axes of the machine together do most along the passes; for comparison "roman":
         the axis of Roman's rule, and "normal": the mean normal, each with the same proof and nothing beside it.
     objective : str
         "length", "passes" or "time": what is to be least. Time goes by an estimate (`toolaxis.search.time_estimate`),
@@ -310,7 +331,7 @@ def find_axis(job: FaceProblem, method: str = "sphere",
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
         result = _settled(job, ledger, method)
-        if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
+        if ledger.feasibility.limits is job.feasibility.limits or not METHODS[method].by_cost:
             return result
         ledger = AxisTable(ledger.feasibility, job.worth, job.progress, first)
         return better_of(result, _settled(job, ledger, method))
@@ -326,17 +347,18 @@ def find_axis(job: FaceProblem, method: str = "sphere",
 
 def _settled(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
-    if method in RULES:
-        return first_proven(job, ledger, METHODS[method](ledger), 1)
+    how = METHODS[method]
+    if how.next_axis is None:
+        return first_proven(job, ledger, how.find(ledger), how)
     try:
         with up_to(_SEARCHED):
-            found = METHODS[method](ledger)
+            found = how.find(ledger)
     except OutOfWork as reason:
-        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)))
+        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)), how)
         if result.axis is not None:
             return _ended((result, path))
         return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
-    return first_proven(job, ledger, found)
+    return first_proven(job, ledger, found, how)
 
 
 def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
@@ -347,7 +369,7 @@ def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, Too
 
 
 def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                 attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+                 method: Method = METHODS["sphere"]) -> tuple[Orientation, ToolPath | None]:
     """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
@@ -356,8 +378,8 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     ledger : AxisTable
     found : list of CountedAxis
         The best of each lobe, best first.
-    attempts : int
-        How often each is tried, repaired between; 1 to take them as they are.
+    method : Method
+        How they were found.
 
     Raises
     ------
@@ -367,22 +389,26 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     found = snap_to_increments(ledger, found)
     with suppress(OutOfWork), up_to(_ORDERED):
         found = least_made(job.worth, found, job.made)
-    return _first_accepted(job, ledger, found, attempts)
+    return _first_accepted(job, ledger, found, method)
 
 
 def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                    attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+                    method: Method) -> tuple[Orientation, ToolPath | None]:
     """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
     for k, one in enumerate(found):
-        best = _accepted(job, ledger, one, refused, attempts)
+        best = _accepted(job, ledger, one, refused, method)
         if best is None:
             continue
         others: tuple[Orientation, ...] = ()
         with suppress(OutOfWork):  # only other feeds and lobes are left to be looked at
-            best = _other_feed(job, ledger, best) or best
+            if method.any_feed:
+                best = _other_feed(job, ledger, best) or best
             others = tuple(_other(job, other) for other in found[k + 1:] if _sound(job, other))
-        reasons = (*best.orientation.reasons, *(why.words for why in refused), tally(ledger))
+        own: tuple[str, ...] = ()
+        if method.describe is not None and best.path is not None:
+            own = (method.describe(ledger, best.one.axis, best.path),)
+        reasons = (*own, *best.orientation.reasons, *(why.words for why in refused), tally(ledger))
         return replace(best.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations,
                        lobes=others), best.path
     if ledger.proven:
@@ -433,10 +459,10 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
 
 
 def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],
-              attempts: int) -> CheckedCandidate | None:
+              method: Method) -> CheckedCandidate | None:
     """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: CountedAxis | None = one
-    for attempt in range(attempts):
+    for attempt in range(_ATTEMPTS):
         if candidate is None:
             return None
         witness = ledger.feasibility.witness(candidate.axis)
@@ -448,7 +474,9 @@ def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: li
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
-        candidate = next_in_lobe(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
+        if method.next_axis is None or attempt + 1 == _ATTEMPTS:
+            return None
+        candidate = method.next_axis(ledger, candidate, witness, attempt)
     return None
 
 

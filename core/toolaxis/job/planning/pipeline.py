@@ -89,8 +89,9 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
     method : str
-        How each sub-surface gets its axis: "sphere" (the best of the hemisphere) or "sectors" (projection planes and
-        sectors); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
+        How each sub-surface gets its axis: "sphere" (the best of the hemisphere), "sectors" (projection planes and
+        sectors) or "jerk" (the rotary angles at which the machine's linear axes together have most jerk along the
+        passes); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
         sub-surfaces) and "ball" (a ball end of the tool's radius takes its place, along the mean normal).
     feedrate, spindle : float
         mm/min and rev/min, for the CL files.

@@ -35,7 +35,7 @@ INPUTS = (
     Property("String", "Regions", _ASKED, "Sub-surfaces of each face: a number, auto, or nothing for whole faces"),
     Property("String", "Orientations", _ASKED, "Different axes at most: a number, auto, or nothing for one each"),
     Property("Enumeration", "Method", _ASKED, "How axes are found", False, False,
-             ("sphere", "sectors", "roman", "normal", "one", "ball")),
+             ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")),
     Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while it cuts", False, False,
              STRATEGIES),
     Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, for strategies that look at it"),

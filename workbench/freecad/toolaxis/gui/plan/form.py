@@ -22,7 +22,7 @@ KINDS = tuple(cutters())
 _FIELDS = {"diameter": "diameter", "corner_radius": "corner", "half_angle_deg": "taper"}
 OBJECTIVES = ("length", "passes")
 DIRECTIONS = ("zigzag", "climb", "conventional")
-METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
+METHODS = ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")
 _NONE, _AUTO, _NUMBER = range(3)
 _NO_LIMITS, _CONE, _ROTARY = range(3)
 
