@@ -10,6 +10,7 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import SignalHearing
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
+from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import INDEXED, SPHERE
 from toolaxis.tools.registry import short_forms
@@ -109,10 +110,13 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "same radius along the mean normal)")
     sub.add_argument("--compare", action="store_true",
                      help="also plan the same faces by the other methods: a table of passes, lengths and times")
-    sub.add_argument("--objective", default="length", choices=("length", "passes", "time"),
+    sub.add_argument("--objective", default="length", choices=OBJECTIVES,
                      help="what is least: cutting length (default), number of passes, or the time that --machine takes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
-    sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
+    sub.add_argument("--passes", default=ISO, choices=PASSES,
+                     help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "
+                          "that contain the tool axis, in the mean direction of that parameter (fixed axes only)")
     sub.add_argument("--limit", type=float, default=LIMIT, metavar="WORK",
                      help="most work for one sub-surface, its axis and the proof of its passes, counted in thousands "
                           "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "

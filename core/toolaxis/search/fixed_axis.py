@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
-from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput, UnsupportedGeometry
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, CheckSurfaces, Obstacles, group_surroundings
 from toolaxis.feasibility.violations import BACK, CUTTER, Violation
@@ -19,11 +19,12 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
-from toolaxis.path.iso_parametric import layout
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
-from toolaxis.path.pass_layout import Layout
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.path.rest_material import left_over, may_stay
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -150,8 +151,8 @@ class FaceProblem:
         feed : str
         """
         worth, feasibility = self.worth, self.feasibility
-        return layout(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
-                      reach=lambda uv: feasibility.reach(uv, axis), progress=self.progress)
+        cut = Cut(worth.tool, axis, worth.scallop, worth.allowance)
+        return lay_out(worth.chart(axis, feed), cut, lambda uv: feasibility.reach(uv, axis), self.progress)
 
     def traced(self, placed: Layout) -> ToolPath:
         """Passes with their links.
@@ -210,12 +211,13 @@ class FaceProblem:
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
-         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> FaceProblem:
+         direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
+         progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
-    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, feeds
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, passes, feeds
         As for `best_axis`.
     limits : AxisLimits, optional
     progress : Progress
@@ -227,7 +229,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     """
     given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
-    worth = MachiningCost(face, tool, scallop, allowance, objective, pace)
+    worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes)
     chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
@@ -244,7 +246,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
-              starts: ArrayLike | None = None, feeds: Feeds | None = None,
+              passes: str = ISO, starts: ArrayLike | None = None, feeds: Feeds | None = None,
               progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
 
@@ -278,6 +280,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         Further limits.
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
+    passes : str
+        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis.
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional
@@ -305,9 +309,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
-               skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
-               progress=progress)
+               skin=skin, surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
+               passes=passes, feeds=feeds, progress=progress)
     return find_axis(job, method, starts)[0]
 
 
@@ -491,7 +494,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     feed = FEEDS[one.feed]
     try:
         placed = job.laid(one.axis, feed)
-    except InvalidInput as reason:  # a place between the counted ones leaves no strip
+    except (InvalidInput, UnsupportedGeometry) as reason:  # no strip between the counted places, or no planes here
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(Violation(BACK, 0.0, words=str(reason))), None)
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))

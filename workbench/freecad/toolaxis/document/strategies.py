@@ -47,7 +47,7 @@ def check_strategy(inputs):
     library.check_strategy(inputs.strategy, Asked(
         tool, machine, inputs.method, inputs.objective, _roughness_of(inputs), inputs.orientations,
         "" if held is None else f"axis or feed of {held.name}{held.suffix} are locked",
-        "choose a machine among the limits of the tool axis"))
+        "choose a machine among the limits of the tool axis", inputs.passes))
 
 
 def _roughness_of(inputs):
