@@ -20,8 +20,9 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, as_rows
 from toolaxis.path.sampling import sample_passes
 from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.direction_grid import spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.hemisphere import REPELLED, TIE, search
+from toolaxis.search.hemisphere import REPELLED, SPACING, TIE, frame_of, search
 from toolaxis.search.kinematic_setup import (
     PassSegment,
     are_angles_allowed,
@@ -93,8 +94,10 @@ def by_jerk(ledger: AxisTable) -> list[CountedAxis]:
     **Source**: [grandguillaume2021] Sec. 4.4; the domain of lead and tilt, given there, is that of the free axes here,
     and of equal set-ups, of which the paper takes the one that turns least, the cheapest is taken.
     """
+    _mounting(ledger)
+    ledger.lay(spiral(frame_of(ledger.feasibility.normals), SPACING))  # for the map, and where little is free
     found = _best_of_feeds(ledger)
-    if not found and search(ledger):  # little is free: the grids of rotary angles stepped over it
+    if not found and search(ledger):  # the grids of rotary angles and the spiral stepped over what is free
         found = _best_of_feeds(ledger)
     return sorted(found, key=lambda one: one.value)
 
