@@ -107,6 +107,19 @@ def test_a_face_that_covers_itself_is_refused_with_the_place() -> None:
         chart_of(ramp, up, "u", PLANES)
 
 
+def test_passes_that_would_run_out_where_the_surface_turns_away_are_refused() -> None:
+    """z = 0.08 x y, seen along (1, 0, 1), turns away beyond y = 12.5: points on passes there are none."""
+    x, y = np.array([[0.0, 0], [10, 10]]), np.array([[0.0, 10], [0, 10]])
+    face = Face.from_bspline(np.stack([x, y, 0.08 * x * y], axis=-1), degree=(1, 1))
+    chart = chart_of(face, np.array([1.0, 0, 1]) / np.sqrt(2), "v", PLANES)
+    place = chart.places(np.array([[0.3, 0.0], [0.3, 1.0]]))
+    low, inside, step = place[0, 0], place[1, 0], place[0, 1]
+    pieces = np.array([[low, low + 0.5 * (inside - low), step], [low, low + 1.5 * (inside - low), step]])
+    assert chart.are_found(pieces).tolist() == [True, False]
+    with pytest.raises(UnsupportedGeometry, match="1 of 2 passes cannot run out beyond the border of face 1, where"):
+        chart.check_pieces(pieces)
+
+
 def test_a_trimmed_face_is_found_again_though_its_surface_turns_away_beyond() -> None:
     t, y = np.meshgrid(np.linspace(-2.6, 1.0, 25), np.linspace(0, 30, 4), indexing="ij")
     whole = Face.from_bspline(np.stack([25 * np.sin(t), y, 25 * np.cos(t)], axis=-1))

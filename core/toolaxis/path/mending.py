@@ -230,8 +230,11 @@ def _try_passes(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float
         found = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])),
                                  min((high - low) / _ASKED, apart), exact)
     some = found.high - found.low > 1e-9 * (high - low)
-    pieces = np.column_stack([found.low, found.high, steps[found.line]])[some]
-    return _Passes(steps, pieces, found.line[some])
+    pieces, owner = np.column_stack([found.low, found.high, steps[found.line]])[some], found.line[some]
+    if isinstance(chart, PlaneChart):
+        there = chart.are_found(pieces)
+        pieces, owner = pieces[there], owner[there]
+    return _Passes(steps, pieces, owner)
 
 
 def _cuts(chart: Chart, cut: Cut, tried: _Passes, aim: _Aim) -> Bools:

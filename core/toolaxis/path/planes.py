@@ -32,6 +32,8 @@ _ITERATIONS = 25
 #: Places each way that are found again along the axis, between those of the grid; from what distance on another place
 #: was found, as a share of the face's diagonal.
 _COVERED, _OTHER = 15, 1e-6
+#: Points of a pass at which it is asked whether its plane meets the surface.
+_ALONG = 17
 #: Least cosine between axis and normal.
 _SEEN = 1e-6
 _RULE = ("parallel planes need a face that is seen along the axis everywhere: use iso-parametric passes, or divide the "
@@ -160,6 +162,40 @@ class PlaneChart:
             if not len(todo):
                 break
         return np.asarray(uv)
+
+    def are_found(self, pieces: Array) -> Bools:
+        """Whether planes meet the face, or what continues it beyond its border, all along pieces of passes, (k,).
+
+        Parameters
+        ----------
+        pieces : (k, 3) array
+            along0, along1 and step of each.
+        """
+        share = np.linspace(0.0, 1.0, _ALONG)
+        along = pieces[:, :1] + share * (pieces[:, 1:2] - pieces[:, :1])
+        target = np.column_stack([along.ravel(), np.repeat(pieces[:, 2], _ALONG)])
+        uv = self.uv(*target.T)
+        off = np.linalg.norm(self.places(uv) - target, axis=1)
+        good = (off <= _OTHER * self.face.diagonal) & (self.face.normal(uv) @ self.axis > 0)
+        return np.asarray(good.reshape(-1, _ALONG).all(axis=1))
+
+    def check_pieces(self, pieces: Array) -> None:
+        """Check that passes can be followed, beyond the border of the face too.
+
+        Parameters
+        ----------
+        pieces : (k, 3) array
+            along0, along1 and step of each.
+
+        Raises
+        ------
+        UnsupportedGeometry
+            When what continues the face turns away from the axis where a pass runs out.
+        """
+        lost = np.flatnonzero(~self.are_found(pieces))
+        if len(lost):
+            raise UnsupportedGeometry(f"{len(lost)} of {len(pieces)} passes cannot run out beyond the border of face "
+                                      f"{self.face.label}, where its surface turns away from the axis: {_RULE}")
 
     def places(self, uv: Array) -> Array:
         """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""

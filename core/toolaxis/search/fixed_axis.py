@@ -23,6 +23,7 @@ from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_layout import Layout, lay_out
+from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import left_over, may_stay
 from toolaxis.plan.choices import ISO
 from toolaxis.plan.orientation import Orientation
@@ -152,7 +153,10 @@ class FaceProblem:
         """
         worth, feasibility = self.worth, self.feasibility
         cut = Cut(worth.tool, axis, worth.scallop, worth.allowance)
-        return lay_out(worth.chart(axis, feed), cut, lambda uv: feasibility.reach(uv, axis), self.progress)
+        placed = lay_out(worth.chart(axis, feed), cut, lambda uv: feasibility.reach(uv, axis), self.progress)
+        if isinstance(placed.chart, PlaneChart):
+            placed.chart.check_pieces(placed.pieces)
+        return placed
 
     def traced(self, placed: Layout) -> ToolPath:
         """Passes with their links.
