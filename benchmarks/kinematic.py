@@ -19,8 +19,8 @@ from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.report.figures.kinematics import feed_figure, polytope_figure, reach_figure
-from toolaxis.search.fastest_setup import cutting_seconds, fastest
-from toolaxis.search.kinematic_setup import PassSegment, Setup, setup, setups_by_pass
+from toolaxis.search.fastest_setup import cutting_seconds, find_fastest_setup
+from toolaxis.search.kinematic_setup import PassSegment, Setup, find_setup, find_setups_by_pass
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 FEEDS = Feeds(500.0, tolerance=0.01)
@@ -62,11 +62,11 @@ def links(passes: Sequence[PassSegment]) -> tuple[PassSegment, ...]:
 def strategies(passes: Sequence[PassSegment], share: float) -> dict[str, tuple[float, float]]:
     """Seconds of cutting with links, and of index moves, of the paper's three strategies and ours, for all passes."""
     steps = links(passes)
-    every = setups_by_pass(MIKRON, passes)
+    every = find_setups_by_pass(MIKRON, passes)
     by_pass = sum(float(cutting_seconds(MIKRON, (one,), found.rotary, FEEDS)[0])
                   for one, found in zip(passes, every, strict=True))
     stepping = float(cutting_seconds(MIKRON, steps, every[len(every) // 2].rotary, FEEDS)[0])
-    whole, (best, seconds) = setup(MIKRON, passes), fastest(MIKRON, passes, FEEDS)
+    whole, (best, seconds) = find_setup(MIKRON, passes), find_fastest_setup(MIKRON, passes, FEEDS)
     rows = {"A = C = 0": (_seconds(passes, steps, np.zeros(2)), 0.0),
             "jerk polytope, each pass": (by_pass + stepping, _indexing(every, share)),
             "jerk polytope, whole part": (_seconds(passes, steps, whole.rotary), 0.0),
@@ -101,14 +101,14 @@ def drawn(folder: Path) -> None:
     """The paper's Figs. 8, 12, 16 and 20 by this model."""
     folder.mkdir(parents=True, exist_ok=True)
     rule, curve = rules()[199], manta_passes(12)[0]
-    aligned = setup(MIKRON, (rule,))
+    aligned = find_setup(MIKRON, (rule,))
     polytope_figure(MIKRON, Level.JERK, aligned.feed, {"as drawn": (0, 0), "aligned": aligned.rotary}).savefig(
         folder / "polytope.png")
     reach_figure(MIKRON, Level.JERK).savefig(folder / "reach.png")
     straight = rule.tips[0] + np.linspace(0, 1, 60)[:, None] * (rule.tips[-1] - rule.tips[0])
     bounds = linear_bounds(MIKRON.machine)
     for name, tips, rotary in (("paraboloid-200", straight, aligned.rotary),
-                               ("manta", curve.tips, setup(MIKRON, (curve,)).rotary)):
+                               ("manta", curve.tips, find_setup(MIKRON, (curve,)).rotary)):
         passes = {label: ramps(linear_coordinates(MIKRON.machine, tips, angles), tips, FEEDS.cut, bounds, 0.01)
                   for label, angles in (("A = C = 0", np.zeros(2)), ("jerk polytope", rotary))}
         feed_figure(passes, FEEDS.cut).savefig(folder / f"feed-{name}.png")

@@ -1063,6 +1063,10 @@
    <translation>Erlaubt</translation>
   </message>
   <message>
+   <source>Along the parameters of the face, or in parallel planes that contain the tool axis. Planes need fixed axes.</source>
+   <translation>Längs der Parameter der Fläche oder in parallelen Ebenen, in denen die Werkzeugachse liegt. Ebenen gehen nur mit festen Achsen.</translation>
+  </message>
+  <message>
    <source>Also plans the same faces by other methods, and lists what they come to.</source>
    <translation>Plant dieselben Flächen auch mit anderen Verfahren und stellt die Ergebnisse nebeneinander.</translation>
   </message>
@@ -1195,8 +1199,8 @@
    <translation>Wie viele verschiedene Achsen es insgesamt gibt; selbsttätig: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
   </message>
   <message>
-   <source>How the axis of each sub-surface is found; all but the first two are there for comparison.</source>
-   <translation>Wie die Achse jeder Teilfläche gefunden wird; alle außer den ersten beiden dienen dem Vergleich.</translation>
+   <source>How the axis of each sub-surface is found; greatest jerk needs a machine; those after it are there for comparison.</source>
+   <translation>Wie die Achse jeder Teilfläche gefunden wird; größter Ruck braucht eine Maschine; alle danach dienen dem Vergleich.</translation>
   </message>
   <message>
    <source>Inclination of the side from the axis.</source>
@@ -1289,6 +1293,10 @@
   <message>
    <source>Passes</source>
    <translation>Bahnen</translation>
+  </message>
+  <message>
+   <source>Pattern</source>
+   <translation>Muster</translation>
   </message>
   <message>
    <source>Pictures...</source>
@@ -1463,6 +1471,10 @@
    <translation>Welche Werkzeugachsen erlaubt sind: alle, die in einem Kegel, die in Bereichen zweier Winkel oder die einer Maschine.</translation>
   </message>
   <message>
+   <source>along parameters</source>
+   <translation>längs der Parameter</translation>
+  </message>
+  <message>
    <source>any axis</source>
    <translation>jede Achse</translation>
   </message>
@@ -1513,6 +1525,14 @@
   <message>
    <source>fixed axes (3+2)</source>
    <translation>feste Achsen (3+2)</translation>
+  </message>
+  <message>
+   <source>greatest jerk along passes</source>
+   <translation>größter Ruck längs der Bahnen</translation>
+  </message>
+  <message>
+   <source>in parallel planes</source>
+   <translation>in parallelen Ebenen</translation>
   </message>
   <message>
    <source>mean normals</source>

@@ -92,9 +92,9 @@ def test_axis_and_passes_belong_together_wherever_the_limit_ends_the_search() ->
             assert op.orientation.passes == op.path.passes
 
 
-@pytest.mark.parametrize("method", ["sectors", "roman", "normal", "ball"])
+@pytest.mark.parametrize("method", ["sectors", "jerk", "roman", "normal", "ball"])
 def test_every_method_is_limited(method: str) -> None:
-    found = planned(1.0, method=method).operations[0].orientation
+    found = planned(1.0, method=method, machine="mikron-ucp-710").operations[0].orientation
     assert found.axis is None and found.outcome == "not_found"
     assert found.reasons[0] == none_found("1")
 

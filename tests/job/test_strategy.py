@@ -110,7 +110,8 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
         compare_methods(made, [plan.operations[0].face], lambda name, some: (asked.append(name), plan)[1])
         return asked
 
-    assert "sturz" in methods(Mounting(ta.load_machine("mikron-ucp-710")))
+    assert {"sturz", "jerk"} <= set(methods(Mounting(ta.load_machine("mikron-ucp-710"))))
+    assert "jerk" not in methods(None) and "jerk" in methods(Mounting(ta.load_machine("three-axes-fixture")))
     assert "sturz" not in methods(None) and "sturz" not in methods(Mounting(ta.load_machine("three-axes-fixture")))
 
 
@@ -121,7 +122,9 @@ def test_five_axes_are_compared_where_the_machine_moves_two(plan) -> None:
     ({"strategy": "sturz", "objective": "time"}, "not time: leave out"),
     ({"strategy": "sturz", "orientations": 3}, "no shared axes to count: leave out the number of orientations"),
     ({"method": "roman", "orientations": 3}, "leave out one of the two"),
-    ({"method": "best"}, "method 'best' is unknown: use sphere, sectors, roman, normal, one or ball"),
+    ({"method": "jerk"}, "method 'jerk' needs a machine.*most along the passes: name a machine"),
+    ({"method": "jerk", "orientations": 2, "machine": "mikron-ucp-710"}, "leave out one of the two"),
+    ({"method": "best"}, "method 'best' is unknown: use sphere, sectors, jerk, roman, normal, one or ball"),
     ({"strategy": "sturz", "machine": "three-axes-fixture"}, "needs two driven rotary axes")])
 def test_what_does_not_go_with_a_moving_axis_is_refused(words, message) -> None:
     with pytest.raises(ta.InvalidInput, match=message):

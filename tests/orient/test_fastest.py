@@ -12,8 +12,8 @@ from toolaxis.feed.velocity_ramps import ramps
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.search.fastest_setup import cutting_seconds, fastest
-from toolaxis.search.kinematic_setup import Domain, PassSegment, are_angles_allowed, rotary_grid, setup
+from toolaxis.search.fastest_setup import cutting_seconds, find_fastest_setup
+from toolaxis.search.kinematic_setup import Domain, PassSegment, are_angles_allowed, find_setup, rotary_grid
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
 MANTA = np.array([[0.0, 0, 100, 100], [0, 0, 100, 100], [100, 100, 0, 0], [100, 100, 0, 0]])
@@ -54,9 +54,9 @@ def _compared(passes: tuple[PassSegment, ...], feed: float, step: float) -> floa
     feeds = Feeds(feed / 60, tolerance=0.01)
     grid = rotary_grid(MIKRON, radians(step))
     grid = grid[are_angles_allowed(MIKRON, grid, passes, Domain())]
-    found, seconds = fastest(MIKRON, passes, feeds)
+    found, seconds = find_fastest_setup(MIKRON, passes, feeds)
     assert seconds == pytest.approx(float(cutting_seconds(MIKRON, passes, found.rotary, feeds)[0]), rel=1e-9)
-    assert seconds <= cutting_seconds(MIKRON, passes, setup(MIKRON, passes).rotary, feeds)[0] * (1 + 1e-9)
+    assert seconds <= cutting_seconds(MIKRON, passes, find_setup(MIKRON, passes).rotary, feeds)[0] * (1 + 1e-9)
     return seconds / float(cutting_seconds(MIKRON, passes, grid, feeds).min())
 
 
@@ -89,8 +89,8 @@ def test_times_are_those_of_the_planners() -> None:
 
 def test_the_domain_binds() -> None:
     passes, feeds = _rules(5), Feeds(500.0)
-    free, narrow = (fastest(MIKRON, passes, feeds, domain)[1] for domain in
+    free, narrow = (find_fastest_setup(MIKRON, passes, feeds, domain)[1] for domain in
                     (None, Domain((radians(-25), radians(25)), (radians(-25), radians(25)))))
     assert free < narrow < cutting_seconds(MIKRON, passes, (0.0, 0.0), feeds)[0] * (1 + 1e-9)
-    nowhere, seconds = fastest(MIKRON, (*passes, passes[0]._replace(normals=-passes[0].normals)), feeds)
+    nowhere, seconds = find_fastest_setup(MIKRON, (*passes, passes[0]._replace(normals=-passes[0].normals)), feeds)
     assert nowhere.outcome == "infeasible" and seconds == np.inf

@@ -14,11 +14,11 @@ from toolaxis.search.kinematic_setup import (
     Domain,
     PassSegment,
     common_feed,
+    find_setup,
+    find_setups_by_pass,
     mean_feed,
+    pass_segments,
     rotary_grid,
-    setup,
-    setups_by_pass,
-    stretches,
 )
 
 MIKRON = Mounting(load_machine("mikron-ucp-710"))
@@ -45,7 +45,7 @@ def test_the_papers_paraboloid() -> None:
     """Per pass A from 64.5 to 25.5 for the jerk cube, 54.2 to 15.8 for the acceleration polytope that Fig. 15 shows."""
     passes = _rules(np.linspace(-99.5, 99.5, 41))
     for level, tilt, turn in ((Level.JERK, (25.5, 64.5), (8.1, 9.7)), (Level.ACCELERATION, (15.8, 54.2), (9.1, 10.7))):
-        found = setups_by_pass(MIKRON, passes, level=level)
+        found = find_setups_by_pass(MIKRON, passes, level=level)
         assert all(one.outcome == "aligned" for one in found)
         angles = np.abs(np.degrees([one.rotary for one in found]))
         assert angles[:, 1].min() == pytest.approx(tilt[0], abs=0.15)
@@ -53,14 +53,14 @@ def test_the_papers_paraboloid() -> None:
         assert angles[:, 0].min() == pytest.approx(turn[0], abs=0.15)
         assert angles[:, 0].max() == pytest.approx(turn[1], abs=0.15)
         assert np.abs(np.diff(angles, axis=0)).max() < 2.0  # one family from pass to pass
-    whole = setup(MIKRON, passes)
+    whole = find_setup(MIKRON, passes)
     assert whole.reach == pytest.approx(5000 * np.sqrt(3))
     assert abs(np.degrees(whole.rotary[1])) == pytest.approx(45, abs=0.3)
 
 
 def test_the_papers_manta() -> None:
     """Feed along y: A = -45 is out of range, so its mirror image is taken."""
-    found = setup(MIKRON, _straight((0, 1, 0), (0, 0, 1)))
+    found = find_setup(MIKRON, _straight((0, 1, 0), (0, 0, 1)))
     c, a = np.degrees(found.rotary)
     assert (abs(a), abs(c)) == pytest.approx((45, 35.2644), abs=1e-3) and a > -30
 
@@ -77,7 +77,7 @@ def test_there_and_back_count_as_one() -> None:
 def test_a_domain_is_kept_and_nothing_inside_it_is_better(level: Level) -> None:
     passes = _straight((1, 0.3, 0.1), (0.1, 0, 1))
     domain = Domain((radians(2), radians(12)), (radians(-8), radians(8)))
-    found = setup(MIKRON, passes, domain, level)
+    found = find_setup(MIKRON, passes, domain, level)
     assert found.outcome == "allowed"
     axis = MIKRON.axis_at(found.rotary)
     assert domain.holds(axis[None], passes)[0]
@@ -90,7 +90,7 @@ def test_a_domain_is_kept_and_nothing_inside_it_is_better(level: Level) -> None:
 
 def test_ranges_are_kept() -> None:
     narrow = Mounting(load_machine("ab-trunnion"))
-    found = setup(narrow, _straight((0, 1, 0.2), (0, 0, 1)))
+    found = find_setup(narrow, _straight((0, 1, 0.2), (0, 0, 1)))
     assert found.outcome in ("aligned", "allowed")
     for value, axis in zip(found.rotary, narrow.machine.rotary, strict=True):
         assert axis.low - 1e-9 <= value <= axis.high + 1e-9
@@ -98,12 +98,12 @@ def test_ranges_are_kept() -> None:
 
 def test_no_axis_sees_both_sides() -> None:
     up, down = _straight((1, 0, 0), (0, 0, 1)), _straight((1, 0, 0), (0, 0, -1))
-    found = setup(MIKRON, (*up, *down))
+    found = find_setup(MIKRON, (*up, *down))
     assert found.outcome == "infeasible" and found.rotary.size == 0 and found.reach == 0
 
 
 def test_a_pole_leaves_the_first_axis_free() -> None:
-    found = setup(MIKRON, _straight((0, 0, 1), (1, 0, 0)))
+    found = find_setup(MIKRON, _straight((0, 0, 1), (1, 0, 0)))
     assert found.outcome == "aligned" and found.reach == pytest.approx(5000 * np.sqrt(2))
     assert MIKRON.axis_at(found.rotary) @ (1, 0, 0) > 0
 
@@ -113,13 +113,13 @@ def test_moving_the_part_with_its_table_changes_nothing() -> None:
     turn[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
     passes = _rules(np.linspace(-40, 40, 5))
     moved = tuple(PassSegment(one.tips @ turn[:3, :3], one.normals @ turn[:3, :3]) for one in passes)
-    here, there = setup(MIKRON, passes), setup(Mounting(MIKRON.machine, turn), moved)
+    here, there = find_setup(MIKRON, passes), find_setup(Mounting(MIKRON.machine, turn), moved)
     assert np.allclose(here.rotary, there.rotary, atol=1e-9) and here.reach == pytest.approx(there.reach)
 
 
 def test_a_machine_without_a_closed_form_is_searched() -> None:
     head = Mounting(load_machine("dmg-dmu-60t"))
-    found = setup(head, _straight((1, 0.2, 0.3), (0, 0, 1)))
+    found = find_setup(head, _straight((1, 0.2, 0.3), (0, 0, 1)))
     assert found.outcome == "allowed"
     rows = np.random.default_rng(1).uniform(-1, 1, (4000, 2)) * (np.pi, 1.0)
     others = along(head.machine, Level.JERK, np.tile(found.feed, (len(rows), 1)), rows)
@@ -130,11 +130,11 @@ def test_passes_of_a_tool_path() -> None:
     tips = np.array([[0.0, 0, 9], [0, 0, 0], [30, 0, 0], [60, 0, 1], [60, 0, 9], [60, 5, 0], [0, 5, 0]])
     up = np.tile((0.0, 0, 1), (7, 1))
     path = ToolPath(tips, tips, up, up, np.array([3, 1, 0, 0, 2, 3, 0], dtype=np.int8), np.array([0, 5, 7]))
-    found = stretches(path)
+    found = pass_segments(path)
     assert [len(one.tips) for one in found] == [3, 2] and found[1].length == 60
     nothing = ToolPath(tips, tips, up, up, np.full(7, 3, dtype=np.int8), np.array([0, 7]))
     with pytest.raises(InvalidInput, match="cuts nothing"):
-        stretches(nothing)
+        pass_segments(nothing)
 
 
 @pytest.mark.parametrize("ranges", [{"lead": (0.3, 0.1)}, {"tilt": (-2.0, 0.1)}])

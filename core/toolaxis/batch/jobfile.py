@@ -29,7 +29,8 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
 _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
-           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float}
+           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
+           "passes": str}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
@@ -180,7 +181,7 @@ def _checked(row: dict[str, Any], folder: Path) -> CheckedJob:
            "strategy": INDEXED, "roughness": None,
            **{name: values[name] for name in _OWN if name in values}}
     check_strategy(own["strategy"], Asked(tool, machine, spec.inputs.method, spec.inputs.objective,
-                                          _in_mm(own["roughness"]), spec.orientations))
+                                          _in_mm(own["roughness"]), spec.orientations, passes=spec.inputs.passes))
     key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
     return CheckedJob(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
 

@@ -10,6 +10,7 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import StopSignals
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
+from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import INDEXED, SPHERE
 from toolaxis.tools.registry import short_forms
@@ -102,15 +103,20 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
     sub.add_argument("--method", default=SPHERE, choices=tuple(strategy_named(INDEXED).methods),
-                     help="search the whole hemisphere (default) or the projection planes and sectors of zhu2016; "
-                          "to compare: roman (the axis of Roman's rule), normal (the mean normal), one (one axis for "
-                          "all), ball (a ball end of the same radius along the mean normal)")
+                     help="how each sub-surface gets its axis: sphere (default), the whole hemisphere; sectors, the "
+                          "projection planes and sectors of zhu2016; jerk, the rotary angles of --machine at which its "
+                          "linear axes together have most jerk along the passes; to compare: roman (the axis of "
+                          "Roman's rule), normal (the mean normal), one (one axis for all), ball (a ball end of the "
+                          "same radius along the mean normal)")
     sub.add_argument("--compare", action="store_true",
                      help="also plan the same faces by the other methods: a table of passes, lengths and times")
-    sub.add_argument("--objective", default="length", choices=("length", "passes", "time"),
+    sub.add_argument("--objective", default="length", choices=OBJECTIVES,
                      help="what is least: cutting length (default), number of passes, or the time that --machine takes")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
-    sub.add_argument("--direction", default="zigzag", choices=("zigzag", "climb", "conventional"))
+    sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
+    sub.add_argument("--passes", default=ISO, choices=PASSES,
+                     help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "
+                          "that contain the tool axis, in the mean direction of that parameter (fixed axes only)")
     sub.add_argument("--limit", type=float, default=LIMIT, metavar="WORK",
                      help="most work for one sub-surface, its axis and the proof of its passes, counted in thousands "
                           "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "

@@ -38,7 +38,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     spec = _spec(given)
     tool = spec.resolved_tool()
     check_strategy(given.strategy, Asked(tool, load_machine(spec.machine) if spec.machine else None, given.method,
-                                         given.objective, _roughness(given), given.orientations))
+                                         given.objective, _roughness(given), given.orientations, passes=given.passes))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -47,11 +47,11 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=spec.inputs.objective, allowance=spec.inputs.allowance,
-                        direction=spec.inputs.direction, obstacles=list(spec.obstacles), method=spec.inputs.method,
-                        strategy=given.strategy, roughness=_roughness(given),
-                        feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle, tolerance=spec.inputs.tolerance,
-                        regions=spec.regions,
-                        rapid=spec.inputs.rapid, compare=given.compare, limit=spec.inputs.limit,
+                        direction=spec.inputs.direction, passes=spec.inputs.passes,
+                        obstacles=list(spec.obstacles), method=spec.inputs.method, strategy=given.strategy,
+                        roughness=_roughness(given), feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle,
+                        tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
+                        compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         progress=progress)
             if made.outcome == "cancelled" and not made.operations:
@@ -70,7 +70,8 @@ def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                        given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit)
+                        given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
+                        passes=given.passes)
     spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place

@@ -71,6 +71,32 @@ def box(machine: Machine, level: Level) -> Array:
     return np.array([axis.drive.levels(axis.name)[level] for axis in machine.linear])
 
 
+def check_jerk_stated(machine: Machine | None, remedy: str) -> None:
+    """Check that there is a machine that can be turned so that its linear axes do most along the passes.
+
+    Parameters
+    ----------
+    machine : Machine or None
+    remedy : str
+        How a machine is given.
+
+    Raises
+    ------
+    InvalidInput
+        When there is none, it has no rotary axis, or the jerk of a linear axis is not stated.
+    """
+    if machine is None:
+        raise InvalidInput("method 'jerk' needs a machine, because it turns the part so that the linear axes together "
+                           f"do most along the passes: {remedy}")
+    if not machine.rotary:
+        raise InvalidInput(f"method 'jerk' needs a rotary axis and {machine.name} has none: name another machine, or "
+                           "choose another method")
+    missing = [axis.name for axis in machine.linear if axis.drive.jerk is None or axis.drive.acceleration is None]
+    if missing:
+        raise InvalidInput(f"method 'jerk' needs acceleration and jerk of all linear axes, and {machine.name} does not "
+                           f"state those of axis {missing[0]}: complete its file, or choose another method")
+
+
 def along(machine: Machine, level: Level, feeds: ArrayLike, rotary: ArrayLike) -> Array:
     """What the machine can do along feed directions at rotary angles that stand still, (n,) mm and s.
 

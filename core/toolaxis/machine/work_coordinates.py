@@ -43,6 +43,28 @@ class WorkCoordinates:
         return np.asarray((rows - self.origin) @ np.stack([self.x, self.y, self.z], axis=1))
 
 
+def mean_feed_across(axis: ArrayLike, feed: ArrayLike) -> Array:
+    """The mean feed direction, projected on the plane normal to the axis, (3,) unit vector.
+
+    Parameters
+    ----------
+    axis : (3,) array_like
+        Tool axis, tip to spindle.
+    feed : (n, 3) array_like
+        Feed directions over the face; their sign does not matter for the line, their sum gives its sense.
+    """
+    z = unit(axis)
+    rows = as_rows(feed, 3, "feed directions")
+    flat = rows - dot(rows, z)[:, None] * z
+    size = np.linalg.norm(flat, axis=1, keepdims=True)
+    along = flat / np.where(size > 1e-9, size, np.inf)
+    values, vectors = np.linalg.eigh(along.T @ along)
+    x = vectors[:, 2] - (vectors[:, 2] @ z) * z
+    if values[2] <= 0 or not np.linalg.norm(x) > 1e-6:
+        x = perpendicular(z)[0]
+    return np.asarray(unit(x) * (-1.0 if along.sum(axis=0) @ x < 0 else 1.0))
+
+
 def work_coordinates(axis: ArrayLike, feed: ArrayLike, datum: ArrayLike, shown_at: ArrayLike) -> WorkCoordinates:
     """The work coordinate system of an operation: +z along the axis, +x along the mean feed direction.
 
@@ -66,14 +88,5 @@ def work_coordinates(axis: ArrayLike, feed: ArrayLike, datum: ArrayLike, shown_a
     InvalidInput
         When the axis has no direction or a number is not finite.
     """
-    z = unit(axis)
-    rows = as_rows(feed, 3, "feed directions")
-    flat = rows - dot(rows, z)[:, None] * z
-    size = np.linalg.norm(flat, axis=1, keepdims=True)
-    along = flat / np.where(size > 1e-9, size, np.inf)
-    values, vectors = np.linalg.eigh(along.T @ along)
-    x = vectors[:, 2] - (vectors[:, 2] @ z) * z
-    if values[2] <= 0 or not np.linalg.norm(x) > 1e-6:
-        x = perpendicular(z)[0]
-    x = unit(x) * (-1.0 if along.sum(axis=0) @ x < 0 else 1.0)
+    z, x = unit(axis), mean_feed_across(axis, feed)
     return WorkCoordinates(as_rows(datum, 3, "datum")[0], x, np.cross(z, x), z, as_rows(shown_at, 3, "point")[0])

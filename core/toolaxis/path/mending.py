@@ -6,6 +6,7 @@ the face.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from toolaxis.contact.strip.swept_volume import distance_to_removed
 from toolaxis.path.chord_tolerance import follow
 from toolaxis.path.parametrization import Chart, Cut, IsoChart, extents, tip_points
 from toolaxis.path.pass_layout import Layout, Reach, sampling
+from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import FACTOR, may_stay, undercut
 from toolaxis.path.step_over import Spacing
 from toolaxis.path.trim_intervals import Intervals, filter_intervals
@@ -46,12 +48,12 @@ _ROUNDS = 3
 class _Aim(NamedTuple):
     """What is to be cut of a zone.
 
-    zone : IsoChart;  uv : (n, 2) array, centres of cells;  raised : (n, 3) array, mm, at the height that may stay;
-    area : (n,) array, in proportion.
+    bounds : along0, along1, step0, step1;  places : (n, 2) array, along and step of centres of cells;
+    raised : (n, 3) array, mm, at the height that may stay;  area : (n,) array, in proportion.
     """
 
-    zone: IsoChart
-    uv: Array
+    bounds: tuple[float, float, float, float]
+    places: Array
     raised: Array
     area: Array
 
@@ -97,7 +99,7 @@ def complete_passes(placed: Layout, traced: Callable[[Layout], ToolPath], left: 
     Parameters
     ----------
     placed : Layout
-        Of iso-parametric passes with a fixed axis.
+        Of passes with a fixed axis, along parameters or planes.
     traced : callable
         Makes the tool path of a layout.
     left : callable
@@ -162,24 +164,23 @@ def add_passes_over_zones(placed: Layout, zones: Sequence[Zone], reach: Reach | 
 def _aim_at_zone(placed: Layout, zone: Zone, reach: Reach | None) -> _Aim | None:
     """What is to be cut of a zone; None of one that lies at walls."""
     chart, cut = placed.chart, placed.cut
-    assert isinstance(chart, IsoChart)
+    assert isinstance(chart, IsoChart | PlaneChart)
     piece = chart.face.trimmed(zone.loops)
     uv = _centres(piece)
     if not len(uv) or (reach is not None and reach(uv).mean() < _STANDING):
         return None
     d = piece.evaluate(uv)
     height = cut.allowance + FACTOR * cut.scallop
-    return _Aim(IsoChart(piece, chart.feed), uv, d.point + height * piece.normal(uv),
+    return _Aim(replace(chart, face=piece).bounds, chart.places(uv), d.point + height * piece.normal(uv),
                 np.linalg.norm(np.cross(d.su, d.sv), axis=1))
 
 
 def _over(placed: Layout, aim: _Aim, reach: Reach | None) -> list[Array]:
     """Pieces (k, 3) of each further pass over one zone."""
     chart, cut = placed.chart, placed.cut
-    # Numbers of a chart from those of the face: the order of u and v is its own inverse.
-    along = chart.uv(aim.uv[:, 0], aim.uv[:, 1])[:, 0]
-    run_out = _run_out(chart, cut, aim.uv)
-    tried = _try_passes(chart, cut, aim.zone.bounds, run_out, reach)
+    along = aim.places[:, 0]
+    run_out = _run_out(chart, cut, aim.places)
+    tried = _try_passes(chart, cut, aim.bounds, run_out, reach)
     cuts = _cuts(chart, cut, tried, aim)
     found, left = [], np.ones(len(aim.area), dtype=bool)
     for _ in range(_PASSES):
@@ -205,9 +206,8 @@ def _centres(piece: Face) -> Array:
     return uv
 
 
-def _run_out(chart: Chart, cut: Cut, uv: Array) -> float:
+def _run_out(chart: Chart, cut: Cut, places: Array) -> float:
     """How far the cutter reaches along the passes at scallop height in a zone, in the along parameter."""
-    places = chart.uv(uv[:, 0], uv[:, 1])
     reach = chart.run_outs(cut, *places[:: max(len(places) // 16, 1)].T)
     good = reach[np.isfinite(reach)]
     return _RUN_OUT * float(good.max(initial=0.0))
@@ -230,8 +230,11 @@ def _try_passes(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float
         found = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])),
                                  min((high - low) / _ASKED, apart), exact)
     some = found.high - found.low > 1e-9 * (high - low)
-    pieces = np.column_stack([found.low, found.high, steps[found.line]])[some]
-    return _Passes(steps, pieces, found.line[some])
+    pieces, owner = np.column_stack([found.low, found.high, steps[found.line]])[some], found.line[some]
+    if isinstance(chart, PlaneChart):
+        there = chart.are_found(pieces)
+        pieces, owner = pieces[there], owner[there]
+    return _Passes(steps, pieces, owner)
 
 
 def _cuts(chart: Chart, cut: Cut, tried: _Passes, aim: _Aim) -> Bools:

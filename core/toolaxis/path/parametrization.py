@@ -210,6 +210,14 @@ class IsoChart:
         """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""
         return np.stack([along, step], axis=1)[:, self._order]
 
+    def places(self, uv: Array) -> Array:
+        """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""
+        return np.asarray(uv[:, self._order])
+
+    def feed_at(self, uv: Array) -> str:
+        """The feed of passes at parameters, as `strip_width` takes it: the same everywhere."""
+        return self.feed
+
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end; at a pole those before it.
 

@@ -29,6 +29,15 @@ Bools = NDArray[np.bool_]
 _GRID = 64
 _EDGE = 256
 _ITERATIONS = 25
+#: Places each way that are found again along the axis, between those of the grid; from what distance on another place
+#: was found, as a share of the face's diagonal.
+_COVERED, _OTHER = 15, 1e-6
+#: Points of a pass at which it is asked whether its plane meets the surface.
+_ALONG = 17
+#: Least cosine between axis and normal.
+_SEEN = 1e-6
+_RULE = ("parallel planes need a face that is seen along the axis everywhere: use iso-parametric passes, or divide the "
+         "face")
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +73,25 @@ class PlaneChart:
         object.__setattr__(self, "axis", axis)
         object.__setattr__(self, "direction", unit(across))
         facing = self.face.normal(self.face.grid(48, 48)) @ axis
-        if facing.size and facing.min() <= 1e-6:
+        if facing.size and facing.min() <= _SEEN:
             raise UnsupportedGeometry(f"face {self.face.label} turns away from the axis (n . T = {facing.min():.3g}): "
-                                      "parallel planes need a face that is seen along the axis everywhere")
+                                      f"{_RULE}")
+        self._check_covered()
+
+    def _check_covered(self) -> None:
+        """Check that no place of the face lies above another, by whether places are found again along the axis."""
+        uv = self.face.grid(_COVERED, _COVERED)
+        if not len(uv):
+            return
+        points = self.face.evaluate(uv).point
+        places = points @ self.frame.T
+        found = self.face.evaluate(self.uv(places[:, 0], places[:, 1])).point
+        off = np.linalg.norm(found - points, axis=1)
+        worst = int(np.argmax(off))
+        if off[worst] > _OTHER * self.face.diagonal:
+            raise UnsupportedGeometry(f"face {self.face.label} covers itself as seen along the axis, by "
+                                      f"{abs((found - points)[worst] @ self.axis):.2f} mm at "
+                                      f"{np.round(points[worst], 2).tolist()}: {_RULE}")
 
     @cached_property
     def frame(self) -> Array:
@@ -112,6 +137,7 @@ class PlaneChart:
         u0, u1, v0, v1 = self.face.bounds
         uv = np.stack(np.meshgrid(np.linspace(u0, u1, _GRID + 1), np.linspace(v0, v1, _GRID + 1), indexing="ij"), -1)
         uv = uv.reshape(-1, 2)
+        uv = uv[self.face.normal(uv) @ self.axis > _SEEN]  # beyond a trimmed face its surface may turn away
         return uv, cKDTree(self.face.evaluate(uv).point @ self.frame.T)
 
     def uv(self, along: Array, step: Array) -> Array:
@@ -137,13 +163,54 @@ class PlaneChart:
                 break
         return np.asarray(uv)
 
+    def are_found(self, pieces: Array) -> Bools:
+        """Whether planes meet the face, or what continues it beyond its border, all along pieces of passes, (k,).
+
+        Parameters
+        ----------
+        pieces : (k, 3) array
+            along0, along1 and step of each.
+        """
+        share = np.linspace(0.0, 1.0, _ALONG)
+        along = pieces[:, :1] + share * (pieces[:, 1:2] - pieces[:, :1])
+        target = np.column_stack([along.ravel(), np.repeat(pieces[:, 2], _ALONG)])
+        uv = self.uv(*target.T)
+        off = np.linalg.norm(self.places(uv) - target, axis=1)
+        good = (off <= _OTHER * self.face.diagonal) & (self.face.normal(uv) @ self.axis > 0)
+        return np.asarray(good.reshape(-1, _ALONG).all(axis=1))
+
+    def check_pieces(self, pieces: Array) -> None:
+        """Check that passes can be followed, beyond the border of the face too.
+
+        Parameters
+        ----------
+        pieces : (k, 3) array
+            along0, along1 and step of each.
+
+        Raises
+        ------
+        UnsupportedGeometry
+            When what continues the face turns away from the axis where a pass runs out.
+        """
+        lost = np.flatnonzero(~self.are_found(pieces))
+        if len(lost):
+            raise UnsupportedGeometry(f"{len(lost)} of {len(pieces)} passes cannot run out beyond the border of face "
+                                      f"{self.face.label}, where its surface turns away from the axis: {_RULE}")
+
+    def places(self, uv: Array) -> Array:
+        """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""
+        return np.asarray(self.face.evaluate(uv).point @ self.frame.T)
+
+    def feed_at(self, uv: Array) -> Array:
+        """Unit feed directions of passes at parameters, (n, 3): along the planes, in the face."""
+        return np.asarray(unit(np.cross(self.frame[1], self.face.normal(uv))))
+
     def _clipped(self, along: Array, step: Array) -> tuple[Array, Array]:
         """Parameters drawn back to the surface's own domain, and feeds along the planes there."""
         uv = self.uv(along, step)
         low, high = np.array(self.face.surface.domain).T
         uv = np.clip(uv, low, high)
-        feed = np.cross(self.frame[1], self.face.normal(uv))
-        return np.asarray(uv), unit(feed)
+        return np.asarray(uv), self.feed_at(uv)
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end.

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 _GRID = 48
 _ENOUGH = 700
+#: Where lines across a face stand for its passes, as shares of the way across; points of each.
+_ACROSS, _POINTS = (0.02, 0.15, 0.3, 0.5, 0.7, 0.85, 0.98), 161
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,3 +136,32 @@ def _extent(inside: Array, cell: Array, rectangle: Array) -> Array:
     low = np.where(low - near > 1.01 * cell, low - cell / 2, near)
     high = np.where(far - high > 1.01 * cell, high + cell / 2, far)
     return np.array([low[0], high[0], low[1], high[1]])
+
+
+def sample_passes(face: Face, along: int) -> list[Array]:
+    """A few iso-parametric lines on a face that stand for its passes.
+
+    Parameters
+    ----------
+    face : Face
+    along : int
+        0 for lines along u, 1 for lines along v.
+
+    Returns
+    -------
+    list of (n, 2) array
+        Parameters of each stretch inside the face, ascending.
+    """
+    u0, u1, v0, v1 = face.bounds
+    ends = ((u0, u1), (v0, v1))
+    across = 1 - along
+    found = []
+    for share in _ACROSS:
+        uv = np.empty((_POINTS, 2))
+        uv[:, along] = np.linspace(*ends[along], _POINTS)
+        uv[:, across] = ends[across][0] + share * (ends[across][1] - ends[across][0])
+        inside = np.concatenate([[False], face.contains(uv), [False]])
+        starts = np.flatnonzero(~inside[:-1] & inside[1:])
+        stops = np.flatnonzero(inside[:-1] & ~inside[1:])
+        found += [uv[begin:end] for begin, end in zip(starts, stops, strict=True)]
+    return found

@@ -11,6 +11,7 @@ from toolaxis.errors import Fault, InvalidInput
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
+from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
@@ -21,8 +22,6 @@ from toolaxis.work import LIMIT
 
 Array = NDArray[np.float64]
 
-OBJECTIVES = ("length", "passes", "time")
-DIRECTIONS = ("zigzag", "climb", "conventional")
 #: What a change of the tool axis between operations is reckoned to take, s.
 INDEX_SECONDS = 6.0
 
@@ -61,6 +60,8 @@ class PlanInputs:
     limit : float
         Most work for one sub-surface, its axis and the proof of its passes, in thousands of bounds of distances; see
         `toolaxis.work`.
+    passes : str
+        One of `PASSES`; passes with a moving axis are iso-parametric, or layers.
 
     Raises
     ------
@@ -80,6 +81,7 @@ class PlanInputs:
     rapid: float = 10000.0
     roughness: float = 0.0
     limit: float = LIMIT
+    passes: str = ISO
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -98,6 +100,7 @@ class PlanInputs:
                                "Tolerance(gouge=0.005)")
         _check_choice("objective", self.objective, OBJECTIVES)
         _check_choice("direction", self.direction, DIRECTIONS)
+        _check_choice("passes", self.passes, PASSES)
 
     @property
     def chord(self) -> float:
@@ -121,6 +124,17 @@ class PlanInputs:
         if self.scallop >= tool.radius:
             raise InvalidInput(f"scallop is {self.scallop} mm, not below the cutter radius {tool.radius} mm: "
                                "give a smaller scallop height")
+
+
+def describe_feed(feed: str, inputs: PlanInputs) -> str:
+    """How passes go, as tables and titles say it: "u", or "u, in planes" for planes in the mean direction of u.
+
+    Parameters
+    ----------
+    feed : "u" or "v"
+    inputs : PlanInputs
+    """
+    return feed if inputs.passes == ISO else f"{feed}, in {inputs.passes}"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.machine.kinematics import linear_coordinates, placement
+from toolaxis.plan.choices import PLANES
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Program, ProgramContext
 from toolaxis.post.indexed_positions import IndexedPosition
@@ -128,6 +129,8 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
             ["part", program.plan.part.source or "-"], ["scallop height", f"{program.inputs.scallop:g} mm"],
             ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict of the plan", verdict],
             ["not checked", ", ".join(program.plan.not_checked)]]
+    if program.inputs.passes == PLANES:
+        rows.insert(4, ["passes", "along parallel planes that contain the tool axis"])
     if missing:
         rows.append(["NOT IN THE PROGRAM", f"no axis was found for {', '.join(missing)}"])
     return _table(["", ""], rows)

@@ -10,7 +10,7 @@ from rich.table import Table
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, outcome_of
+from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -67,12 +67,13 @@ def _clearances(found: Mapping[str, float]) -> str:
     return " / ".join(number(found.get(name), 2) for name in ("cutter", "shank", "holder"))
 
 
-def _operation_row(op: Operation) -> list[str]:
+def _operation_row(op: Operation, inputs: PlanInputs) -> list[str]:
     found = op.orientation
     if not op.done:
         return [op.face.label, "left to clean-up" if op.left else found.outcome, *["-"] * 6]
-    return [op.face.label, _axis(op), found.feed, str(found.passes), number(found.average_strip_width, 3),
-            number(found.length, 1), number(found.gouge, 4), _clearances(found.clearance)]
+    return [op.face.label, _axis(op), describe_feed(found.feed, inputs), str(found.passes),
+            number(found.average_strip_width, 3), number(found.length, 1), number(found.gouge, 4),
+            _clearances(found.clearance)]
 
 
 def plan_table(plan: Plan) -> Table:
@@ -84,7 +85,7 @@ def plan_table(plan: Plan) -> Table:
         Gouge is an upper bound, clearance a lower one.
     """
     blades = plan.blades
-    rows = [[*_operation_row(op), *_links(op, plan.inputs), _clean_up(op),
+    rows = [[*_operation_row(op, plan.inputs), *_links(op, plan.inputs), _clean_up(op),
              "clean-up" if op.left else op.orientation.outcome]
             for op in plan.operations if blades is None or op.number not in blades.copies]
     if blades is not None:
@@ -233,8 +234,8 @@ def _measured(found: Mapping[str, Clearance | str]) -> str:
     return " / ".join(_one(name) for name in ("cutter", "shank", "holder"))
 
 
-def _verdict_row(op: Operation, found: OperationVerdict | None) -> list[str]:
-    row = _operation_row(op)
+def _verdict_row(op: Operation, inputs: PlanInputs, found: OperationVerdict | None) -> list[str]:
+    row = _operation_row(op, inputs)
     if found is None:
         return [*row, "-", "-", "-", "NOT JUDGED" if op.done else "NO AXIS"]
     if not found.measured:
@@ -253,7 +254,7 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     verdict : Verdict
     """
     judged = {op.name: op for op in verdict.operations}
-    rows = [_verdict_row(op, judged.get(op.name)) for op in plan.operations]
+    rows = [_verdict_row(op, plan.inputs, judged.get(op.name)) for op in plan.operations]
     for row, op in zip(rows, plan.operations, strict=True):
         if not op.done and outcome_of([op], plan.blades) == "complete":
             row[-1] = "clean-up"

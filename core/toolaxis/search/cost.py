@@ -6,11 +6,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path.estimate import Estimates, Estimator
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_count import measure
+from toolaxis.path.pass_pattern import PassChart, chart_of
 from toolaxis.path.sampling import Samples
+from toolaxis.plan.choices import ISO
 from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -44,6 +46,8 @@ class MachiningCost:
         How fast the machine goes; needed for the objective "time".
     feed : "u" or "v", optional
         The only feed that may be chosen, where one is asked for.
+    passes : str
+        One of `toolaxis.plan.choices.PASSES`; screening prices passes along parameters in any case.
 
     Raises
     ------
@@ -58,6 +62,7 @@ class MachiningCost:
     objective: str = "length"
     pace: TimeEstimate | None = None
     feed: str | None = None
+    passes: str = ISO
 
     def __post_init__(self) -> None:
         if self.objective == "time" and self.pace is None:
@@ -80,6 +85,21 @@ class MachiningCost:
     def charts(self) -> tuple[IsoChart, IsoChart]:
         """The face in its own parameters, for feed u and v."""
         return IsoChart(self.face, "u"), IsoChart(self.face, "v")
+
+    def chart(self, axis: Array, feed: str) -> PassChart:
+        """The chart by which passes with an axis are laid.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+
+        Raises
+        ------
+        UnsupportedGeometry
+            When passes of this kind do not go with the face.
+        """
+        return chart_of(self.face, axis, feed, self.passes)
 
     @property
     def samples(self) -> Samples:
@@ -128,7 +148,8 @@ class MachiningCost:
         return length if self.objective == "length" else passes
 
     def counted(self, axis: Array, feed: str) -> tuple[float, float]:
-        """Exact count of passes and cutting length, mm, of one axis and feed; inf where it leaves no strip.
+        """Exact count of passes and cutting length, mm, of one axis and feed; inf where it leaves no strip, or passes
+        of this kind do not go with the face.
 
         Parameters
         ----------
@@ -137,7 +158,11 @@ class MachiningCost:
         """
         cut = Cut(self.tool, axis, self.scallop, self.allowance)
         cut.__dict__["leans"] = self.estimator.leans
-        found = measure(self.charts[FEEDS.index(feed)], cut)
+        try:
+            chart = self.charts[FEEDS.index(feed)] if self.passes == ISO else self.chart(axis, feed)
+        except UnsupportedGeometry:  # told where such passes are made
+            return np.inf, np.inf
+        found = measure(chart, cut)
         return found.passes, found.length
 
     def charge(self, length: float, unreached: float) -> float:

@@ -1,7 +1,7 @@
 """The rotary angles at which given passes take least time: limits of all levels together, curvature included.
 
 A grid over all allowed angles is timed with a few of the passes, the best places are looked at closer and closer, and
-all passes decide between the finalists, among them the alignments of `kinematic`.
+all passes decide between the finalists, among them the alignments of `kinematic_setup`.
 """
 
 from collections.abc import Sequence
@@ -18,14 +18,15 @@ from toolaxis.machine.kinematics import part_from_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
 from toolaxis.search.kinematic_setup import (
+    AxisDomain,
     Domain,
     PassSegment,
     Setup,
     are_angles_allowed,
     common_feed,
+    find_setup,
     reach_along_feed,
     rotary_grid,
-    setup,
 )
 
 Array = NDArray[np.float64]
@@ -77,8 +78,8 @@ def cutting_seconds(mounting: Mounting, passes: Sequence[PassSegment], rotary: A
     return seconds
 
 
-def fastest(mounting: Mounting, passes: Sequence[PassSegment], feeds: Feeds,
-            domain: Domain | None = None) -> tuple[Setup, float]:
+def find_fastest_setup(mounting: Mounting, passes: Sequence[PassSegment], feeds: Feeds,
+                       domain: AxisDomain | None = None) -> tuple[Setup, float]:
     """The set-up in which passes take least time, and that time, s; infinite where none is allowed.
 
     Parameters
@@ -86,8 +87,8 @@ def fastest(mounting: Mounting, passes: Sequence[PassSegment], feeds: Feeds,
     mounting : Mounting
     passes : sequence of PassSegment
     feeds : Feeds
-    domain : Domain, optional
-        What lead and tilt may be; free as for a ball end unless given.
+    domain : AxisDomain, optional
+        Which tool axes are admissible; free as for a ball end in mid air unless given.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def fastest(mounting: Mounting, passes: Sequence[PassSegment], feeds: Feeds,
             break
         times = cutting_seconds(mounting, few, rows, feeds)
         best = rows[_apart(rows, times, 3 * step)]
-    aligned = [setup(mounting, passes, held, level) for level in (Level.JERK, Level.ACCELERATION)]
+    aligned = [find_setup(mounting, passes, held, level) for level in (Level.JERK, Level.ACCELERATION)]
     rows = np.concatenate([best, *(one.rotary[None] for one in aligned if len(one.rotary))])
     feed = common_feed(passes)
     if not len(rows):

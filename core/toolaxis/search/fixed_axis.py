@@ -1,6 +1,6 @@
 """The best fixed axis for a face (3+2-axis machining): search, proof on the passes really made, and the reasons."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
-from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput, UnsupportedGeometry
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, CheckSurfaces, Obstacles, group_surroundings
 from toolaxis.feasibility.violations import BACK, CUTTER, Violation
@@ -19,11 +19,13 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
-from toolaxis.path.iso_parametric import layout
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
-from toolaxis.path.pass_layout import Layout
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_layout import Layout, lay_out
+from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import left_over, may_stay
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -31,6 +33,7 @@ from toolaxis.search.cost import FEEDS, MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
+from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
 from toolaxis.search.link_heights import OVER, LinkClearance, height_over
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import (
@@ -66,9 +69,28 @@ from toolaxis.work import OutOfWork, better_may_exist, up_to
 
 Array = NDArray[np.float64]
 
-METHODS = {"sphere": search, "sectors": sectors, "roman": by_roman, "normal": by_mean_normal}
-#: Methods that only name an axis: where that is refused, none beside it is tried.
-RULES = ("roman", "normal")
+
+class Method(NamedTuple):
+    """A way to find a fixed axis.
+
+    find : takes an empty `AxisTable` and returns the best axes, best first
+    next_axis : another axis in the place of one that the proof of the passes refused; None where none is tried
+    by_cost : whether it looks for the least cost, and so is worth a second run where the machine turned out to need
+        more room
+    any_feed : whether its axes go with either feed
+    describe : what it found, in words; None where there is nothing to say
+    """
+
+    find: Callable[[AxisTable], list[CountedAxis]]
+    next_axis: Callable[[AxisTable, CountedAxis, Violation, int], CountedAxis | None] | None = next_in_lobe
+    by_cost: bool = True
+    any_feed: bool = True
+    describe: Callable[[AxisTable, Array, ToolPath], str] | None = None
+
+
+METHODS = {"sphere": Method(search), "sectors": Method(sectors),
+           "jerk": Method(by_jerk, next_by_jerk, by_cost=False, any_feed=False, describe=describe_jerk),
+           "roman": Method(by_roman, None, by_cost=False), "normal": Method(by_mean_normal, None, by_cost=False)}
 
 #: Height above everything at which links cross at least, mm.
 CROSSING = 5.0
@@ -130,8 +152,11 @@ class FaceProblem:
         feed : str
         """
         worth, feasibility = self.worth, self.feasibility
-        return layout(worth.face, worth.tool, axis, worth.scallop, feed, allowance=worth.allowance,
-                      reach=lambda uv: feasibility.reach(uv, axis), progress=self.progress)
+        cut = Cut(worth.tool, axis, worth.scallop, worth.allowance)
+        placed = lay_out(worth.chart(axis, feed), cut, lambda uv: feasibility.reach(uv, axis), self.progress)
+        if isinstance(placed.chart, PlaneChart):
+            placed.chart.check_pieces(placed.pieces)
+        return placed
 
     def traced(self, placed: Layout) -> ToolPath:
         """Passes with their links.
@@ -190,12 +215,13 @@ class FaceProblem:
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
-         direction: str = "zigzag", feeds: Feeds | None = None, progress: Progress = NO_PROGRESS) -> FaceProblem:
+         direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
+         progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
-    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, feeds
+    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, passes, feeds
         As for `best_axis`.
     limits : AxisLimits, optional
     progress : Progress
@@ -207,7 +233,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     """
     given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
-    worth = MachiningCost(face, tool, scallop, allowance, objective, pace)
+    worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes)
     chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
@@ -224,7 +250,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
               method: str = "sphere", objective: str = "length", *, part: Part | None = None,
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
-              starts: ArrayLike | None = None, feeds: Feeds | None = None,
+              passes: str = ISO, starts: ArrayLike | None = None, feeds: Feeds | None = None,
               progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
 
@@ -240,7 +266,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.
     method : str
-        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; for comparison "roman":
+        "sphere": the whole hemisphere; "sectors": projection planes and quasi-feasible sectors; "jerk": the axis at
+        whose rotary angles the linear axes of the machine together do most along the passes; for comparison "roman":
         the axis of Roman's rule, and "normal": the mean normal, each with the same proof and nothing beside it.
     objective : str
         "length", "passes" or "time": what is to be least. Time goes by an estimate (`toolaxis.search.time_estimate`),
@@ -257,6 +284,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         Further limits.
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
+    passes : str
+        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis.
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional
@@ -284,9 +313,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     if method not in METHODS:
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
-               skin=skin,
-               surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction, feeds=feeds,
-               progress=progress)
+               skin=skin, surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
+               passes=passes, feeds=feeds, progress=progress)
     return find_axis(job, method, starts)[0]
 
 
@@ -310,7 +338,7 @@ def find_axis(job: FaceProblem, method: str = "sphere",
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
         result = _settled(job, ledger, method)
-        if ledger.feasibility.limits is job.feasibility.limits or method in RULES:
+        if ledger.feasibility.limits is job.feasibility.limits or not METHODS[method].by_cost:
             return result
         ledger = AxisTable(ledger.feasibility, job.worth, job.progress, first)
         return better_of(result, _settled(job, ledger, method))
@@ -326,17 +354,18 @@ def find_axis(job: FaceProblem, method: str = "sphere",
 
 def _settled(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
-    if method in RULES:
-        return first_proven(job, ledger, METHODS[method](ledger), 1)
+    how = METHODS[method]
+    if how.next_axis is None:
+        return first_proven(job, ledger, how.find(ledger), how)
     try:
         with up_to(_SEARCHED):
-            found = METHODS[method](ledger)
+            found = how.find(ledger)
     except OutOfWork as reason:
-        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)))
+        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)), how)
         if result.axis is not None:
             return _ended((result, path))
         return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
-    return first_proven(job, ledger, found)
+    return first_proven(job, ledger, found, how)
 
 
 def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
@@ -347,7 +376,7 @@ def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, Too
 
 
 def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                 attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+                 method: Method = METHODS["sphere"]) -> tuple[Orientation, ToolPath | None]:
     """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
@@ -356,8 +385,8 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     ledger : AxisTable
     found : list of CountedAxis
         The best of each lobe, best first.
-    attempts : int
-        How often each is tried, repaired between; 1 to take them as they are.
+    method : Method
+        How they were found.
 
     Raises
     ------
@@ -367,22 +396,26 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     found = snap_to_increments(ledger, found)
     with suppress(OutOfWork), up_to(_ORDERED):
         found = least_made(job.worth, found, job.made)
-    return _first_accepted(job, ledger, found, attempts)
+    return _first_accepted(job, ledger, found, method)
 
 
 def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                    attempts: int = _ATTEMPTS) -> tuple[Orientation, ToolPath | None]:
+                    method: Method) -> tuple[Orientation, ToolPath | None]:
     """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
     for k, one in enumerate(found):
-        best = _accepted(job, ledger, one, refused, attempts)
+        best = _accepted(job, ledger, one, refused, method)
         if best is None:
             continue
         others: tuple[Orientation, ...] = ()
         with suppress(OutOfWork):  # only other feeds and lobes are left to be looked at
-            best = _other_feed(job, ledger, best) or best
+            if method.any_feed:
+                best = _other_feed(job, ledger, best) or best
             others = tuple(_other(job, other) for other in found[k + 1:] if _sound(job, other))
-        reasons = (*best.orientation.reasons, *(why.words for why in refused), tally(ledger))
+        own: tuple[str, ...] = ()
+        if method.describe is not None and best.path is not None:
+            own = (method.describe(ledger, best.one.axis, best.path),)
+        reasons = (*own, *best.orientation.reasons, *(why.words for why in refused), tally(ledger))
         return replace(best.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations,
                        lobes=others), best.path
     if ledger.proven:
@@ -433,10 +466,10 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
 
 
 def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],
-              attempts: int) -> CheckedCandidate | None:
+              method: Method) -> CheckedCandidate | None:
     """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: CountedAxis | None = one
-    for attempt in range(attempts):
+    for attempt in range(_ATTEMPTS):
         if candidate is None:
             return None
         witness = ledger.feasibility.witness(candidate.axis)
@@ -448,7 +481,9 @@ def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: li
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
-        candidate = next_in_lobe(ledger, candidate, witness, attempt) if attempt + 1 < attempts else None
+        if method.next_axis is None or attempt + 1 == _ATTEMPTS:
+            return None
+        candidate = method.next_axis(ledger, candidate, witness, attempt)
     return None
 
 
@@ -463,7 +498,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     feed = FEEDS[one.feed]
     try:
         placed = job.laid(one.axis, feed)
-    except InvalidInput as reason:  # a place between the counted ones leaves no strip
+    except (InvalidInput, UnsupportedGeometry) as reason:  # no strip between the counted places, or no planes here
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(Violation(BACK, 0.0, words=str(reason))), None)
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))

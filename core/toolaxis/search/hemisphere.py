@@ -42,7 +42,7 @@ _HOPELESS = 0.02
 #: Values closer than this are ties.
 TIE = 0.001
 #: Free axes so near a refused one are not tried, rad.
-_REPELLED = radians(0.15)
+REPELLED = radians(0.15)
 #: Clearances closer than this are the same, mm.
 _SHARES = 0.25
 
@@ -312,8 +312,8 @@ def next_in_lobe(ledger: AxisTable, refused: CountedAxis, found: Violation, atte
     -------
     CountedAxis, or None when the lobe holds no other free axis.
     """
-    ledger.close(refused.axis, _REPELLED * 4**attempt, found)
+    ledger.close(refused.axis, REPELLED * 4**attempt, found)
     price = ledger.price
     order = np.argsort(price, kind="stable")[: int(np.isfinite(price).sum())]
     start = _first_proven(ledger, refused.axis, order)
-    return None if start is None else polish(ledger, start, 4 * _REPELLED, 2 * _REPELLED)
+    return None if start is None else polish(ledger, start, 4 * REPELLED, 2 * REPELLED)

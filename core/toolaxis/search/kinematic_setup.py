@@ -5,11 +5,11 @@ admissible lead and tilt allow and that turns least; where none of them is allow
 One set-up may serve a pass, a sub-surface or the whole part: then the mean of the passes' directions is aligned.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi, radians
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.feed_polytopes import Level, along, best_angles
 from toolaxis.machine.kinematics import nearest_turn, placement, tool_axes
 from toolaxis.machine.setup import Mounting
+from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import as_rows, unit
 
 Array = NDArray[np.float64]
@@ -31,6 +32,10 @@ _STEPS = tuple(map(radians, (3.0, 0.75, 0.15, 0.03)))
 _LOOKED = 64
 #: First angles that are tried where the first rotary axis is free.
 _FREE = np.radians(np.arange(-180, 180, 5.0))
+#: Rotary angles that are checked in one go, those that do most first: most searches end in the first few batches.
+_BATCH = 128
+#: What the axes do is the same within this share.
+_SAME = 1e-9
 
 
 class PassSegment(NamedTuple):
@@ -57,7 +62,7 @@ class PassSegment(NamedTuple):
         return np.concatenate([ways, ways[-1:]])
 
 
-def stretches(path: ToolPath) -> tuple[PassSegment, ...]:
+def pass_segments(path: ToolPath) -> tuple[PassSegment, ...]:
     """The cuts of a tool path, pass by pass.
 
     Parameters
@@ -79,6 +84,13 @@ def stretches(path: ToolPath) -> tuple[PassSegment, ...]:
     if not found:
         raise InvalidInput("the path cuts nothing: there is no feed direction to set a machine up for")
     return tuple(found)
+
+
+class AxisDomain(Protocol):
+    """Which tool axes are admissible along passes."""
+
+    def holds(self, axes: ArrayLike, passes: Sequence[PassSegment]) -> Bools:
+        """Whether tool axes stay admissible along all passes, (k,)."""
 
 
 @dataclass(frozen=True)
@@ -195,8 +207,8 @@ def common_feed(passes: Sequence[PassSegment]) -> Array:
     return np.asarray(unit((senses * np.array([one.length for one in passes])) @ feeds))
 
 
-def setup(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | None = None, level: Level = Level.JERK,
-          stand: ArrayLike | None = None) -> Setup:
+def find_setup(mounting: Mounting, passes: Sequence[PassSegment], domain: AxisDomain | None = None,
+               level: Level = Level.JERK, stand: ArrayLike | None = None) -> Setup:
     """The set-up in which the axes do most along the mean feed direction of passes.
 
     Parameters
@@ -205,8 +217,8 @@ def setup(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | No
         The machine with the part on its table.
     passes : sequence of PassSegment
         One pass, those of a sub-surface, or all.
-    domain : Domain, optional
-        What lead and tilt may be; free as for a ball end unless given.
+    domain : AxisDomain, optional
+        Which tool axes are admissible; free as for a ball end in mid air unless given.
     level : Level
         Which derivative is to be greatest.
     stand : (m,) array_like, optional
@@ -219,37 +231,82 @@ def setup(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | No
 
     Notes
     -----
-    **Source** [grandguillaume2021] Eqs. (13), (14) and (18), and its Sec. 4.4.
+    **Source** [grandguillaume2021] Sec. 4.4.
     Properties: (1) no allowed angles give more than an aligned set-up; (2) moving part and table together changes
     nothing.
     """
     feed, allowed = common_feed(passes), Domain() if domain is None else domain
-    rows = _alignments(mounting, level, feed)
-    rows = rows[are_angles_allowed(mounting, rows, passes, allowed)]
-    outcome = "aligned"
-    if not len(rows):
-        rows, outcome = _searched(mounting, level, feed, passes, allowed), "allowed"
-    if not len(rows):
-        return Setup(feed, np.empty(0), 0.0, "infeasible")
-    chosen = rows[np.argmin(np.round(np.abs(rows).sum(axis=1), 9))]
+    found = find_best_angles(mounting, level, feed, lambda rows: are_angles_allowed(mounting, rows, passes, allowed))
+    if not len(found.rows):
+        return Setup(feed, np.empty(0), 0.0, found.outcome)
+    chosen = least_turned(found.rows)
     if stand is not None:
-        chosen = nearest_turn(mounting.machine, rows, stand)
-    return Setup(feed, chosen, float(reach_along_feed(mounting, level, feed, chosen[None])[0]), outcome)
+        chosen = nearest_turn(mounting.machine, found.rows, stand)
+    return Setup(feed, chosen, float(reach_along_feed(mounting, level, feed, chosen[None])[0]), found.outcome)
 
 
-def setups_by_pass(mounting: Mounting, passes: Sequence[PassSegment], domain: Domain | None = None,
-                   level: Level = Level.JERK) -> tuple[Setup, ...]:
+class EqualAngles(NamedTuple):
+    """Allowed rotary angles at which the axes do the same, and no others more.
+
+    rows : (k, m) array, rad; none where nothing is allowed.
+    outcome : str, as of `Setup`.
+    """
+
+    rows: Array
+    outcome: str
+
+
+def find_best_angles(mounting: Mounting, level: Level, feed: Array, allowed: Callable[[Array], Bools],
+                     starts: Array | None = None) -> EqualAngles:
+    """The allowed rotary angles at which the axes do most along a feed direction.
+
+    Parameters
+    ----------
+    mounting : Mounting
+    level : Level
+    feed : (3,) array
+        Part's frame.
+    allowed : callable
+        Takes (k, m) rotary angles, rad, and tells which of them may be used, (k,) bool.
+    starts : (k, m) array, optional
+        Angles to look at besides the first grid, where little is allowed.
+
+    Notes
+    -----
+    **Source** [grandguillaume2021] Eqs. (13), (14) and (18).
+    """
+    rows = _alignments(mounting, level, feed)
+    rows = rows[allowed(rows)]
+    if len(rows):
+        return EqualAngles(rows, "aligned")
+    rows = _search_grids(mounting, level, feed, allowed, starts)
+    return EqualAngles(rows, "allowed" if len(rows) else "infeasible")
+
+
+def least_turned(rows: Array) -> Array:
+    """The rotary angles that turn least from zero, (m,) rad.
+
+    Parameters
+    ----------
+    rows : (k, m) array
+        rad
+    """
+    return np.asarray(rows[np.argmin(np.round(np.abs(rows).sum(axis=1), 9))])
+
+
+def find_setups_by_pass(mounting: Mounting, passes: Sequence[PassSegment], domain: AxisDomain | None = None,
+                        level: Level = Level.JERK) -> tuple[Setup, ...]:
     """The best set-up of each pass, the nearest to that of the pass before.
 
     Parameters
     ----------
     mounting, passes, domain, level
-        As for `setup`.
+        As for `find_setup`.
     """
     found: list[Setup] = []
     stand = None
     for one in passes:
-        found.append(setup(mounting, (one,), domain, level, stand))
+        found.append(find_setup(mounting, (one,), domain, level, stand))
         stand = found[-1].rotary if len(found[-1].rotary) else stand
     return tuple(found)
 
@@ -270,7 +327,7 @@ def _turned_inside(mounting: Mounting, rows: Array) -> Array:
     return np.column_stack([axis.within(rows[:, i])[0] for i, axis in enumerate(mounting.machine.rotary)])
 
 
-def are_angles_allowed(mounting: Mounting, rows: Array, passes: Sequence[PassSegment], domain: Domain) -> Bools:
+def are_angles_allowed(mounting: Mounting, rows: Array, passes: Sequence[PassSegment], domain: AxisDomain) -> Bools:
     """Which rotary angles are inside ranges and domain, (k,).
 
     Parameters
@@ -279,7 +336,7 @@ def are_angles_allowed(mounting: Mounting, rows: Array, passes: Sequence[PassSeg
     rows : (k, m) array
         rad
     passes : sequence of PassSegment
-    domain : Domain
+    domain : AxisDomain
     """
     if not len(rows):
         return np.zeros(0, dtype=bool)
@@ -327,15 +384,35 @@ def rotary_grid(mounting: Mounting, step: float, middle: Array | None = None) ->
     return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))
 
 
-def _searched(mounting: Mounting, level: Level, feed: Array, passes: Sequence[PassSegment], domain: Domain) -> Array:
-    """The best allowed angles from grids that grow finer, (1, m); none where no grid holds any."""
-    best: Array | None = None
+def _search_grids(mounting: Mounting, level: Level, feed: Array, allowed: Callable[[Array], Bools],
+                  starts: Array | None) -> Array:
+    """The best allowed angles from grids that grow finer, (k, m) of equal ones; none where no grid holds any."""
+    best = np.empty((0, len(mounting.machine.rotary)))
+    most = -np.inf
+    first = best if starts is None else starts
     for step in _STEPS:
-        rows = rotary_grid(mounting, step, best)
-        rows = rows if best is None else np.concatenate([best[None], rows])
-        rows = rows[are_angles_allowed(mounting, rows, passes, domain)]
-        if not len(rows):
-            return np.empty((0, len(mounting.machine.rotary)))
-        best = rows[int(np.argmax(reach_along_feed(mounting, level, feed, rows)))]
-    assert best is not None
-    return best[None]
+        rows = rotary_grid(mounting, step, best[0]) if len(best) else (
+            np.concatenate([first, rotary_grid(mounting, step)]))
+        reach = reach_along_feed(mounting, level, feed, rows)
+        found = _first_allowed(rows, reach, allowed, most * (1 + _SAME) if len(best) else most)
+        if len(found):
+            best = rows[found]
+            most = float(reach[found[0]])
+        elif not len(best):
+            break
+    return best
+
+
+def _first_allowed(rows: Array, reach: Array, allowed: Callable[[Array], Bools], above: float) -> NDArray[np.intp]:
+    """Which rows are the best allowed ones above a reach, the one that turns least first.
+
+    Whether an axis is allowed takes much longer to find out than how much it reaches.
+    """
+    order = np.lexsort((np.abs(rows).sum(axis=1), -round_significant(reach)))
+    order = order[reach[order] > above]
+    for begin in range(0, len(order), _BATCH):
+        some = order[begin:begin + _BATCH]
+        some = some[allowed(rows[some])]
+        if len(some):
+            return np.asarray(some[reach[some] >= reach[some[0]] * (1 - _SAME)])
+    return np.empty(0, dtype=np.intp)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.fixed_axis_time import machining_time
 from toolaxis.search.cost import FEEDS, MachiningCost
 from toolaxis.search.local_search import CountedAxis
@@ -68,6 +68,6 @@ def _taken(worth: MachiningCost, one: CountedAxis, made: Callable[[Array, str], 
         if pace is not None:
             return machining_time(pace.mounting.machine, path, pace.feeds,
                                   table_from_part=pace.mounting.table_from_part).path
-    except InvalidInput:  # what leaves no strip, or stands outside the ranges
+    except (InvalidInput, UnsupportedGeometry):  # no strip, outside the ranges, or no planes there
         return np.inf
     return path.length(Motion.CUT) if worth.objective == "length" else float(path.passes)

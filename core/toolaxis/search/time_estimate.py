@@ -21,6 +21,7 @@ from toolaxis.feed.velocity_ramps import bends_of, durations, greatest_speeds
 from toolaxis.machine.kinematics import part_from_machine, rotary_angles
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.links import Linking
+from toolaxis.path.sampling import sample_passes
 from toolaxis.plan.plan import INDEX_SECONDS
 from toolaxis.search.direction_grid import ring
 from toolaxis.shape.face import Face
@@ -28,8 +29,6 @@ from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
-#: Where passes are looked at, as shares of the way across the face; points of each.
-_ACROSS, _POINTS = (0.02, 0.15, 0.3, 0.5, 0.7, 0.85, 0.98), 161
 #: Points that a piece of a pass has at least.
 _LEAST = 8
 #: Points of the run beyond each end of a pass.
@@ -77,26 +76,18 @@ class TimeEstimate:
         return self._lines(0), self._lines(1)
 
     def _lines(self, along: int) -> tuple[_Line, ...]:
-        u0, u1, v0, v1 = self.face.bounds
-        ends = ((u0, u1), (v0, v1))
         found = []
-        for share in _ACROSS:
-            uv = np.empty((_POINTS, 2))
-            uv[:, along] = np.linspace(*ends[along], _POINTS)
-            uv[:, 1 - along] = ends[1 - along][0] + share * (ends[1 - along][1] - ends[1 - along][0])
-            inside = np.concatenate([[False], self.face.contains(uv), [False]])
-            starts, stops = np.flatnonzero(~inside[:-1] & inside[1:]), np.flatnonzero(inside[:-1] & ~inside[1:])
-            for begin, end in zip(starts, stops, strict=True):
-                run = self._run_out(uv[begin:end], along)
-                points, normals = self.face.evaluate(run).point, self.face.normal(run)
-                moving = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > _STILL])
-                middles = points + self.tool.corner_radius * normals
-                moving[1:] &= np.linalg.norm(np.diff(middles, axis=0), axis=1) > _STILL
-                if moving.sum() >= _LEAST:
-                    steps = np.linalg.norm(np.diff(middles[moving], axis=0), axis=1)
-                    length = float(np.linalg.norm(np.diff(points[moving], axis=0), axis=1).sum())
-                    found.append(_Line(middles[moving], normals[moving], np.concatenate([[0.0], np.cumsum(steps)]),
-                                       length))
+        for uv in sample_passes(self.face, along):
+            run = self._run_out(uv, along)
+            points, normals = self.face.evaluate(run).point, self.face.normal(run)
+            moving = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > _STILL])
+            middles = points + self.tool.corner_radius * normals
+            moving[1:] &= np.linalg.norm(np.diff(middles, axis=0), axis=1) > _STILL
+            if moving.sum() >= _LEAST:
+                steps = np.linalg.norm(np.diff(middles[moving], axis=0), axis=1)
+                length = float(np.linalg.norm(np.diff(points[moving], axis=0), axis=1).sum())
+                found.append(_Line(middles[moving], normals[moving], np.concatenate([[0.0], np.cumsum(steps)]),
+                                   length))
         return tuple(found)
 
     def _run_out(self, uv: Array, along: int) -> Array:

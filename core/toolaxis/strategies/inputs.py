@@ -3,6 +3,7 @@
 from math import isfinite
 
 from toolaxis.errors import InvalidInput
+from toolaxis.plan.choices import ISO
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import SPHERE, Asked, Strategy
 
@@ -63,6 +64,9 @@ def _check_moving(strategy: Strategy, asked: Asked) -> None:
     name = strategy.name
     if asked.method not in (SPHERE, name):
         raise InvalidInput(f"method {asked.method!r} is for fixed axes and strategy {name!r} moves the axis: leave out "
+                           "one of the two")
+    if asked.passes != ISO:
+        raise InvalidInput(f"passes {asked.passes!r} need a fixed axis and strategy {name!r} moves the axis: leave out "
                            "one of the two")
     if asked.objective == "time":
         raise InvalidInput(f"strategy {name!r} minimises cutting length or number of passes, not time: leave out the "

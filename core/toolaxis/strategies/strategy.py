@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+from toolaxis.plan.choices import ISO
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -48,6 +50,8 @@ class Asked:
         Which axis or feed is to be kept, as a clause ("a sub-surface of face 3 has a lock"); empty for none.
     remedy : str
         How a machine is given where a strategy misses one.
+    passes : str
+        One of `toolaxis.plan.choices.PASSES`.
     """
 
     tool: "Tool | None"
@@ -58,6 +62,7 @@ class Asked:
     orientations: int | str | None = None
     held: str = ""
     remedy: str = "name a machine"
+    passes: str = ISO
 
 
 class Strategy(Protocol):

@@ -12,7 +12,7 @@ TEXTS = ("", "abc", "-5", "0", "1e400", "nan", "inf", "-inf", "1e-300", "9999999
          "12 mm", "0.3 mm", "1/0", "=1+", "1 mm 2", "%", "'", "10 deg", "1000 mm/min", "\u00bd", " ", "--1", "2+2")
 BUTTONS = ("compute", "stop", "addFaces", "removeFaces", "holderAdd", "holderRemove", "shankAdd", "shankRemove", "lock",
            "best", "turnFeed", "lockAxis", "lockFeed", "blades", "compare")
-COMBOS = ("strategy", "regions", "orientations", "method", "objective", "direction", "tool", "kind", "limits",
+COMBOS = ("strategy", "regions", "orientations", "method", "objective", "direction", "passes", "tool", "kind", "limits",
           "operation")
 NUMBERS = ("roughness", "regionsNumber", "orientationsNumber", "spindle", "limitX", "limitY", "limitZ")
 QUANTITIES = ("scallop", "tolerance", "allowance", "feedrate", "diameter", "corner", "taper", "stickout", "cone",

@@ -194,7 +194,7 @@ def test_impossible_divisions_are_told_and_nothing_is_made(desk, roof, form, rem
     getattr(form, field).setCurrentIndex(2)
     getattr(form, f"{field}Number").setValue(value)
     if field == "orientations":
-        form.method.setCurrentIndex(3)
+        form.method.setCurrentIndex(form.method.findText("mean normals"))
         assert not form.compute.isEnabled() and "one axis for each sub-surface" in form.message.text()
         desk.shot("66-refused-division")
         return

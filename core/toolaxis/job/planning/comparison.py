@@ -11,6 +11,8 @@ from toolaxis.strategies.registry import strategies, title_of
 
 #: Rules that choose an axis for each sub-surface of the plan.
 BY_SUB_SURFACE = ("sectors", "roman", "normal")
+#: The same, where a machine is given.
+ON_MACHINE = ("jerk",)
 #: What takes the faces whole, as moving axes do: one axis for all of them, and a ball end along their mean normals.
 WHOLE = ("one", "ball")
 
@@ -18,9 +20,10 @@ WHOLE = ("one", "ball")
 def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Sequence[Face]], Plan]) -> Plan:
     """A plan with what other methods come to.
 
-    Sectors, Roman's rule and mean normals on the same sub-surfaces; one fixed axis for all faces; and a ball end of the
-    same radius along each face's mean normal; and strategies that are to be compared, such as five axes with a constant
-    lead, where the machine drives their rotary axes.
+    Sectors, Roman's rule and mean normals on the same sub-surfaces, and where there is a machine the axes along which
+    its jerk is greatest; one fixed axis for all faces; and a ball end of the same radius along each face's mean normal;
+    and strategies that are to be compared, such as five axes with a constant lead, where the machine drives their
+    rotary axes.
 
     Parameters
     ----------
@@ -45,8 +48,9 @@ def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Seq
     rotary = () if made.machine is None else made.machine.machine.rotary
     driven = sum(not axis.by_hand for axis in rotary)
     moving = [one.name for one in strategies().values() if one.compared and driven >= one.rotary_axes]
-    for method in (*BY_SUB_SURFACE, *WHOLE, *moving):
-        whole = method not in BY_SUB_SURFACE
+    by_sub_surface = BY_SUB_SURFACE if made.machine is None else (*BY_SUB_SURFACE, *ON_MACHINE)
+    for method in (*by_sub_surface, *WHOLE, *moving):
+        whole = method not in by_sub_surface
         if method == made.inputs.method and (not whole or len(pieces) == len(faces)):
             continue
         try:

@@ -12,6 +12,7 @@ from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.work_coordinates import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.path.pass_pattern import feeds_over
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -51,7 +52,8 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     return task(op.face, plan.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
                 part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
-                direction=plan.inputs.direction, feeds=feeds_of(plan.inputs), progress=progress)
+                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds_of(plan.inputs),
+                progress=progress)
 
 
 def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:
@@ -78,11 +80,10 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
     datum : (3,) array_like
         Its origin, mm.
     """
-    d = face.evaluate(face.grid(16, 16))
-    feeds = d.su if found.feed == "u" else d.sv
-    middle = d.point[int(np.argmin(np.linalg.norm(d.point - d.point.mean(axis=0), axis=1)))]
+    points = face.evaluate(face.grid(16, 16)).point
+    middle = points[int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
     assert found.axis is not None
-    return work_coordinates(found.axis, feeds, datum, middle)
+    return work_coordinates(found.axis, feeds_over(face, found.feed), datum, middle)
 
 
 def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None,

@@ -26,6 +26,7 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -46,11 +47,12 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
          objective: str = "length", strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
-         obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0, spindle: float = 10000.0,
-         tolerance: ToleranceLike = None, datum: Sequence[float] = (0.0, 0.0, 0.0),
-         limits: AxisLimits | str | None = None, offset: ArrayLike | None = None,
-         rapid: float = 10000.0, roughness: float | None = None, compare: bool = False, limit: float = LIMIT,
-         workers: int | None = None, progress: Progress = NO_PROGRESS) -> Plan:
+         passes: str = ISO, obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0,
+         spindle: float = 10000.0, tolerance: ToleranceLike = None,
+         datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
+         offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
+         compare: bool = False, limit: float = LIMIT, workers: int | None = None,
+         progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
 
     Parameters
@@ -86,11 +88,15 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         Stock left on the faces, mm.
     direction : str
         "zigzag", "climb" or "conventional".
+    passes : str
+        How passes lie: "iso" along a parameter of the face, or "planes" along parallel planes that contain the tool
+        axis, in the mean direction of that parameter; planes go with fixed axes only.
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
     method : str
-        How each sub-surface gets its axis: "sphere" (the best of the hemisphere) or "sectors" (projection planes and
-        sectors); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
+        How each sub-surface gets its axis: "sphere" (the best of the hemisphere), "sectors" (projection planes and
+        sectors) or "jerk" (the rotary angles at which the machine's linear axes together have most jerk along the
+        passes); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
         sub-surfaces) and "ball" (a ball end of the tool's radius takes its place, along the mean normal).
     feedrate, spindle : float
         mm/min and rev/min, for the CL files.
@@ -141,13 +147,13 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
     chosen = check_strategy(strategy, Asked(
         cutter if isinstance(cutter, Tool) else None, None if mounting is None else mounting.machine, method, objective,
-        None if roughness is None else float(roughness), orientations, held_in(given)))
+        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
     inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
                         float(spindle), Tolerance.of(tolerance), float(rapid),
-                        chosen.roughness if roughness is None else float(roughness), float(limit))
+                        chosen.roughness if roughness is None else float(roughness), float(limit), passes)
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)

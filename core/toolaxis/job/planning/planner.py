@@ -34,6 +34,7 @@ from toolaxis.partition.face_division import MOST, Divider, Regions
 from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
 from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Option, Plan, PlanInputs
@@ -390,8 +391,9 @@ class PlanningJob:
     def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
         job = self
-        if self._strategy.moves and self.inputs.objective == "time":  # in a comparison with a plan for least time
-            job = replace(self, inputs=replace(self.inputs, objective="length"))
+        if self._strategy.moves:  # in a comparison with a plan for least time, or along planes
+            objective = "length" if self.inputs.objective == "time" else self.inputs.objective
+            job = replace(self, inputs=replace(self.inputs, objective=objective, passes=ISO))
         return self._strategy.plan(job._task(face, progress), self.inputs, start)
 
     @property
@@ -410,7 +412,7 @@ class PlanningJob:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
                            allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
-                           direction=self.inputs.direction, progress=progress)
+                           direction=self.inputs.direction, passes=self.inputs.passes, progress=progress)
 
 
 def _refuse_face(number: int, face: Face, reason: ToolAxisError) -> Operation:

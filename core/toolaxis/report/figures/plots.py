@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import Plan, describe_feed
 from toolaxis.report.figures.hatch_fill import hatch, hatch_patch, zone_faces
 from toolaxis.report.figures.splat_renderer import (
     Camera,
@@ -90,7 +90,8 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
     _close_up(close, op, (back, axis))
     _with_tool(whole, plan, op, (np.cross(axis, np.cross(normal + 0.4 * op.frame.x - 0.9 * op.frame.y, axis))
                                  + 0.35 * axis, axis))
-    close.set_title(f"{op.name}: {op.orientation.passes} passes along {op.orientation.feed}, "
+    along = describe_feed(op.orientation.feed, plan.inputs)
+    close.set_title(f"{op.name}: {op.orientation.passes} passes along {along}, "
                     f"cutting length {op.orientation.length:.0f} mm", fontsize=10)
     lead, shown = op.orientation.lead, ", ".join(f"{value:+.3f}" for value in axis)
     said = f"axis ({shown})" if lead is None else f"the axis moves, lead {np.degrees(lead):+.2f} deg"

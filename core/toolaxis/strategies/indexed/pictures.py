@@ -13,6 +13,7 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.path.estimate import estimate
 from toolaxis.path.iso_parametric import layout
 from toolaxis.path.pass_count import count
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.hemisphere import hemisphere_picture
@@ -51,7 +52,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
     if op.done:
         widths_picture(width_lines(plan, op, task), (op.face, plan.tool),
                        op.name).savefig(folder / f"{op.name}-widths.png")
-    if op is studied:
+    if op is studied and plan.inputs.passes == ISO:  # the estimate is one of passes along parameters
         _draw_study(plan, op, task, folder)
 
 
@@ -108,13 +109,14 @@ def width_lines(plan: Plan, op: Operation, job: FaceProblem) -> list[tuple[Array
     def _reach(uv: Array) -> NDArray[np.bool_]:
         return job.feasibility.reach(uv, axis)
 
-    placed = layout(op.face, plan.tool, axis, plan.inputs.scallop, feed, allowance=plan.inputs.allowance, reach=_reach)
+    placed = job.laid(axis, feed)
     lines = []
     for low, high, step in placed.pieces:
         uv = placed.chart.uv(np.linspace(low, high, _POINTS), np.full(_POINTS, step))
         uv = uv[_reach(uv)]
         if len(uv) > 1:
-            width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, feed).sum(axis=1)
+            along = job.worth.chart(axis, feed).feed_at(uv)
+            width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, along).sum(axis=1)
             lines.append((op.face.evaluate(uv).point, width))
     return lines
 

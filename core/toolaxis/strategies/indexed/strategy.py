@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from toolaxis.plan.plan import Plan, PlanInputs
     from toolaxis.search.fixed_axis import FaceProblem
 
+#: The method that goes by what the linear axes of a machine do.
+JERK = "jerk"
 #: How fixed axes are found, and what each way is called.
-METHODS = {SPHERE: "best of the hemisphere", "sectors": "sectors of zhu2016", "roman": "Roman's rule",
-           "normal": "mean normals", "one": "one fixed axis", "ball": "ball end, mean normal"}
+METHODS = {SPHERE: "best of the hemisphere", "sectors": "sectors of zhu2016", JERK: "most jerk along the passes",
+           "roman": "Roman's rule", "normal": "mean normals", "one": "one fixed axis", "ball": "ball end, mean normal"}
 #: Methods that search as another one does.
 _SEARCHES = {"ball": "normal"}
 
@@ -45,7 +47,7 @@ class Indexed(Strategy):
         return {"axes": "Tool axes", "widths": "Strip widths", "estimate": "Estimate and count"}
 
     def check(self, asked: Asked) -> None:
-        """Check the method, and that axes which it names itself are neither to be shared nor kept.
+        """Check the method and its machine, and that axes which it names itself are neither to be shared nor kept.
 
         Raises
         ------
@@ -55,6 +57,10 @@ class Indexed(Strategy):
         if asked.orientations is not None and asked.method != SPHERE:
             raise InvalidInput(f"method {asked.method!r} chooses one axis for each sub-surface, so the number of "
                                "orientations cannot be limited: leave out one of the two")
+        if asked.method == JERK:
+            from toolaxis.machine.feed_polytopes import check_jerk_stated
+
+            check_jerk_stated(asked.machine, asked.remedy)
         if asked.held and asked.method == "one":
             raise InvalidInput(f"method 'one' uses one axis for all sub-surfaces, but {asked.held}: leave out the "
                                "method, or remove the lock")

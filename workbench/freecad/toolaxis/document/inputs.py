@@ -9,6 +9,8 @@ from freecad.toolaxis.document.machine_limits import PREFIX
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.strategies import INDEXED, ROUGHNESS, check_strategy, keeps_roughness
 
+from toolaxis.plan.choices import ISO
+
 #: Machining tolerance unless given, mm; and what it was before it could be given.
 TOLERANCE, FORMER_TOLERANCE = 0.01, 0.002
 
@@ -83,6 +85,8 @@ class JobInputs:
         One of `freecad.toolaxis.document.strategies.STRATEGIES`: fixed axes, or how the axis moves.
     roughness : float
         Greatest Ra across the feed, micrometres; for strategies that look at it.
+    passes : str
+        "iso" or "planes": along parameters of the face, or in parallel planes that contain the axis.
     """
 
     faces: tuple = ()
@@ -108,6 +112,7 @@ class JobInputs:
     strategy: str = INDEXED
     roughness: float = ROUGHNESS
     tolerance: float = TOLERANCE
+    passes: str = ISO
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
@@ -163,7 +168,8 @@ class JobInputs:
                          objective=self.objective, direction=self.direction,
                          limits="" if self.limits.startswith(PREFIX) else self.limits, feedrate=self.feedrate,
                          spindle=self.spindle, tolerance=Tolerance.of(self.tolerance),
-                         roughness=self.roughness / 1000 if keeps_roughness(self.strategy) else 0.0)
+                         roughness=self.roughness / 1000 if keeps_roughness(self.strategy) else 0.0,
+                         passes=self.passes)
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes, and the strategy.
@@ -201,7 +207,7 @@ def inputs_of(thing):
                      thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
                      thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
                      thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
-                     thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value)
+                     thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern)
 
 
 def flute_of(tool):

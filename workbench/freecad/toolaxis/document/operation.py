@@ -10,6 +10,8 @@ from freecad.toolaxis.document.properties import Property, Proxy, assign
 from freecad.toolaxis.document.staleness import same, standing, why_stale
 from freecad.toolaxis.document.strategies import STRATEGIES
 
+from toolaxis.plan.choices import DIRECTIONS, PASSES
+
 _ASKED, _LOCKS, _FOUND, _JUDGED, _KEPT = "Inputs", "Locks", "Result", "Verdict", "Tool Axis"
 
 INPUTS = (
@@ -29,13 +31,15 @@ INPUTS = (
     Property("LinkListGlobal", "Obstacles", _ASKED, "Bodies to avoid"),
     Property("Enumeration", "Objective", _ASKED, "What is to be least", False, False, ("length", "passes")),
     Property("Enumeration", "Direction", _ASKED, "Direction of the passes", False, False,
-             ("zigzag", "climb", "conventional")),
+             DIRECTIONS),
+    Property("Enumeration", "CutPattern", _ASKED, "Passes along parameters of the face, or in parallel planes", False,
+             False, PASSES),
     Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting motion"),
     Property("Float", "SpindleSpeed", _ASKED, "rev/min"),
     Property("String", "Regions", _ASKED, "Sub-surfaces of each face: a number, auto, or nothing for whole faces"),
     Property("String", "Orientations", _ASKED, "Different axes at most: a number, auto, or nothing for one each"),
     Property("Enumeration", "Method", _ASKED, "How axes are found", False, False,
-             ("sphere", "sectors", "roman", "normal", "one", "ball")),
+             ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")),
     Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while it cuts", False, False,
              STRATEGIES),
     Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, for strategies that look at it"),
@@ -201,6 +205,7 @@ def set_inputs(thing, inputs):
     assign(thing, Tool=inputs.tool, StickOut=inputs.stickout, FluteLength=inputs.flute_length,
            Scallop=inputs.scallop, Tolerance=inputs.tolerance, Allowance=inputs.allowance,
            Limits=inputs.limits, Objective=inputs.objective, Direction=inputs.direction,
+           CutPattern=inputs.passes,
            FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
            Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,
            Compare=inputs.compare, Strategy=inputs.strategy, Roughness=inputs.roughness)

@@ -8,13 +8,15 @@ from freecad.toolaxis.document.inputs import FORMER_TOLERANCE, inputs_of
 from freecad.toolaxis.document.shape_cache import known_of
 from freecad.toolaxis.document.strategies import INDEXED, ROUGHNESS
 
+from toolaxis.plan.choices import ISO
+
 #: Deviation at which a shape counts as changed, mm; reading a document back rounds to fifteen digits.
 _SAME = 1e-6
 _SUMS = 8
 _GRID = 4
 #: Inputs that older documents do not have, with what stood for them.
 _USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS,
-          "flute_length": 0.0}
+          "flute_length": 0.0, "passes": ISO}
 
 
 def signature(things, obstacles=(), turned=False):

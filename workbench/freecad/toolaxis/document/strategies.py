@@ -5,7 +5,7 @@ from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 
 from toolaxis.strategies.registry import strategies, strategy_of
 from toolaxis.strategies.strategy import INDEXED as INDEXED
-from toolaxis.strategies.strategy import Asked
+from toolaxis.strategies.strategy import SPHERE, Asked
 
 translate = FreeCAD.Qt.translate
 
@@ -40,14 +40,14 @@ def check_strategy(inputs):
     from toolaxis.strategies import inputs as library
 
     tool = machine = None
-    if inputs.strategy != INDEXED:
+    if inputs.strategy != INDEXED or inputs.method != SPHERE:  # else neither matters, and they take time to read
         tool = inputs.assembled()
         machine = mounting(inputs.limits, tool).machine if inputs.limits.startswith(PREFIX) else None
     held = next((piece for piece in inputs.pieces if piece.locked or piece.feed), None)
     library.check_strategy(inputs.strategy, Asked(
         tool, machine, inputs.method, inputs.objective, _roughness_of(inputs), inputs.orientations,
         "" if held is None else f"axis or feed of {held.name}{held.suffix} are locked",
-        "choose a machine among the limits of the tool axis"))
+        "choose a machine among the limits of the tool axis", inputs.passes))
 
 
 def _roughness_of(inputs):

@@ -51,8 +51,8 @@ def task(inputs):
                        regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
                        compare=inputs.compare, division=division, objective=inputs.objective,
                        tolerance=inputs.tolerance, allowance=inputs.allowance, direction=inputs.direction,
-                       obstacles=list(bodies) or None, feedrate=inputs.feedrate, spindle=inputs.spindle,
-                       datum=source.datum, progress=progress, **asked_of(inputs))
+                       passes=inputs.passes, obstacles=list(bodies) or None, feedrate=inputs.feedrate,
+                       spindle=inputs.spindle, datum=source.datum, progress=progress, **asked_of(inputs))
         refuse_in_vain(made)
         return made
 

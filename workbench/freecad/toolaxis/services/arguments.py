@@ -17,7 +17,7 @@ _NUMBERS = {"scallop": _LENGTH, "tolerance": _LENGTH, "allowance": _LENGTH, "sti
             "flute_length": _LENGTH, "roughness": _ROUGHNESS,
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
-_TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"",
+_TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"", "passes": "\"planes\"",
           "method": "\"sphere\"", "strategy": f"\"{STRATEGIES[1]}\""}
 _COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")

@@ -20,7 +20,8 @@ _SHARED = {"tool": "tools", "stickout": "stick-outs", "flute_length": "flute len
            "scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
            "limits": "limits of the axis",
            "strategy": "strategies", "roughness": "roughness limits", "objective": "objectives",
-           "direction": "directions", "feedrate": "feed rates", "spindle": "spindle speeds"}
+           "direction": "directions", "passes": "kinds of passes", "feedrate": "feed rates",
+           "spindle": "spindle speeds"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}
 
 

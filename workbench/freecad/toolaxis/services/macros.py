@@ -11,7 +11,7 @@ _DOCUMENT = "FreeCAD.ActiveDocument"
 _HELD = {"tool": "Tool", "stickout": "StickOut", "flute_length": "FluteLength", "scallop": "Scallop",
          "tolerance": "Tolerance", "allowance": "Allowance", "limits": "Limits", "objective": "Objective",
          "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy",
-         "roughness": "Roughness"}
+         "roughness": "Roughness", "passes": "CutPattern"}
 
 
 def record(*lines):
@@ -70,7 +70,7 @@ def plan_line(inputs):
     given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
     given |= {name: getattr(inputs, name) for name in ("flute_length", "allowance", "limits", "objective", "direction",
                                                        "regions", "orientations", "method", "blades", "compare",
-                                                       "strategy", "roughness", "tolerance")
+                                                       "strategy", "roughness", "tolerance", "passes")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]

@@ -13,6 +13,7 @@ from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from PySide import QtWidgets
 
+from toolaxis.plan.choices import DIRECTIONS, ISO, PASSES
 from toolaxis.tools.registry import cutters
 
 translate = FreeCAD.Qt.translate
@@ -21,8 +22,7 @@ KINDS = tuple(cutters())
 #: The field of each size of a cutter.
 _FIELDS = {"diameter": "diameter", "corner_radius": "corner", "half_angle_deg": "taper"}
 OBJECTIVES = ("length", "passes")
-DIRECTIONS = ("zigzag", "climb", "conventional")
-METHODS = ("sphere", "sectors", "roman", "normal", "one", "ball")
+METHODS = ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")
 _NONE, _AUTO, _NUMBER = range(3)
 _NO_LIMITS, _CONE, _ROTARY = range(3)
 
@@ -82,7 +82,7 @@ class PlanForm:
             field.on_change(slot)
         for table in (self.shank, self.holder):
             table.on_change(slot)
-        for name in ("kind", "limits", "objective", "direction", "method", "strategy", *self.counts):
+        for name in ("kind", "limits", "objective", "direction", "passes", "method", "strategy", *self.counts):
             self._find(name, QtWidgets.QComboBox).currentIndexChanged.connect(lambda _: slot())
         for box in self.switches.values():
             box.toggled.connect(lambda _: slot())
@@ -101,7 +101,7 @@ class PlanForm:
         for combo, spin in self.counts.values():
             spin.setVisible(combo.currentIndex() == _NUMBER)
         self._find("strategyNote").setText(needs(self.strategy_name))
-        for name in ("method", "orientations", "orientationsNumber", "blades"):
+        for name in ("method", "passes", "orientations", "orientationsNumber", "blades"):
             self._find(name).setEnabled(self.strategy_name == INDEXED)
         for name, visible in shown.items():
             for member in (*members.get(name, (name,)), f"{name}Label"):
@@ -261,6 +261,7 @@ class PlanForm:
         self.spindle.setValue(int(inputs.spindle))
         self._find("objective", QtWidgets.QComboBox).setCurrentIndex(OBJECTIVES.index(inputs.objective))
         self._find("direction", QtWidgets.QComboBox).setCurrentIndex(DIRECTIONS.index(inputs.direction))
+        self._find("passes", QtWidgets.QComboBox).setCurrentIndex(PASSES.index(inputs.passes))
         self._find("method", QtWidgets.QComboBox).setCurrentIndex(METHODS.index(inputs.method))
         self.strategy.setCurrentIndex(STRATEGIES.index(inputs.strategy))
         self.roughness.setValue(inputs.roughness)
@@ -285,6 +286,8 @@ class PlanForm:
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
+                "passes": PASSES[self._find("passes", QtWidgets.QComboBox).currentIndex()]
+                if self.strategy_name == INDEXED else ISO,
                 "feedrate": self.quantities["feedrate"].value, "spindle": float(self.spindle.value()),
                 "method": METHODS[self._find("method", QtWidgets.QComboBox).currentIndex()]
                 if self.strategy_name == INDEXED else METHODS[0],
