@@ -77,6 +77,7 @@ def pieces_of(sentence: str) -> list[str]:
     return [piece for k, piece in enumerate(_PLACE.split(sentence)) if k % 3 == 0]
 
 
+@cache
 def languages() -> tuple[str, ...]:
     """Languages that there is a catalogue for, besides English, as "german"."""
     return tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.toml")))

@@ -122,26 +122,26 @@ def test_the_panel_speaks_german(german, wavy):
     german.shot("95-german")
 
 
-def test_reasons_progress_and_wrong_inputs_are_german(german, part_file):
-    """What the library itself says, in English in the document, is German in the window."""
-    part = german.open(part_file)
-    wavy_top = next(f"Face{k}" for k, face in enumerate(part.Shape.Faces, 1)
-                    if type(face.Surface).__name__ == "BSplineSurface")
-    form = german.start(part, wavy_top)
-    german.type(form.scallop, "50")
-    german.pump(0.2)
+def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
+    """What the library says, in English in plans and documents, is German in the window."""
+    part, face = wavy
+    form = german.start(part, face)
+    form.tabs.setCurrentWidget(form.jobTab)
+    german.type(form.scallop, "50 mm")
     assert form.message.text().startswith("Rillenhöhe ist 50"), form.message.text()
-    assert "kleinere Rillenhöhe" in form.message.text()
-    german.type(form.scallop, "0.1")
+    assert "eine kleinere Rillenhöhe angeben" in form.message.text()
+    german.type(form.scallop, "0.1 mm")
+    form.tabs.setCurrentWidget(form.limitsTab)
+    form.limits.setCurrentIndex(1)
+    form.limitZ.setValue(-1.0)
+    german.type(form.cone, "10 deg")
     said = set()
     german.press(form.compute)
-    german.wait(lambda: said.add(form.message.text().split("\n")[0]) or not form.stop.isEnabled(), "the end")
-    assert any("Fläche" in text for text in said), said
-    german.wait(lambda: form.compute.isEnabled(), "the computation ends")
-    form.limits.setCurrentIndex(1)
-    german.pump(0.2)
-    for name, value in (("coneX", 0.0), ("coneY", 0.0), ("coneZ", -1.0), ("coneAngle", 10.0)):
-        german.type(getattr(form, name), f"{value:g}")
-    german.computed(form)
-    assert "unmöglich" in form.reasons.text().lower() and "außerhalb der Grenzen" in form.reasons.text()
+    german.wait(lambda: said.add(form.message.text().split("\n")[0]) or form.compute.isEnabled(), "the end")
+    assert any(text.startswith("Fläche ") for text in said), said
+    assert not any("Face " in text or "axes" in text for text in said), said
+    reasons = form.reasons.text().split("\n")
+    assert reasons[0].startswith("Unmöglich") and " Achsen " in reasons[0], reasons
+    assert "Achsen geprüft: " in reasons[-1] and "außerhalb der Grenzen" in reasons[-1], reasons
+    german.down(form, form.reasons)
     german.shot("96-german-reasons")
