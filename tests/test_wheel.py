@@ -33,6 +33,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_is_in_it(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     assert "toolaxis/plan/plan.schema.json" in names and "toolaxis/py.typed" in names
+    assert "toolaxis/messages/german.toml" in names
     assert any(name.endswith("data/share/toolaxis/tools/torus-12x1.toml") for name in names)
     assert any(name.endswith("data/share/toolaxis/machines/mikron-ucp-710.toml") for name in names)
     for file in ("page.html.j2", "batch.html.j2", "page.css", "page.js"):

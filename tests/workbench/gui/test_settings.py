@@ -120,3 +120,28 @@ def test_the_panel_speaks_german(german, wavy):
              for action in menu.actions()]
     assert "CAM-Aufträge anlegen" in menus and "Beispiele" in menus
     german.shot("95-german")
+
+
+def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
+    """What the library says, in English in plans and documents, is German in the window."""
+    part, face = wavy
+    form = german.start(part, face)
+    form.tabs.setCurrentWidget(form.jobTab)
+    german.type(form.scallop, "50 mm")
+    assert form.message.text().startswith("Rillenhöhe ist 50"), form.message.text()
+    assert "eine kleinere Rillenhöhe angeben" in form.message.text()
+    german.type(form.scallop, "0.1 mm")
+    form.tabs.setCurrentWidget(form.limitsTab)
+    form.limits.setCurrentIndex(1)
+    form.limitZ.setValue(-1.0)
+    german.type(form.cone, "10 deg")
+    said = set()
+    german.press(form.compute)
+    german.wait(lambda: said.add(form.message.text().split("\n")[0]) or form.compute.isEnabled(), "the end")
+    assert any(text.startswith("Fläche ") for text in said), said
+    assert not any("Face " in text or "axes" in text for text in said), said
+    reasons = form.reasons.text().split("\n")
+    assert reasons[0].startswith("Unmöglich") and " Achsen " in reasons[0], reasons
+    assert "Achsen geprüft: " in reasons[-1] and "außerhalb der Grenzen" in reasons[-1], reasons
+    german.down(form, form.reasons)
+    german.shot("96-german-reasons")

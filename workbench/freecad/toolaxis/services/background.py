@@ -20,6 +20,7 @@ from time import monotonic
 from typing import Any
 
 import FreeCAD
+from freecad.toolaxis.services.messages import shown
 from PySide import QtCore
 
 #: Interval at which progress is read, ms.
@@ -66,13 +67,13 @@ class _Thread(QtCore.QThread):
         except Cancelled:
             self.stopped = True
         except ToolAxisError as reason:
-            self.message = sentence(reason)
+            self.message = one_line(reason)
         except ImportError as reason:
             self.message = f"{reason}: install what is missing by the Addon Manager"
         except MemoryError:
             self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
         except Exception as reason:  # our own bug: the panel says so, the traceback is for the report
-            self.message = f"an error inside Tool Axis ({type(reason).__name__}: {sentence(reason)}); please report it"
+            self.message = f"an error inside Tool Axis ({type(reason).__name__}: {one_line(reason)}); please report it"
             self.trace = traceback.format_exc()
 
     def _report(self, stage: str, done: float, total: float) -> None:
@@ -138,7 +139,17 @@ def tell_error(message: str, trace: str) -> None:
 
 
 def sentence(reason: BaseException) -> str:
-    """An error as one line without a stop at its end.
+    """An error as the user reads it, one line without a stop at its end.
+
+    Parameters
+    ----------
+    reason : BaseException
+    """
+    return shown(one_line(reason))
+
+
+def one_line(reason: BaseException) -> str:
+    """An error in its own words, one line without a stop at its end.
 
     Parameters
     ----------
@@ -222,7 +233,7 @@ class BackgroundWork(QtCore.QObject):
         self.running = False
         thread = self._thread
         if thread.message:
-            self.failed.emit(thread.message)
+            self.failed.emit(shown(thread.message))
             if thread.trace:
                 tell_error(thread.message, thread.trace)
         elif thread.stopped or (thread.result is None and thread.stop.is_set()):

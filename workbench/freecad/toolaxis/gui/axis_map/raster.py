@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from freecad.toolaxis.gui.widgets.quantity import fine_text
+from freecad.toolaxis.services.messages import shown
 
 from toolaxis.numeric.equal_area import equal_area, from_equal_area
 from toolaxis.numeric.vectors import perpendicular
@@ -116,7 +117,7 @@ def reason_name(code):
     code : int
         Index into `toolaxis.plan.orientation.REASONS`.
     """
-    return REASONS[int(code)]
+    return shown(REASONS[int(code)])
 
 
 def picture_of(face, found):

@@ -4,6 +4,7 @@ import FreeCAD
 import numpy as np
 from freecad.toolaxis.gui.widgets.quantity import fine_text, length_text
 from freecad.toolaxis.gui.widgets.table_entries import fit_rows, put
+from freecad.toolaxis.services.messages import lines_of, shown
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -24,7 +25,7 @@ def outcome_name(outcome):
 
 
 def sentences(found):
-    return "\n".join(f"{text[:1].upper()}{text[1:]}." for text in found.reasons)
+    return lines_of(found.reasons)
 
 
 def _room(found, name):
@@ -105,12 +106,12 @@ def fill_baselines(table, rows):
     table.verticalHeader().setVisible(False)
     table.setRowCount(len(rows))
     for i, row in enumerate(rows):
-        name = row.shown
+        name = shown(row.shown)
         cells = [name, str(row.orientations), str(row.passes), length_text(row.length)]
         if not row.complete:
             cells[3] = translate("ToolAxis", "{} of {} sub-surfaces").format(row.machined, row.sub_surfaces)
         for k, text in enumerate(cells):
-            put(table, i, k, text, f"{name}: {row.reason}" if row.reason else text)
+            put(table, i, k, text, f"{name}: {shown(row.reason)}" if row.reason else text)
     table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.ResizeToContents)
     table.horizontalHeader().setStretchLastSection(True)
     fit_rows(table)

@@ -11,6 +11,7 @@ from freecad.toolaxis.gui.widgets.message_box import confirmed, warn
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import sentence
 from freecad.toolaxis.services.macros import list_of, record
+from freecad.toolaxis.services.messages import shown
 from PySide import QtCore, QtWidgets
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -86,7 +87,7 @@ def _made(document, found):
         left = (monotonic() - begin) * (total - done) / done if done else 0.0
         rest = translate("ToolAxis", ", about {} s left").format(round(left)) if done else ""
         box.setMaximum(int(total))
-        box.setLabelText(f"{stage}: {int(done)} / {int(total)}{rest}")
+        box.setLabelText(f"{shown(stage)}: {int(done)} / {int(total)}{rest}")
         box.setValue(int(done))
 
     try:

@@ -12,6 +12,7 @@ from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.export import Wish, task
 from freecad.toolaxis.services.macros import list_of, record
+from freecad.toolaxis.services.messages import line_of
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -118,7 +119,7 @@ class ExportPanel(Panel):
     def _progressed(self, stage, share):
         self.form.progress.setMaximum(1000 if share >= 0 else 0)
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
-        tell(self.form.message, f"{stage[:1].upper()}{stage[1:]}")
+        tell(self.form.message, line_of(stage))
 
     def _done(self, folder, wish, names):
         record(f"freecad.toolaxis.export({list_of(self.operations)}, {str(folder)!r}, freecad.toolaxis.{wish!r})")

@@ -18,6 +18,7 @@ from freecad.toolaxis.gui.widgets.table_entries import data_of, put
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import collisions
 from freecad.toolaxis.services.background import BackgroundWork, sentence
+from freecad.toolaxis.services.messages import list_of, shown
 from PySide import QtCore, QtGui, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -93,8 +94,8 @@ class MachinePanel(Panel):
             spin.setMinimumWidth(50)
             spin.setSizePolicy(QtWidgets.QSizePolicy.Ignored, QtWidgets.QSizePolicy.Fixed)
         self.form.angles.setMinimumWidth(200)
-        for shown, name in available().items():
-            self.form.machine.addItem(shown, name)
+        for title, name in available().items():
+            self.form.machine.addItem(title, name)
         standing = machine_of(self.document)
         if standing is not None:
             self._pick(standing.Machine)
@@ -205,7 +206,7 @@ class MachinePanel(Panel):
         for (row, column), one in self.held.items():
             if one is not None and not self.found[1][row][0][column].reason:
                 text = data_of(self.form.angles, row, column)
-                put(self.form.angles, row, column, f"{text}\n{one.text}", one.text)
+                put(self.form.angles, row, column, f"{text}\n{shown(one.text)}", shown(one.text))
         self.form.angles.resizeRowsToContents()
         tell(self.form.message, *self._verdict())
         self._slide(at)
@@ -219,13 +220,13 @@ class MachinePanel(Panel):
         """What is told above the table: where an operation, or a way between two, meets something."""
         for row, column in self.stations:
             if self.held.get((row, column)) is not None:
-                return f"{self.operations[row].Label}: {self.held[row, column].text}", True
+                return f"{self.operations[row].Label}: {shown(self.held[row, column].text)}", True
         k = next((k for k, one in enumerate(self.met) if one is not None), None)
         if k is None:
             return self.told
         row, other = (self.stations[min(k // collisions.STEPS + j, len(self.stations) - 1)][0] for j in (0, 1))
         return translate("ToolAxis", "On the way from {} to {}: {}").format(
-            self.operations[row].Label, self.operations[other].Label, self.met[k].text), True
+            self.operations[row].Label, self.operations[other].Label, shown(self.met[k].text)), True
 
     def _travel(self, stands):
         """Show the machine on its way through the operations."""
@@ -255,11 +256,11 @@ class MachinePanel(Panel):
             if not ways:
                 put(table, row, 0, translate("ToolAxis", "no position reaches it"))
             for column, way in enumerate(ways):
-                shown = way.text(machine).replace("  ", "\n")
+                angles = way.text(machine).replace("  ", "\n")
                 font = QtGui.QFont(table.font())
                 font.setBold(column == taken)
-                put(table, row, column, shown + (f"\n{way.reason}" if way.reason else ""),
-                    way.reason or way.text(machine), FontRole=font)
+                put(table, row, column, angles + (f"\n{shown(way.reason)}" if way.reason else ""),
+                    shown(way.reason) or way.text(machine), FontRole=font)
         table.horizontalHeader().setSectionResizeMode(QtWidgets.QHeaderView.Stretch)
         table.verticalHeader().setMaximumWidth(_NAMES)
         table.resizeRowsToContents()
@@ -288,9 +289,10 @@ class MachinePanel(Panel):
         if red:
             from toolaxis.machine.setup import in_tenths
 
-            text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(", ".join(sorted(red)), in_tenths(depth))
+            names = ", ".join(map(shown, sorted(red)))
+            text += "\n" + translate("ToolAxis", "{} meet by {} mm").format(names, in_tenths(depth))
         if near is not None:
-            text += f"\n{near.text}"
+            text += f"\n{shown(near.text)}"
         tell(self.form.pointer, text, bool(red) or near is not None)
 
     def _holding(self, row):
@@ -319,7 +321,7 @@ class MachinePanel(Panel):
         self.scene.stand(joints, red | names_of(one), self.form.still.isChecked(), row)
         self.scene.redden(things_of(one, self.document))
         reasons = [text for text in (way.reason, one.text if one is not None else "") if text]
-        tell(self.form.pointer, f"{way.text(mounted.machine)}: {'; '.join(reasons)}", bool(reasons))
+        tell(self.form.pointer, f"{way.text(mounted.machine)}: {list_of(reasons)}", bool(reasons))
 
     def _play(self):
         if self.timer.isActive():

@@ -10,6 +10,7 @@ from freecad.toolaxis.gui.plan.preview import view_of
 from freecad.toolaxis.gui.widgets.fields import tell
 from freecad.toolaxis.services import collisions
 from freecad.toolaxis.services.background import BackgroundWork
+from freecad.toolaxis.services.messages import line_of, shown
 from freecad.toolaxis.services.path_collisions import bumps
 
 translate = FreeCAD.Qt.translate
@@ -84,17 +85,17 @@ class Collisions:
 
     def _words(self, here):
         if here is not None:
-            return f"{here.text[:1].upper()}{here.text[1:]}", True
+            return line_of(here.text), True
         if not self.found.found:
             return translate("ToolAxis", "Nothing meets along the passes; looked at: {}").format(
-                ", ".join(self.found.checked)), False
+                ", ".join(map(shown, self.found.checked))), False
         if self.somewhere() is None:
-            return translate("ToolAxis", "Between the passes {}").format(self.found.found[0].text), True
+            return translate("ToolAxis", "Between the passes {}").format(shown(self.found.found[0].text)), True
         first = next(one for one in self.found.found
                      if self.stations.share(one.last) > self.stations.share(one.first - 1))
         there = translate("ToolAxis", "show it")
         return translate("ToolAxis", "Elsewhere on the passes {}: {}").format(
-            first.text, f'<a href="there">{there}</a>'), True
+            shown(first.text), f'<a href="there">{there}</a>'), True
 
     def _looked(self, found):
         self.work, self.found = None, found

@@ -22,6 +22,7 @@ from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.export import plan_task
+from freecad.toolaxis.services.messages import lines_of, list_of, shown
 from freecad.toolaxis.services.pictures import drawn
 from PySide import QtCore, QtWidgets
 
@@ -75,12 +76,12 @@ class OperationPanel(Panel):
     def _fill(self):
         form, operation = self.form, self.operation
         if operation.Stale:
-            reasons = "; ".join(operation.StaleReasons)
+            reasons = list_of(operation.StaleReasons)
             tell(form.message, translate("ToolAxis", "Stale: {}; plan it again").format(reasons), bad=True)
         else:
-            tell(form.message, translate("ToolAxis", "Results hold; verdict: {}").format(operation.Verdict))
+            tell(form.message, translate("ToolAxis", "Results hold; verdict: {}").format(shown(operation.Verdict)))
         fill(form.results, [("", measures(self.found))] if self.found is not None else [])
-        form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in operation.Reasons))
+        form.reasons.setText(lines_of(operation.Reasons))
         passes = child(operation, "Path::Feature") is not None
         form.slide.setEnabled(self.tool is not None and passes)
         if self.tool is not None:

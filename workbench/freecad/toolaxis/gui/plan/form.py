@@ -11,6 +11,7 @@ from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roug
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
+from freecad.toolaxis.services.background import sentence
 from PySide import QtWidgets
 
 from toolaxis.plan.choices import DIRECTIONS, ISO, PASSES
@@ -304,7 +305,7 @@ class PlanForm:
         try:
             check(self.read())
         except (ToolAxisError, ValueError) as reason:
-            return " ".join(str(reason).split()).rstrip(".")
+            return sentence(reason)
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
         return ""
@@ -324,7 +325,7 @@ def _shown(inputs, fastest):
         try:
             look()
         except InvalidInput as reason:
-            reasons[name] = " ".join(str(reason).split()).rstrip(".")
+            reasons[name] = sentence(reason)
     usual = JobInputs()
     return "; ".join(reasons.values()), replace(inputs, **{name: getattr(usual, name) for name in reasons})
 

@@ -9,6 +9,7 @@ from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.orientation_curve import OrientationCurve
 from freecad.toolaxis.gui.plan.outcome import left_to_clean_up
 from freecad.toolaxis.services.background import BackgroundWork
+from freecad.toolaxis.services.messages import shown
 from PySide import QtCore
 
 translate = FreeCAD.Qt.translate
@@ -284,7 +285,7 @@ class AxisView(QtCore.QObject):
     def _trying(self, stage, share):
         names = {"axes": translate("ToolAxis", "screening"), "passes": translate("ToolAxis", "making passes"),
                  "proof": translate("ToolAxis", "checking for gouges and collisions")}
-        self.form.cost.setText(translate("ToolAxis", "Trying this axis: {}...").format(names.get(stage, stage)))
+        self.form.cost.setText(translate("ToolAxis", "Trying this axis: {}...").format(names.get(stage, shown(stage))))
 
     def _tried(self, operation):
         self.work = None

@@ -4,6 +4,7 @@ import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.document.cam_probe import controllers
 from freecad.toolaxis.document.read_shapes import number_in, sculptured
+from freecad.toolaxis.services.messages import shown
 
 translate = FreeCAD.Qt.translate
 
@@ -29,7 +30,7 @@ def selected_faces(document):
             try:
                 faces += _faces(*owner_of(entry.Object, name))
             except ToolAxisError as reason:
-                problems.append(str(reason))
+                problems.append(shown(str(reason)))
     return list(dict.fromkeys(faces)), list(dict.fromkeys(problems))
 
 

@@ -18,6 +18,7 @@ from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.macros import record, thing_of
+from freecad.toolaxis.services.messages import line_of, lines_of
 from freecad.toolaxis.services.write_results import keep_verdict
 from PySide import QtWidgets
 
@@ -87,7 +88,7 @@ class VerifyPanel(Panel):
     def _progressed(self, stage, share):
         self.form.progress.setMaximum(1000 if share >= 0 else 0)
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
-        self._tell(f"{stage[:1].upper()}{stage[1:]}")
+        self._tell(line_of(stage))
 
     def _done(self, found):
         self.work = None
@@ -151,7 +152,7 @@ class VerifyPanel(Panel):
         self.scale.show_scale(form.what.currentText(), limit, what == "remaining")
         self.paint.show(skins[what], what, limit)
         fill(form.results, [("", _measures(verdict))])
-        form.reasons.setText("\n".join(f"{text[:1].upper()}{text[1:]}." for text in verdict.reasons))
+        form.reasons.setText(lines_of(verdict.reasons))
         self.places = verdict.worst_scallop if what == "remaining" else verdict.worst_gouge
         self._list_worst()
 

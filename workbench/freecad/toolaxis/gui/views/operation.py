@@ -3,6 +3,7 @@
 import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.gui.views.view import ResultView
+from freecad.toolaxis.services.messages import list_of
 
 translate = FreeCAD.Qt.translate
 
@@ -20,7 +21,7 @@ class OperationView(ResultView):
         super().updateData(thing, name)
         if name == "Stale" and thing.Stale and not getattr(thing.Document, "Restoring", False):
             text = translate("ToolAxis", "{} is stale: {}. Recompute it.").format(
-                thing.Label, "; ".join(thing.StaleReasons))
+                thing.Label, list_of(thing.StaleReasons))
             FreeCADGui.getMainWindow().statusBar().showMessage(text, _TIME)
 
     def panel(self, thing):

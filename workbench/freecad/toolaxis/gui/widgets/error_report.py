@@ -5,6 +5,7 @@ import re
 
 import FreeCAD
 import FreeCADGui
+from freecad.toolaxis.services.messages import line_of
 from PySide import QtCore, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -40,7 +41,7 @@ def offer_report(message, trace):
     QMessageBox
     """
     text = report_text(message, trace)
-    box = QtWidgets.QMessageBox(QtWidgets.QMessageBox.Warning, "Tool Axis", message[:1].upper() + message[1:],
+    box = QtWidgets.QMessageBox(QtWidgets.QMessageBox.Warning, "Tool Axis", line_of(message),
                                 parent=FreeCADGui.getMainWindow())
     box.setInformativeText(translate("ToolAxis", "The document was not changed. Please report the error with the "
                                                  "copied details and, if you can, the part."))

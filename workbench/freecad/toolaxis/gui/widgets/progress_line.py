@@ -2,6 +2,7 @@
 
 from time import monotonic
 
+from freecad.toolaxis.services.messages import line_of
 from freecad.toolaxis.services.time_left import TimeLeft
 from PySide import QtCore
 
@@ -62,4 +63,4 @@ class ProgressLine:
             return
         stage, share = self.stage
         words = self.remaining.words(stage, share, monotonic())
-        self.tell(f"{stage[:1].upper()}{stage[1:]}" + (f"\n{words}" if words else ""))
+        self.tell(line_of(stage) + (f"\n{words}" if words else ""))
