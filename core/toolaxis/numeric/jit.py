@@ -62,13 +62,14 @@ def jit_fma_inline(function: _Function) -> _Function:
     """Compile a small kernel as `jit_fma` does, and build it into the code of whatever calls it.
 
     Calls that are left cost a reference count for each array that is passed, more than a short sum of products.
+    Python that calls it runs the source.
 
     Parameters
     ----------
     function : callable
         A function on arrays and numbers that numba can compile.
     """
-    return _compile(function, {"contract"}, True)
+    return _compile(function, {"contract"}, inline=True)
 
 
 def jit_inline(function: _Function) -> _Function:
@@ -81,18 +82,75 @@ def jit_inline(function: _Function) -> _Function:
     function : callable
         A function on arrays and numbers that numba can compile.
     """
-    return _compile(function, False, True)
+    return _compile(function, False, inline=True)
 
 
-def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool = False) -> _Function:
+def jit_uncounted(function: _Function) -> _Function:
+    """Compile a kernel as `jit_fma` does, without counting references to arrays.
+
+    Counting costs more than a short sum of products, in time to run and to compile.  The kernel must make no arrays,
+    which numba refuses, and its arrays must be held by the Python code that calls it.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, counted=False)
+
+
+def jit_inner(function: _Function) -> _Function:
+    """Compile a kernel as `jit_uncounted` does that only kernels call, uncounted ones where it returns arrays.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, counted=False, inner=True)
+
+
+def jit_inner_inline(function: _Function) -> _Function:
+    """Compile a small kernel as `jit_inner` does, and build it into the code of whatever calls it.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, inline=True, counted=False)
+
+
+def _compile(function: _Function, fastmath: bool | set[str], *, inline: bool = False, counted: bool = True,
+             inner: bool = False) -> _Function:
     if _numba is None:
         return function
-    options = {"fastmath": fastmath, "forceinline": forceinline}
+    options: dict[str, Any] = {"fastmath": fastmath, "forceinline": inline}
+    if not counted:
+        options["_nrt"] = False
+    if inline or inner:
+        options.update(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     kernel = _numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
     if kernel is not function:  # numba hands the function back when NUMBA_DISABLE_JIT is set
         _stamp(kernel, repr(options))
+        if inline or inner:
+            _hide(kernel)
     result: _Function = kernel
     return result
+
+
+def _hide(kernel: Any) -> None:
+    """Let Python run the source of a kernel that is compiled for other kernels alone.
+
+    An entry for Python unpacks all arguments; to compile it takes as long as a small kernel itself.
+    """
+    def keep(result: Any) -> None:
+        kernel.overloads[tuple(result.signature.args)] = result
+
+    def source(*_: Any, **__: Any) -> Any:
+        return kernel.py_func
+
+    kernel.add_overload, kernel._compile_for_args = keep, source
 
 
 def _stamp(kernel: Any, options: str) -> None:
