@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from width_numpy import half_widths_numpy
+from width_numpy import CurveFamily, StripScene, distance_numpy, half_widths_numpy, place_tips
 
 from toolaxis.contact.frame import axis_from_lean, contact_frame
 from toolaxis.contact.strip import second_order
@@ -123,3 +123,28 @@ def test_newton_and_march_agree_on_rippled_surfaces(name, feed):
                             StripOptions(along, normal_section=False, newton=False))[0]
     wrong = (np.abs(fast - 100 * slow) > 1e-6).sum()
     assert fast.min() >= 0 and wrong <= 1  # the two look at windows of the pass that differ by a node
+
+
+@pytest.mark.parametrize("name", ["torus:12x1", "flat:10", "tapered:6x1x5"])
+def test_the_march_sees_tips_jump_at_a_crease(name):
+    """Two planes that meet at u = 0.5 under an angle, against thousands of positions of the cutter."""
+    rng = np.random.default_rng(len(name))
+    heights = np.array([0.0, 0.0, 40 * np.tan(0.03)])
+    net = np.array([[[x, y, z] for y in (0.0, 60.0)] for x, z in zip((0.0, 40.0, 80.0), heights, strict=True)])
+    face, tool = Face.from_bspline(net, (1, 1)), Tool.parse(name)
+    uv = np.column_stack([rng.uniform(0.47, 0.53, 60), rng.uniform(0.4, 0.6, 60)])
+    axes = face.normal(uv) + 0.25 * rng.normal(size=(60, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    (surface, cutter), (contacts, along) = kernel_inputs(face, tool, 0.02, 0.0), kernel_contacts(uv, "u", 0.02)
+    found = take_half_widths(surface, cutter, contacts, axes[None],
+                             StripOptions(along, normal_section=False, newton=False))[0]
+    scene = StripScene(surface.data, False, cutter)
+    for (u, v), axis, width in zip(uv, axes, found, strict=True):
+        w = np.linspace(-2.5, 2.5, 20001) * tool.radius / 80 + u
+        rows = CurveFamily(0, np.column_stack([w, np.full_like(w, v)]), np.zeros((len(w), 3)), np.zeros((len(w), 3)))
+        tips = place_tips(scene, rows, np.zeros_like(w), np.broadcast_to(axis, (len(w), 3))).point
+        for side, sign in enumerate((-1, 1)):
+            s = v + sign * width[side] * np.array([0.5, 0.98, 1.02])
+            points = face.evaluate(np.column_stack([np.full(3, u), s])).point + 0.02 * face.normal([[u, v]])
+            gaps = [distance_numpy(cutter, axis, point - tips).min() for point in points]
+            assert gaps[0] < 0 and gaps[1] < 0 < gaps[2]

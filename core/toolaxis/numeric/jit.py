@@ -1,7 +1,7 @@
 """Compiling hot kernels with numba where it is installed and works.
 
-Each kernel stands beside a plain numpy twin.  The twin is the oracle in tests, and it is what runs where numba is
-missing or broken; then one notice is given.
+Many kernels stand beside a plain numpy twin, which is their oracle in tests and what runs where numba is missing or
+broken; of others the source runs then.  One notice is given.
 """
 
 import functools

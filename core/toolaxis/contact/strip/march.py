@@ -53,6 +53,9 @@ class PassTips(NamedTuple):
     """Distance of a point to the cutter there."""
     slope: Array
     """Its derivative in w."""
+    first: int
+    last: int
+    """The rows in use."""
 
 
 class SweptDistance(NamedTuple):
@@ -77,7 +80,7 @@ class Bracket(NamedTuple):
 def new_pass_tips() -> PassTips:
     """Memory for the tips along a pass."""
     rows = 2 * _MIDDLE + 1
-    return PassTips(np.empty(rows), np.empty((rows, 6)), np.empty(rows), np.empty(rows))
+    return PassTips(np.empty(rows), np.empty((rows, 6)), np.empty(rows), np.empty(rows), _MIDDLE, _MIDDLE)
 
 
 @jit_inner_inline
@@ -93,8 +96,8 @@ def _length(x: Triple, y: Triple) -> float:
 
 
 @jit_inner
-def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scratch) -> tuple[int, int]:
-    """Tips along the pass close to each other, both on the surface and along their own path; first and last row."""
+def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scratch) -> PassTips:
+    """Tips along the pass close to each other, both on the surface and along their own path."""
     curve, radius = sweep.feed.curve, sweep.cutter.flat + sweep.cutter.corner
     spacing = _SPACING * radius
     low = high = _MIDDLE
@@ -126,12 +129,12 @@ def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scrat
             last_w = w
             w += step
         low, high = min(low, row), max(high, row)
-    return low, high
+    return PassTips(tips.w, tips.tip, tips.gap, tips.slope, low, high)
 
 
 @jit_inner
 def swept_distance(sweep: CutterSweep, axis: Triple, point: Moving, enough: float, tips: PassTips,
-                   rows: tuple[int, int], scratch: Scratch) -> SweptDistance:
+                   scratch: Scratch) -> SweptDistance:
     """The least distance of a moving point to the cutter along the pass.
 
     Each gap between tips is searched in which the distance has a minimum that could be the least, unless a tip is
@@ -139,14 +142,14 @@ def swept_distance(sweep: CutterSweep, axis: Triple, point: Moving, enough: floa
     """
     spacing = _SPACING * (sweep.cutter.flat + sweep.cutter.corner)
     best = SweptDistance(inf, 0.0, 0.0)
-    for k in range(rows[0], rows[1] + 1):
+    for k in range(tips.first, tips.last + 1):
         f = gap_rates(sweep.cutter, axis, point, _tip(tips, k))
         tips.gap[k], tips.slope[k] = f.gap, f.by_w
         if f.gap < best.gap:
             best = SweptDistance(f.gap, tips.w[k], f.by_s)
     if best.gap < enough:
         return best
-    for k in range(rows[0], rows[1]):
+    for k in range(tips.first, tips.last):
         valley = tips.slope[k] < 0.0 <= tips.slope[k + 1]
         if valley and min(tips.gap[k], tips.gap[k + 1]) - spacing <= best.gap:
             found = _least_between(sweep, axis, point, tips, k, scratch)
@@ -208,8 +211,7 @@ def _least_between(sweep: CutterSweep, axis: Triple, point: Moving, tips: PassTi
 
 
 @jit_inner
-def _find_zero(sweep: CutterSweep, axis: Triple, bracket: Bracket, tips: PassTips, rows: tuple[int, int],
-               scratch: Scratch) -> float:
+def _find_zero(sweep: CutterSweep, axis: Triple, bracket: Bracket, tips: PassTips, scratch: Scratch) -> float:
     """The zero of m between a covered and an uncovered s.
 
     Newton's method while it gains, with steps that close the bracket; where m has kinks the Illinois method goes on,
@@ -230,7 +232,7 @@ def _find_zero(sweep: CutterSweep, axis: Triple, bracket: Bracket, tips: PassTip
             ahead = 0.5 * (inside + outside)
         s = ahead
         point = offset_point(curve_point(sweep.surface, sweep.cross.curve, s, scratch), sweep.lift)
-        found = swept_distance(sweep, axis, point, -inf, tips, rows, scratch)
+        found = swept_distance(sweep, axis, point, -inf, tips, scratch)
         m, slope = found.gap, found.by_s
         if m < 0.0:
             inside, low, high = s, m, 0.5 * high
@@ -274,10 +276,10 @@ def exit_by_marching(sweep: CutterSweep, axis: Triple, stride: float, tips: Pass
     """
     surface, cross = sweep.surface, sweep.cross.curve
     radius = sweep.cutter.flat + sweep.cutter.corner
-    rows = sample_pass(sweep, axis, tips, scratch)
+    tips = sample_pass(sweep, axis, tips, scratch)
     here = curve_point(surface, cross, 0.0, scratch)
     pace = sqrt(dot(here.tangent, here.tangent))
-    low = swept_distance(sweep, axis, offset_point(here, sweep.lift), 0.0, tips, rows, scratch).gap
+    low = swept_distance(sweep, axis, offset_point(here, sweep.lift), 0.0, tips, scratch).gap
     s = walked = 0.0
     steps = 0
     while pace > 1e-300:
@@ -291,10 +293,10 @@ def exit_by_marching(sweep: CutterSweep, axis: Triple, stride: float, tips: Pass
             ahead = pole + _BEFORE * (s - pole)
             there = curve_point(surface, cross, ahead, scratch)
         speed = sqrt(dot(there.tangent, there.tangent))
-        found = swept_distance(sweep, axis, offset_point(there, sweep.lift), 0.0, tips, rows, scratch)
+        found = swept_distance(sweep, axis, offset_point(there, sweep.lift), 0.0, tips, scratch)
         if found.gap >= 0.0:
             bracket = Bracket(s, low, ahead, found.gap, found.by_s, 5e-11 * radius / speed)
-            return _find_zero(sweep, axis, bracket, tips, rows, scratch), steps
+            return _find_zero(sweep, axis, bracket, tips, scratch), steps
         if not isnan(pole):
             return pole, steps
         piece = _length(here.point, there.point)
