@@ -72,8 +72,9 @@ class Numpy:
 def counted(values: Any) -> Any:
     """Arrays and tuples with counted numbers; whole numbers stay."""
     if isinstance(values, tuple):
-        return tuple(counted(value) for value in values)
-    if isinstance(values, np.ndarray):
+        parts = [counted(value) for value in values]
+        return type(values)(*parts) if hasattr(values, "_fields") else tuple(parts)
+    if isinstance(values, np.ndarray) and values.dtype == float:
         return np.frompyfunc(Counted, 1, 1)(values)
     return Counted(values) if isinstance(values, float) else values
 

@@ -13,17 +13,16 @@ from benchmarks._count import operations
 from benchmarks._peak import peaks
 
 from toolaxis.contact.strip import second_order
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
-from toolaxis.contact.strip.half_widths import step_half_widths
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
+from toolaxis.contact.strip.half_widths import StripOptions, half_widths, new_workspace
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy, second_order_many_axes
 from toolaxis.contact.strip.width import (
-    _check_inputs,
-    contact_rows,
+    kernel_contacts,
+    kernel_inputs,
     step_widths,
     step_widths_many_axes,
     strip_width,
 )
-from toolaxis.contact.strip.width_numpy import half_widths_numpy
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -62,9 +61,7 @@ def rows() -> list[tuple[str, str, float, float]]:
     for name in ("torus:12x1", "ball:12", "flat:12"):
         tool = Tool.parse(name)
         few = uv[:100]
-        cutter, out = cutter_numbers(tool, SCALLOP, 0.0), np.empty((len(axes), len(few)))
-        geometry, sizes = _check_inputs(face, tool, SCALLOP, 0.0)
-        contacts, same = contact_rows(few, "u", False), np.repeat(axis, len(few), axis=0)
+        cutter, out = cutter_parameters(tool, SCALLOP, 0.0), np.empty((len(axes), len(few)))
         forms = contact_forms(face, few, "u", True)
         calls: list[tuple[str, int, Callable[[], object]]] = [
             ("second-order screen, 200 axes", 2 * out.size,
@@ -73,8 +70,6 @@ def rows() -> list[tuple[str, str, float, float]]:
             ("exact, step parameter, 200 axes", 2 * out.size,
              lambda t=tool, p=few: step_widths_many_axes(face, t, p, axes, SCALLOP)),
             ("exact, step parameter, one axis", 2 * len(uv), lambda t=tool: step_widths(face, t, uv, axis, SCALLOP)),
-            ("  its numpy twin", 2 * len(few),
-             lambda g=geometry, c=contacts, a=same, s=sizes: half_widths_numpy(g, c, a, s)),
             ("exact, mm in the normal section", 2 * len(uv), lambda t=tool: strip_width(face, t, uv, axis, SCALLOP))]
         for work, count, call in calls:
             spent = seconds(call)
@@ -85,14 +80,15 @@ def rows() -> list[tuple[str, str, float, float]]:
 def jobs() -> dict[str, tuple[Callable[..., None], tuple[Any, ...], np.ndarray]]:
     """Kernels with what they take and where they write, 200 axes at 5 contacts; their operations are counted too."""
     face, tool, axes = patch(), Tool.parse("torus:12x1"), cone(200, 0.35, 0.7)
-    uv, cutter = np.random.default_rng(3).uniform(0.1, 0.9, (5, 2)), cutter_numbers(tool, SCALLOP, 0.0)
-    geometry, sizes = _check_inputs(face, tool, SCALLOP, 0.0)
+    uv, cutter = np.random.default_rng(3).uniform(0.1, 0.9, (5, 2)), cutter_parameters(tool, SCALLOP, 0.0)
+    contacts, along = kernel_contacts(uv, "u", SCALLOP)
     points, nodes, _ = _section.sections(face, uv, cutter, SCALLOP)
     pairs = np.empty((len(axes), len(uv), 2))
     return {
         "screen": (second_order._screen, (contact_forms(face, uv, "u", True), axes, cutter, SCALLOP),
                    np.empty((len(axes), len(uv)))),
-        "exact": (step_half_widths, (geometry, contact_rows(uv, "u", False), axes[:, None].copy(), sizes), pairs),
+        "exact": (half_widths, (*kernel_inputs(face, tool, SCALLOP, 0.0), contacts, axes[:, None].copy(),
+                                StripOptions(along, normal_section=False), new_workspace(len(axes))), pairs),
         "64 points": (_section.widths, (points, nodes, _section.frames(axes), (cutter, SCALLOP)), pairs.copy())}
 
 

@@ -1,4 +1,4 @@
-"""What tests of contacts share lies beside them, in `dense.py`."""
+"""What tests of contacts share lies beside them, in `dense.py` and `width_numpy.py`."""
 
 import sys
 from pathlib import Path

@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis.contact.frame import axis_from_lean, contact_frame
 from toolaxis.contact.placement import place
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
 from toolaxis.contact.strip.second_order import contact_forms, relative_forms
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
@@ -72,7 +72,7 @@ def test_small_heights_follow_the_curvature_across_the_feed() -> None:
     forms = contact_forms(face, uv, "u", False)
     frame = contact_frame(face, uv, "u")
     parts = (axis * frame.feed).sum(1), (axis * frame.left).sum(1)
-    kk = relative_forms(forms, parts, cutter_numbers(TOOL, 0.1, 0.0))[2]
+    kk = relative_forms(forms, parts, cutter_parameters(TOOL, 0.1, 0.0))[2]
     error = [np.abs(section_width(face, TOOL, uv, axis, h, "u").sum(1) / (2 * np.sqrt(2 * h / kk)) - 1).max()
              for h in (4e-3, 1e-3)]
     assert error[1] < 2e-3 and error[1] < error[0] / 2.5

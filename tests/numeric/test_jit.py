@@ -53,6 +53,46 @@ assert "numba" not in sys.modules
     run(script, tmp_path, TOOLAXIS_NUMBA="0")
 
 
+def test_uncounted_kernels_hold_no_arrays_and_hand_them_to_one_another(tmp_path: Path) -> None:
+    (tmp_path / "inner.py").write_text("""
+import sys
+from typing import NamedTuple
+import numpy as np
+from toolaxis.numeric import jit
+
+class Pair(NamedTuple):
+    first: np.ndarray
+    second: np.ndarray
+
+@jit.jit_uncounted_inline
+def share(pair, k):
+    return pair.first[k] / pair.second[k]
+
+@jit.jit_uncounted
+def swap(pair):
+    return Pair(pair.second, pair.first)
+
+@jit.jit_uncounted
+def kernel(pair, out):
+    other = swap(pair)
+    for k in range(len(out)):
+        out[k] = share(other, k)
+""")
+    script = """
+from inner import *
+compiled = jit.compilations()
+pair, out = Pair(np.array([1.0, 2.0]), np.array([3.0, 5.0])), np.empty(2)
+before = [sys.getrefcount(array) for array in (*pair, out)]
+for _ in range(1000):
+    kernel(pair, out)
+assert [sys.getrefcount(array) for array in (*pair, out)] == before
+assert out.tolist() == [3.0, 2.5]
+print(compiled())
+"""
+    assert int(run(script, tmp_path)) == 3
+    assert int(run(script, tmp_path)) == 0
+
+
 def test_a_broken_numba_gives_one_notice(tmp_path: Path) -> None:
     (tmp_path / "numba.py").write_text("raise SystemError('made for another numpy')")
     path = os.pathsep.join([str(tmp_path), str(CORE)])

@@ -6,7 +6,7 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.contact.placement import place
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
 from toolaxis.contact.strip.swept_volume_moving_axis import _least_numpy, least_distance_to_positions
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.chord_tolerance import follow
@@ -62,7 +62,7 @@ def test_kernel_and_twin_agree_and_never_lie_above_the_positions() -> None:
     tips = np.cumsum(rng.uniform(0.2, 0.4, (5, 20, 3)), axis=1)
     axes = UP + 0.2 * np.cumsum(rng.uniform(0, 0.1, (5, 20, 3)), axis=1)
     axes /= np.linalg.norm(axes, axis=2, keepdims=True)
-    points, numbers = tips[:, ::4] + rng.normal(size=(5, 5, 3)), cutter_numbers(TORUS, H, 0.0)
+    points, numbers = tips[:, ::4] + rng.normal(size=(5, 5, 3)), cutter_parameters(TORUS, H, 0.0)
     found = least_distance_to_positions(numbers, points, tips, axes)
     assert np.allclose(found, _least_numpy(numbers, points, tips, axes), atol=1e-12)
     apart = points[:, :, None] - tips[:, None]

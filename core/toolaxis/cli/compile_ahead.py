@@ -12,7 +12,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.strip.half_widths import step_half_widths
+from toolaxis.contact.strip.half_widths import half_widths
 from toolaxis.numeric.jit import is_kept
 
 #: Control points along either edge of the small face that is planned, the length of the edge, and the scallop, mm.
@@ -29,7 +29,7 @@ def count_cores() -> int:
 @contextmanager
 def compiling_ahead() -> Iterator[None]:
     """While it is entered, a second process compiles what is not on disk yet; it ends with it at the latest."""
-    if count_cores() < 2 or is_kept(step_half_widths):
+    if count_cores() < 2 or is_kept(half_widths):
         yield
         return
     other = subprocess.Popen([sys.executable, "-m", __name__], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,

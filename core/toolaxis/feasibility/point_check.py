@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.strip.cutter_parameters import CutterParameters, parameters_of_tool
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit
@@ -13,15 +14,15 @@ Array = NDArray[np.float64]
 
 
 @jit
-def _deepest(cutter: Array, axis: Array, tips: Array, points: Array) -> float:
+def _deepest(cutter: CutterParameters, axis: Array, tips: Array, points: Array) -> float:
     """Least signed distance of points to the cutter at any of the tips, mm."""
-    reach = cutter[4] ** 2 + (cutter[0] + cutter[1] + cutter[4] * cutter[3] / cutter[2]) ** 2
-    best = np.inf
+    reach = cutter.top**2 + (cutter.flat + cutter.corner + cutter.top * cutter.sin / cutter.cos) ** 2
+    best, unit = np.inf, (axis[0], axis[1], axis[2])
     for k in range(tips.shape[0]):
         for i in range(points.shape[0]):
             x, y, z = points[i, 0] - tips[k, 0], points[i, 1] - tips[k, 1], points[i, 2] - tips[k, 2]
             if x * x + y * y + z * z < reach:
-                best = min(best, signed_distance(cutter, axis, x, y, z))
+                best = min(best, signed_distance(cutter, unit, (x, y, z)))
     return best
 
 
@@ -54,7 +55,6 @@ def deepest(tool: Tool, axis: Array, tips: Array, points: Array) -> float:
     """
     if not _compiled.available:
         return deepest_numpy(tool, axis, tips, points)
-    numbers = np.array([tool.flat_radius, tool.corner_radius, np.cos(tool.half_angle), np.sin(tool.half_angle),
-                        tool.flute_length, tool.corner_radius])
-    found = _deepest(numbers, np.ascontiguousarray(axis), np.ascontiguousarray(tips), np.ascontiguousarray(points))
+    rows = (np.ascontiguousarray(part) for part in (axis, tips, points))
+    found = _deepest(parameters_of_tool(tool), *rows)
     return float(max(-found, 0.0))

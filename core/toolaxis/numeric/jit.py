@@ -1,7 +1,7 @@
 """Compiling hot kernels with numba where it is installed and works.
 
-Each kernel stands beside a plain numpy twin.  The twin is the oracle in tests, and it is what runs where numba is
-missing or broken; then one notice is given.
+Many kernels stand beside a plain numpy twin, which is their oracle in tests and what runs where numba is missing or
+broken; of others the source runs then.  One notice is given.
 """
 
 import functools
@@ -62,13 +62,14 @@ def jit_fma_inline(function: _Function) -> _Function:
     """Compile a small kernel as `jit_fma` does, and build it into the code of whatever calls it.
 
     Calls that are left cost a reference count for each array that is passed, more than a short sum of products.
+    Python that calls it runs the source.
 
     Parameters
     ----------
     function : callable
         A function on arrays and numbers that numba can compile.
     """
-    return _compile(function, {"contract"}, True)
+    return _compile(function, {"contract"}, inline=True)
 
 
 def jit_inline(function: _Function) -> _Function:
@@ -81,7 +82,33 @@ def jit_inline(function: _Function) -> _Function:
     function : callable
         A function on arrays and numbers that numba can compile.
     """
-    return _compile(function, False, True)
+    return _compile(function, False, inline=True)
+
+
+def jit_uncounted(function: _Function) -> _Function:
+    """Compile a kernel as `jit_fma` does, without counting references to arrays.
+
+    Counting costs more than a short sum of products, in time to run and to compile.  The kernel must make no arrays,
+    which numba refuses, and its arrays must be held by the Python code that calls it; one that returns arrays may be
+    called by uncounted kernels only.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, counted=False)
+
+
+def jit_uncounted_inline(function: _Function) -> _Function:
+    """Compile a small kernel as `jit_uncounted` does, and build it into the code of whatever calls it.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, {"contract"}, inline=True, counted=False)
 
 
 def _kernel_class() -> Any:
@@ -93,13 +120,16 @@ def _kernel_class() -> Any:
     return Kernel if can_build_in() else None
 
 
-def _compile(function: _Function, fastmath: bool | set[str], forceinline: bool = False) -> _Function:
+def _compile(function: _Function, fastmath: bool | set[str], *, inline: bool = False,
+             counted: bool = True) -> _Function:
     if _numba is None or _numba.config.DISABLE_JIT:
         return function
-    options = {"nogil": True, "error_model": "numpy", "fastmath": fastmath, "forceinline": forceinline}
+    kind = _kernel_class()
+    options = {"nogil": True, "error_model": "numpy", "fastmath": fastmath, "forceinline": inline}
+    if kind is not None and not counted:  # by itself one that returns arrays needs them counted
+        options["_nrt"] = False
     own, stamp = _digest_of(function.__code__.co_filename), _stamp_of(function, repr(options))
     keep = functools.partial(_stamp, stamp if own else None)
-    kind = _kernel_class()
     if kind is not None:
         kernel = kind(function, options, keep)
     else:

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.strip.second_order import compliance, contact_forms, screen_numpy
+from toolaxis.contact.strip.cutter_parameters import CutterParameters
+from toolaxis.contact.strip.second_order import axis_in_frame, compliance, contact_forms, screen_numpy
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
@@ -152,7 +153,7 @@ class Estimator:
                (self._cutter(), self.scallop), passes, length)
         return passes, length
 
-    def _cutter(self) -> Array:
+    def _cutter(self) -> CutterParameters:
         return screening_cutter(self.tool, self.scallop, self.allowance)
 
     def _widths(self, axes: Array, feed: str, places: Array) -> Array:
@@ -254,30 +255,29 @@ def _gauss(edges: Array) -> tuple[Array, Array]:
 
 
 @jit
-def _tip(form: Array, point: Array, cutter: Array, axis: Array, out: Array) -> None:
+def _tip(form: Array, point: Array, cutter: CutterParameters, axis: Array, out: Array) -> None:
     """Tool tip, less the constant shift along the axis."""
     nt = form[6] * axis[0] + form[7] * axis[1] + form[8] * axis[2]
     across = np.sqrt(max(1.0 - nt * nt, 0.0))
-    pull = cutter[0] / across if across > 1e-12 else 0.0
+    pull = cutter.flat / across if across > 1e-12 else 0.0
     for c in range(3):
-        out[c] = point[c] + cutter[5] * form[6 + c] + pull * (form[6 + c] - nt * axis[c])
+        out[c] = point[c] + cutter.offset * form[6 + c] + pull * (form[6 + c] - nt * axis[c])
 
 
 @jit
-def _square(form: Array, axis: Array, cutter: Array, leans: Array) -> float:
+def _square(form: Array, axis: Array, cutter: CutterParameters, leans: Array) -> float:
     """Square of the strip width in the step parameter over 8 h: second-order, corrected for the lean."""
-    rest, _, free = compliance((form[9], form[10], form[11]), form[:9].reshape((3, 3)), cutter, axis)
+    lean = axis_in_frame(form, axis)
+    rest, _, free = compliance((form[9], form[10], form[11]), cutter, lean)
     if not free:
         return 0.0
-    along = form[0] * axis[0] + form[1] * axis[1] + form[2] * axis[2]
-    across = form[3] * axis[0] + form[4] * axis[1] + form[5] * axis[2]
-    ratio = lean_ratio(leans, along, across) / form[12]
+    ratio = lean_ratio(leans, lean[0], lean[1]) / form[12]
     return float(rest * ratio * ratio)
 
 
 @jit
-def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float], passes: Array,
-              length: Array) -> None:
+def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[CutterParameters, float],
+              passes: Array, length: Array) -> None:
     """Passes and length of each axis: sums over rows of weight over the narrowest strip."""
     forms, points, start, joined, weight, owner = table
     cutter, scallop = sizes
@@ -306,8 +306,8 @@ def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, si
         length[i] = path
 
 
-def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[Array, float],
-                   passes: Array, length: Array) -> None:
+def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Array,
+                   sizes: tuple[CutterParameters, float], passes: Array, length: Array) -> None:
     """The plain twin of the summing kernel, written on whole arrays.
 
     Parameters
@@ -335,8 +335,8 @@ def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Arra
         width = np.sqrt(np.minimum.reduceat(_with_vertices(width**2, joined), start[full]))
         nt = normal @ axis
         across = np.sqrt(np.maximum(1 - nt**2, 0.0))
-        pull = np.where(across > 1e-12, cutter[0] / np.where(across > 1e-12, across, 1.0), 0.0)
-        tip = points + cutter[5] * normal + pull[:, None] * (normal - nt[:, None] * axis)
+        pull = np.where(across > 1e-12, cutter.flat / np.where(across > 1e-12, across, 1.0), 0.0)
+        tip = points + cutter.offset * normal + pull[:, None] * (normal - nt[:, None] * axis)
         step = np.append(0.0, np.linalg.norm(np.diff(tip, axis=0), axis=1)) * joined
         rate = weight[full] * np.where(width > 0, 1 / np.where(width > 0, width, 1.0), np.inf)
         passes[i] = rate.sum()

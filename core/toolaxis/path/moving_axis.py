@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.frame import Frame, axis_from_lead_tilt, contact_frame, frame_from_normal
 from toolaxis.contact.placement import tips
-from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters, cutter_parameters
 from toolaxis.contact.strip.swept_volume_moving_axis import least_distance_to_positions
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.path.parametrization import Cut, IsoChart
@@ -120,18 +120,18 @@ class MovingChart(IsoChart):
         uv = self.uv(along, step)
         frozen = step_widths(self.face, cut.tool, uv, cut.axes(self.face, uv), cut.scallop, self.feed, cut.allowance)
         positions = self._positions(cut, along, step)
-        numbers = cutter_numbers(cut.tool, cut.scallop, cut.allowance)
+        cutter = cutter_parameters(cut.tool, cut.scallop, cut.allowance)
         cap = CAP * cut.tool.radius / np.maximum(self._pace(along, step), 1e-9)
         out = np.empty_like(frozen)
         for side in (0, 1):
             sense = 2 * side - 1
             low, high = (np.minimum(share * frozen[:, side], cap) for share in _NEAR)
-            early = self._off(cut, numbers, (along, (step + sense * low)[None]), positions)[:, 0] > 0
+            early = self._off(cut, cutter, (along, (step + sense * low)[None]), positions)[:, 0] > 0
             low, high = np.where(early, 0.0, low), np.where(early, low, high)
             for _ in range(_ROUNDS):
                 share = np.linspace(0.0, 1.0, _PLACES + 1)[1:]
                 places = low[:, None] + (high - low)[:, None] * share
-                free = self._off(cut, numbers, (along, step + sense * places.T), positions) > 0
+                free = self._off(cut, cutter, (along, step + sense * places.T), positions) > 0
                 first = np.where(free.any(axis=1), np.argmax(free, axis=1), _PLACES - 1)
                 gap = (high - low) / _PLACES
                 low, high = low + gap * first, low + gap * (first + 1)
@@ -162,13 +162,14 @@ class MovingChart(IsoChart):
         shape = (len(along), len(t), 3)
         return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
 
-    def _off(self, cut: Cut, numbers: Array, at: tuple[Array, Array], positions: tuple[Array, Array]) -> Array:
+    def _off(self, cut: Cut, cutter: CutterParameters, at: tuple[Array, Array],
+             positions: tuple[Array, Array]) -> Array:
         """Distance to the passing cutter at scallop height over places (m, n) beside each contact, (n, m) mm."""
         along, steps = at
         uv = self.uv(np.repeat(along, len(steps)), steps.T.ravel())
         d, normal = self._seen(uv)
         points = d.point + (cut.scallop + cut.allowance) * normal
-        return least_distance_to_positions(numbers, points.reshape(len(along), len(steps), 3), *positions)
+        return least_distance_to_positions(cutter, points.reshape(len(along), len(steps), 3), *positions)
 
     def _seen(self, uv: Array) -> tuple[Derivatives, Array]:
         """Derivatives and normals at parameters."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placement import tips
+from toolaxis.contact.strip.cutter_parameters import CutterParameters
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
@@ -85,7 +86,7 @@ class Cut:
         return self.axis
 
     @cached_property
-    def numbers(self) -> Array:
+    def numbers(self) -> CutterParameters:
         """Sizes of the cutter as screening takes them."""
         return screening_cutter(self.tool, self.scallop, self.allowance)
 

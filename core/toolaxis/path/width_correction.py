@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.numeric.jit import jit
 from toolaxis.shape.face import Face
@@ -22,8 +22,8 @@ _LEAST, _MOST = 1e-3, 0.99999
 _BLUNT = 2.0
 
 
-def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> Array:
-    """The cutter's numbers with a corner radius of two scallop heights at least.
+def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> CutterParameters:
+    """The cutter with a corner radius of two scallop heights at least.
 
     To the second order a sharp corner that leans across the feed leaves no strip at all; a slightly blunt one keeps
     the ratio to the exact width within bounds.
@@ -36,12 +36,10 @@ def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> Arra
 
     Returns
     -------
-    (6,) array as of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`
+    CutterParameters
     """
-    numbers = cutter_numbers(tool, scallop, allowance)
     corner = max(tool.corner_radius, min(_BLUNT * scallop, tool.radius))
-    numbers[:2] = tool.radius - corner, corner
-    return numbers
+    return cutter_parameters(tool, scallop, allowance)._replace(flat=tool.radius - corner, corner=corner)
 
 
 def lean_table(tool: Tool, scallop: float) -> Array:

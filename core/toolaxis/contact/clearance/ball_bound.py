@@ -11,8 +11,9 @@ of the two parameters; where it is convex its least value bounds it from below.
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.local_frame import Bend, Frame, Piece, Triple, cross, dot, look, plus
+from toolaxis.contact.clearance.local_frame import Bend, Frame, Piece, look
 from toolaxis.numeric.jit import jit_fma_inline
+from toolaxis.numeric.triples import Triple, cross, dot, plus
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.cell_bounds import bound_over_cell, bound_over_region
-from toolaxis.contact.clearance.local_frame import Bend, Triple, dot, look, row
+from toolaxis.contact.clearance.local_frame import Bend, look, row
 from toolaxis.contact.clearance.relief import Relief, relieve_bounds
 from toolaxis.contact.clearance.trimmed_cells import trim_cell
 from toolaxis.numeric.bspline import surface_derivatives
 from toolaxis.numeric.jit import borrowed, jit, jit_fma_inline
+from toolaxis.numeric.triples import Triple, dot
 from toolaxis.shape.bounding.bounding_tree import ForestData
 from toolaxis.tools.solid import piece_distance
 

@@ -12,20 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.ball_bound import enclosing_gap
-from toolaxis.contact.clearance.local_frame import (
-    Bend,
-    Frame,
-    Piece,
-    Steps,
-    Triple,
-    View,
-    cross,
-    dot,
-    look,
-    slopes_along,
-    spread,
-)
+from toolaxis.contact.clearance.local_frame import Bend, Frame, Piece, Steps, View, look, slopes_along, spread
 from toolaxis.numeric.jit import jit_fma_inline
+from toolaxis.numeric.triples import Triple, cross, dot
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]

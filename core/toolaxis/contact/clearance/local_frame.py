@@ -1,4 +1,4 @@
-"""A cell seen from a tool: vectors of three numbers, and where points stand to the axis.
+"""A cell seen from a tool: where its points stand to the axis.
 
 Vectors are tuples of numbers here: they stay in registers.
 """
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.jit import jit_fma_inline
+from toolaxis.numeric.triples import Triple, cross, dot
 
 Array = NDArray[np.float64]
-Triple: TypeAlias = tuple[float, float, float]
 # q from the tip; the axis; a; b; c
 Frame: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple]
 # A, B, C: the cell's second-order form; how far the cell is from it at most
@@ -21,24 +21,6 @@ View: TypeAlias = tuple[float, float, float, Triple]
 # of a, b and c each: the parts outwards, along the axis and around it
 Steps: TypeAlias = tuple[Triple, Triple, Triple]
 Piece: TypeAlias = tuple[float, float, float, float, float, float, float]
-
-
-@jit_fma_inline
-def dot(x: Triple, y: Triple) -> float:
-    """Scalar product."""
-    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-
-
-@jit_fma_inline
-def cross(x: Triple, y: Triple) -> Triple:
-    """Vector product."""
-    return x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]
-
-
-@jit_fma_inline
-def plus(x: Triple, y: Triple, share: float) -> Triple:
-    """x + share y."""
-    return x[0] + share * y[0], x[1] + share * y[1], x[2] + share * y[2]
 
 
 @jit_fma_inline

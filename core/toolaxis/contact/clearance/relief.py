@@ -10,8 +10,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.contact.clearance.local_frame import Triple
 from toolaxis.numeric.jit import jit_fma_inline
+from toolaxis.numeric.triples import Triple
 from toolaxis.shape.seams import GREATEST, REACH
 
 Array = NDArray[np.float64]

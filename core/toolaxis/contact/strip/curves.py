@@ -1,242 +1,211 @@
-"""Curves on a surface, with the normal and its rate along them: iso-curves and plane sections.
+"""Curves on a surface through a contact: iso-curves and plane sections, with the normal along them.
 
-A curve is ``(kind, fixed, plane, nodes, built)``: on an iso-curve `fixed` is the parameter that does not vary; a plane
-section runs through node 0 in the plane with unit normal `plane`, and is parametrised piece by piece by the progress
-along the tangent of the nearest node on the side of the start, which is its arc length to the second order.
+The parameter w of a curve is 0 at the contact.  On an iso-curve it is the change of u or v.  A plane section is
+parametrised piece by piece by the progress along the tangent of the nearest node on the side of the contact, which is
+its arc length to the second order; nodes are found one after the other as they are needed.
 """
 
 from math import sqrt
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import jit, jit_fma_inline
+from toolaxis.numeric.bspline import WORK_SHAPE, SurfaceData, surface_derivatives
+from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
+from toolaxis.numeric.triples import Triple, combine, cross, dot, plus
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Nodes: TypeAlias = tuple[Array, Ints]
-Curve: TypeAlias = tuple[int, float, Array, Array, Ints]
-Scratch: TypeAlias = tuple[Array, Array, Array, Array]
 
-# place = (u, v, du/dw, dv/dw); scratch = derivatives (6, 3), basis (6, 26), normal and its rates (3, 3), place (4,)
 ALONG_U, ALONG_V, SECTION = 0, 1, 2
-NODES = 128
+#: Most nodes of a plane section on either side of the contact.
+_NODES = 128
+#: Share of the square of the longer derivative below which the two are taken as parallel.
+_PARALLEL = 1e-10
 
 
-@jit_fma_inline
-def normal_rates(d: Array, sign: float, rates: Array) -> None:
-    """Unit normal and its derivatives in u and v into rates (3, 3), from the six derivatives d (6, 3)."""
-    a0, a1, a2, b0, b1, b2 = d[1, 0], d[1, 1], d[1, 2], d[2, 0], d[2, 1], d[2, 2]
-    m0, m1, m2 = d[4, 0], d[4, 1], d[4, 2]
-    n0, n1, n2 = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
-    size = sqrt(n0 * n0 + n1 * n1 + n2 * n2)
-    uu, vv = a0 * a0 + a1 * a1 + a2 * a2, b0 * b0 + b1 * b1 + b2 * b2
-    if size <= 1e-10 * max(uu, vv):
-        _limit_normal(d, uu < vv, sign, rates)
-        return
-    share = sign / size
-    n0, n1, n2 = n0 * share, n1 * share, n2 * share
-    rates[0, 0], rates[0, 1], rates[0, 2] = n0, n1, n2
-    for row in range(1, 3):
-        if row == 1:
-            p0, p1, p2, q0, q1, q2 = d[3, 0], d[3, 1], d[3, 2], m0, m1, m2
-        else:
-            p0, p1, p2, q0, q1, q2 = m0, m1, m2, d[5, 0], d[5, 1], d[5, 2]
-        r0 = share * (p1 * b2 - p2 * b1 + a1 * q2 - a2 * q1)
-        r1 = share * (p2 * b0 - p0 * b2 + a2 * q0 - a0 * q2)
-        r2 = share * (p0 * b1 - p1 * b0 + a0 * q1 - a1 * q0)
-        along = n0 * r0 + n1 * r1 + n2 * r2
-        rates[row, 0], rates[row, 1], rates[row, 2] = r0 - along * n0, r1 - along * n1, r2 - along * n2
+class Scratch(NamedTuple):
+    """Working memory of `surface_derivatives`: the six vectors (6, 3), and its own (6, 26)."""
+
+    vectors: Array
+    basis: Array
 
 
-@jit
-def _limit_normal(d: Array, su_small: bool, sign: float, rates: Array) -> None:
-    """The normal next to a point where Su x Sv vanishes; its rates are taken as zero."""
-    p, q = (d[4], d[2]) if su_small else (d[1], d[4])
-    size = 0.0
-    for c in range(3):
-        a, b = (c + 1) % 3, (c + 2) % 3
-        rates[0, c] = sign * (p[a] * q[b] - p[b] * q[a])
-        size += rates[0, c] ** 2
-    size = sqrt(size)
-    for c in range(3):
-        rates[0, c] = rates[0, c] / size if size > 0.0 else 0.0
-        rates[1, c] = 0.0
-        rates[2, c] = 0.0
+class SectionNodes(NamedTuple):
+    """Nodes of a plane section, a row each, the contact in the middle."""
+
+    parameters: Array
+    """u, v and their rates along the tangent, 1/mm."""
+    points: Array
+    """Point and unit tangent."""
+    found: Ints
+    """Number of nodes found towards lower and towards higher w."""
 
 
-@jit_fma_inline
-def curve_point(side: tuple[SurfaceData, float], curve: Curve, w: float, state: Array, scratch: Scratch) -> None:
-    """Point, tangent, normal and its rate at parameter w of a curve.
+class OrientedSurface(NamedTuple):
+    """A surface, and the sign of its normal: 1, or -1 where the face is flipped."""
 
-    Parameters
-    ----------
-    side : (surface, sign)
-        The sign is 1, or -1 where the face is flipped.
-    curve : tuple
-    w : float
-    state : (4, 3) array
-        Receives S, dS/dw, n, dn/dw.
-    scratch : tuple
-        From `new_scratch`.
-    """
-    surface, sign = side
-    d, basis, rates, place = scratch
-    if curve[0] == ALONG_U:
-        place[0], place[1], place[2], place[3] = w, curve[1], 1.0, 0.0
-        surface_derivatives(surface, w, curve[1], d, basis)
-    elif curve[0] == ALONG_V:
-        place[0], place[1], place[2], place[3] = curve[1], w, 0.0, 1.0
-        surface_derivatives(surface, curve[1], w, d, basis)
-    else:
-        _section_point(surface, curve, w, scratch)
-    normal_rates(d, sign, rates)
-    du, dv = place[2], place[3]
-    for c in range(3):
-        state[0, c] = d[0, c]
-        state[1, c] = du * d[1, c] + dv * d[2, c]
-        state[2, c] = rates[0, c]
-        state[3, c] = du * rates[1, c] + dv * rates[2, c]
+    data: SurfaceData
+    sign: float
 
 
-@jit
+class SurfaceCurve(NamedTuple):
+    """An iso-curve through (u, v), or the section there by a plane with unit normal `plane`."""
+
+    kind: int
+    u: float
+    v: float
+    plane: Triple
+    spacing: float
+    """Length between the nodes of a section, mm."""
+    nodes: SectionNodes
+
+
+class CurvePoint(NamedTuple):
+    """A point of the surface, and the unit normal there, with their rates along a curve."""
+
+    point: Triple
+    tangent: Triple
+    normal: Triple
+    turn: Triple
+
+
+class Moving(NamedTuple):
+    """A point, and its rate in the parameter that moves it."""
+
+    point: Triple
+    rate: Triple
+
+
 def new_scratch() -> Scratch:
-    """Working memory of `curve_point`."""
-    return np.empty((6, 3)), np.empty((6, 26)), np.empty((3, 3)), np.empty(4)
+    """Working memory for evaluating curves."""
+    return Scratch(np.empty((6, 3)), np.empty(WORK_SHAPE))
 
 
-@jit
-def new_nodes() -> Nodes:
-    """Room for the nodes of a plane section, and their numbers ahead of and behind the start."""
-    return np.empty((2 * NODES + 1, 10)), np.zeros(2, dtype=np.int64)
+def new_section_nodes() -> SectionNodes:
+    """Memory for the nodes of a plane section."""
+    return SectionNodes(np.empty((2 * _NODES + 1, 4)), np.empty((2 * _NODES + 1, 6)), np.zeros(2, dtype=np.int64))
 
 
-@jit_fma_inline
-def iso_curve(along: int, fixed: float, frame: Array, nodes: Nodes) -> Curve:
-    """The iso-curve along u (0) or v (1) on which the other parameter is fixed; frame and nodes are not used."""
-    return along, fixed, frame[0], nodes[0], nodes[1]
+@jit_uncounted
+def curve_point(surface: OrientedSurface, curve: SurfaceCurve, w: float, scratch: Scratch) -> CurvePoint:
+    """The point at parameter w of a curve.
 
-
-@jit
-def plane_section(surface: SurfaceData, start: tuple[float, float, float], ahead: tuple[Array, Array], nodes: Nodes,
-                  scratch: Scratch) -> Curve:
-    """The section of a surface by a plane through a point of it.
-
-    Parameters
-    ----------
-    surface : tuple
-    start : (u, v, spacing)
-        The point, w = 0, and the length between nodes, mm.
-    ahead : (tangent, plane)
-        Unit tangent of increasing w, and unit normal of the plane.
-    nodes, scratch : tuple
-        Room; the section lives in `nodes`.
+    Where the derivatives of the surface are parallel, as at a pole, the normal is the limit, with no rate.
     """
-    u, v, spacing = start
-    tangent, plane = ahead
-    curve = (SECTION, spacing, plane, nodes[0], nodes[1])
-    nodes[1][0] = nodes[1][1] = 0
-    surface_derivatives(surface, u, v, scratch[0], scratch[1])
-    scratch[3][0] = u
-    scratch[3][1] = v
-    _point_forward(plane, tangent, scratch)
-    _store_node(curve, 0, scratch)
-    return curve
+    u, v, du, dv = curve.u, curve.v, 1.0, 0.0
+    if curve.kind == SECTION:
+        u, v, du, dv = _section_parameters(surface.data, curve, w, scratch)
+    else:
+        if curve.kind == ALONG_U:
+            u += w
+        else:
+            v += w
+            du, dv = 0.0, 1.0
+        surface_derivatives(surface.data, u, v, scratch.vectors, scratch.basis)
+    d = scratch.vectors
+    su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
+    suv = (d[4, 0], d[4, 1], d[4, 2])
+    change_u = combine((d[3, 0], d[3, 1], d[3, 2]), du, suv, dv)
+    change_v = combine(suv, du, (d[5, 0], d[5, 1], d[5, 2]), dv)
+    n, uu, vv = cross(su, sv), dot(su, su), dot(sv, sv)
+    change = plus(cross(change_u, sv), cross(su, change_v), 1.0)
+    size = sqrt(dot(n, n))
+    if size <= _PARALLEL * max(uu, vv):
+        n = cross(suv, sv) if uu < vv else cross(su, suv)
+        size = sqrt(dot(n, n))
+        change = (0.0, 0.0, 0.0)
+    share = surface.sign / size if size > 0.0 else 0.0
+    normal = (share * n[0], share * n[1], share * n[2])
+    turn = combine(change, share, normal, -share * dot(normal, change))
+    return CurvePoint((d[0, 0], d[0, 1], d[0, 2]), combine(su, du, sv, dv), normal, turn)
 
 
-@jit_fma_inline
-def _point_forward(plane: Array, tangent: Array, scratch: Scratch) -> None:
-    """Rates of u and v that keep in the plane and make unit progress along the tangent."""
-    d, _, _, place = scratch
-    a = b = p = q = 0.0
-    for c in range(3):
-        a += d[1, c] * tangent[c]
-        b += d[2, c] * tangent[c]
-        p += d[1, c] * plane[c]
-        q += d[2, c] * plane[c]
+@jit_uncounted_inline
+def offset_point(at: CurvePoint, height: float) -> Moving:
+    """The point at a height above the surface."""
+    return Moving(plus(at.point, at.normal, height), plus(at.tangent, at.turn, height))
+
+
+@jit_uncounted
+def start_section(curve: SurfaceCurve, tangent: Triple, scratch: Scratch) -> None:
+    """Begin a section at its (u, v), whose vectors `scratch` holds, with the unit tangent towards higher w."""
+    curve.nodes.found[:] = 0
+    _store_node(curve, _NODES, (curve.u, curve.v), tangent, scratch)
+
+
+@jit_uncounted_inline
+def _store_node(curve: SurfaceCurve, row: int, uv: tuple[float, float], along: Triple, scratch: Scratch) -> None:
+    """Keep the point of the surface in `scratch` as a node, with the tangent in whose sense w grows."""
+    d, parameters, points = scratch.vectors, curve.nodes.parameters, curve.nodes.points
+    su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
+    du, dv = _rates_along(su, sv, along, curve.plane)
+    tangent = combine(su, du, sv, dv)
+    size = sqrt(dot(tangent, tangent))
+    share = 1.0 / size if size > 0.0 else 0.0
+    parameters[row, 0], parameters[row, 1] = uv
+    parameters[row, 2], parameters[row, 3] = share * du, share * dv
+    points[row, 0], points[row, 1], points[row, 2] = d[0, 0], d[0, 1], d[0, 2]
+    points[row, 3], points[row, 4], points[row, 5] = share * tangent[0], share * tangent[1], share * tangent[2]
+
+
+@jit_uncounted_inline
+def _rates_along(su: Triple, sv: Triple, tangent: Triple, plane: Triple) -> tuple[float, float]:
+    """Rates of u and v that keep in a plane and make unit progress along a tangent; zero where there are none."""
+    a, b, p, q = dot(su, tangent), dot(sv, tangent), dot(su, plane), dot(sv, plane)
     det = a * q - b * p
-    place[2] = q / det if det != 0.0 else 0.0
-    place[3] = -p / det if det != 0.0 else 0.0
+    return (q / det, -p / det) if det != 0.0 else (0.0, 0.0)
 
 
-@jit_fma_inline
-def _store_node(curve: Curve, index: int, scratch: Scratch) -> None:
-    d, _, _, place = scratch
-    row = curve[3][index]
-    size = 0.0
-    for c in range(3):
-        row[4 + c] = d[0, c]
-        row[7 + c] = place[2] * d[1, c] + place[3] * d[2, c]
-        size += row[7 + c] ** 2
-    size = sqrt(size)
-    for c in range(3):
-        row[7 + c] = row[7 + c] / size if size > 0.0 else 0.0
-    row[0] = place[0]
-    row[1] = place[1]
-    row[2] = place[2] / size if size > 0.0 else 0.0
-    row[3] = place[3] / size if size > 0.0 else 0.0
+@jit_uncounted
+def _section_parameters(surface: SurfaceData, curve: SurfaceCurve, w: float,
+                        scratch: Scratch) -> tuple[float, float, float, float]:
+    """u, v and their rates at w of a plane section, by Newton's method from node to node; fills `scratch`."""
+    d, plane, nodes = scratch.vectors, curve.plane, curve.nodes
+    side, way = (1, 1) if w >= 0.0 else (-1, 0)
+    last = min(int(abs(w) / curve.spacing), _NODES)
+    k = min(last, nodes.found[way])
+    while True:
+        row = _NODES + side * k
+        t = w - side * last * curve.spacing if k == last else side * curve.spacing
+        origin = (nodes.points[row, 0], nodes.points[row, 1], nodes.points[row, 2])
+        tangent = (nodes.points[row, 3], nodes.points[row, 4], nodes.points[row, 5])
+        u = nodes.parameters[row, 0] + t * nodes.parameters[row, 2]
+        v = nodes.parameters[row, 1] + t * nodes.parameters[row, 3]
+        su = sv = tangent
+        for _ in range(12):
+            surface_derivatives(surface, u, v, d, scratch.basis)
+            su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
+            apart = plus((d[0, 0], d[0, 1], d[0, 2]), origin, -1.0)
+            off, beside = dot(apart, tangent) - t, dot(apart, plane)
+            a, b, p, q = dot(su, tangent), dot(sv, tangent), dot(su, plane), dot(sv, plane)
+            det = a * q - b * p
+            if det == 0.0 or abs(off) + abs(beside) <= 1e-12 * curve.spacing:
+                break
+            u -= (q * off - b * beside) / det
+            v -= (a * beside - p * off) / det
+        if k == last:
+            du, dv = _rates_along(su, sv, tangent, plane)
+            return u, v, du, dv
+        k += 1
+        _store_node(curve, _NODES + side * k, (u, v), tangent, scratch)
+        nodes.found[way] = k
 
 
-@jit
-def _section_point(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> None:
-    """Evaluate a plane section at w, laying nodes up to there first."""
-    spacing, built = curve[1], curve[4]
-    side = 1 if w >= 0.0 else -1
-    last = min(int(abs(w) / spacing), NODES)
-    slot = (1 - side) // 2
-    while built[slot] < last:
-        k = built[slot]
-        _progress(surface, curve, side * k, side * spacing, scratch)
-        _store_node(curve, side * (k + 1), scratch)
-        built[slot] = k + 1
-    _progress(surface, curve, side * last, w - side * last * spacing, scratch)
-
-
-@jit
-def _progress(surface: SurfaceData, curve: Curve, index: int, t: float, scratch: Scratch) -> None:
-    """The point of the plane that lies t ahead of a node along its tangent, by Newton's method."""
-    plane, row = curve[2], curve[3][index]
-    d, basis, _, place = scratch
-    u, v = row[0] + t * row[2], row[1] + t * row[3]
-    for _ in range(12):
-        surface_derivatives(surface, u, v, d, basis)
-        a = b = p = q = beside = 0.0
-        off = -t
-        for c in range(3):
-            a += d[1, c] * row[7 + c]
-            b += d[2, c] * row[7 + c]
-            p += d[1, c] * plane[c]
-            q += d[2, c] * plane[c]
-            off += (d[0, c] - row[4 + c]) * row[7 + c]
-            beside += (d[0, c] - row[4 + c]) * plane[c]
-        det = a * q - b * p
-        if det == 0.0 or abs(off) + abs(beside) <= 1e-12 * curve[1]:
-            break
-        u -= (q * off - b * beside) / det
-        v -= (a * beside - p * off) / det
-    place[0], place[1] = u, v
-    _point_forward(plane, row[7:10], scratch)
-
-
-@jit
-def curve_length(surface: SurfaceData, curve: Curve, w: float, scratch: Scratch) -> float:
-    """Arc length of a plane section from its start to w, mm, by three-point Gauss quadrature between nodes."""
-    spacing, d, place = curve[1], scratch[0], scratch[3]
+@jit_uncounted
+def arc_length(surface: OrientedSurface, curve: SurfaceCurve, w: float, scratch: Scratch) -> float:
+    """Arc length of a plane section from the contact to w, mm, by three-point Gauss quadrature between nodes."""
     side = 1.0 if w >= 0.0 else -1.0
-    whole = int(abs(w) / spacing)
+    whole = int(abs(w) / curve.spacing)
     total = 0.0
     for k in range(whole + 1):
-        start = side * k * spacing
-        piece = side * spacing if k < whole else w - start
+        start = side * k * curve.spacing
+        piece = side * curve.spacing if k < whole else w - start
         for g in range(3):
             share, weight = 0.5, 4.0 / 9.0
             if g != 1:
                 share, weight = 0.5 + (g - 1) * 0.3872983346207417, 5.0 / 18.0
-            _section_point(surface, curve, start + share * piece, scratch)
-            size = 0.0
-            for c in range(3):
-                size += (place[2] * d[1, c] + place[3] * d[2, c]) ** 2
-            total += weight * sqrt(size) * abs(piece)
+            tangent = curve_point(surface, curve, start + share * piece, scratch).tangent
+            total += weight * sqrt(dot(tangent, tangent)) * abs(piece)
     return total

@@ -3,12 +3,11 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.strip.curves import ALONG_U
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
-from toolaxis.contact.strip.half_widths import Bench, Geometry, contact_widths, new_bench
-from toolaxis.contact.strip.width import contact_rows
+from toolaxis.contact.strip.curves import OrientedSurface
+from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
+from toolaxis.contact.strip.half_widths import StripContacts, StripOptions
+from toolaxis.contact.strip.width import kernel_contacts, take_half_widths
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.jit import jit
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -19,39 +18,26 @@ RA_SHARE = 4 / (9 * np.sqrt(3))
 """Ra of parabolic scallops over their height."""
 
 
-@jit
-def _reach(geometry: Geometry, pair: tuple[Array, Array], axis: Array, heights: tuple[float, float],
-           bench: Bench) -> float:
-    """Upper half width of the first contact and lower half width of the second at a height, in the step parameter."""
-    h, allowance = heights
-    sizes = (h, h + allowance, geometry[2][0] + geometry[2][1])
-    return contact_widths(geometry, pair[0], axis, sizes, bench)[1] + contact_widths(geometry, pair[1], axis, sizes,
-                                                                                     bench)[0]
-
-
-@jit
-def _heights(geometry: Geometry, contacts: tuple[Array, Array], axes: Array, allowance: float, out: Array) -> None:
-    bench = new_bench()
-    radius = geometry[2][0] + geometry[2][1]
-    for k in range(axes.shape[0]):
-        pair = (contacts[0][k], contacts[1][k])
-        step = 1 - int(pair[0][2])
-        apart = pair[1][step] - pair[0][step]
-        low, high = 0.0, radius
-        h = 0.01 * radius
-        for _ in range(60):
-            reach = _reach(geometry, pair, axes[k], (h, allowance), bench)
-            if reach < apart:
-                low = h
-            else:
-                high = h
-            ahead = h * (apart / reach) ** 2 if reach > 0.0 else high
-            if not low < ahead < high:
-                ahead = 0.5 * (low + high)
-            if abs(ahead - h) <= 1e-12 * radius or high - low <= 1e-12 * radius:
-                break
-            h = ahead
-        out[k] = h
+def _heights(face: Face, cutter: CutterParameters, pair: tuple[StripContacts, StripContacts], axes: Array,
+             along: int) -> Array:
+    """Heights at which two contacts each reach each other: secants of the reach's square within a bracket."""
+    surface = OrientedSurface(face.surface.data, -1.0 if face.flip else 1.0)
+    radius, step = cutter.flat + cutter.corner, 1 - along
+    apart = pair[1].uv[:, step] - pair[0].uv[:, step]
+    low, high, h = np.zeros(len(apart)), np.full(len(apart), radius), np.full(len(apart), 0.01 * radius)
+    for _ in range(60):
+        upper, lower = (take_half_widths(surface, cutter, contacts._replace(scallop=h), axes[None],
+                                         StripOptions(along, False))[0] for contacts in pair)
+        reach = upper[:, 1] + lower[:, 0]
+        short = reach < apart
+        low, high = np.where(short, h, low), np.where(short, high, h)
+        ahead = np.where(reach > 0, h * (apart / np.where(reach > 0, reach, 1.0)) ** 2, high)
+        ahead = np.where((low < ahead) & (ahead < high), ahead, (low + high) / 2)
+        done = (np.abs(ahead - h) <= 1e-12 * radius) | (high - low <= 1e-12 * radius)
+        if done.all():
+            break
+        h = np.where(done, h, ahead)
+    return h
 
 
 def scallop_height(face: Face, tool: Tool, uv: ArrayLike, neighbour: ArrayLike, axis: ArrayLike, feed: str = "u",
@@ -85,21 +71,19 @@ def scallop_height(face: Face, tool: Tool, uv: ArrayLike, neighbour: ArrayLike, 
     -----
     The height h at which the half widths of the two, towards each other, reach their distance; they grow like sqrt h.
     """
-    first, second = contact_rows(uv, feed, False), contact_rows(neighbour, feed, False)
-    if first.shape != second.shape:
-        raise InvalidInput(f"{len(first)} contacts have {len(second)} neighbours: give one for each")
-    along = 0 if first[0, 2] == ALONG_U else 1
-    bad = np.flatnonzero((first[:, along] != second[:, along]) | (first[:, 1 - along] == second[:, 1 - along]))
+    (first, along), (second, _) = kernel_contacts(uv, feed, 0.0), kernel_contacts(neighbour, feed, 0.0)
+    one, two = first.uv, second.uv
+    if one.shape != two.shape:
+        raise InvalidInput(f"{len(one)} contacts have {len(two)} neighbours: give one for each")
+    step = 1 - along
+    bad = np.flatnonzero((one[:, along] != two[:, along]) | (one[:, step] == two[:, step]))
     if bad.size:
-        raise InvalidInput(f"contacts {bad[0]} are {first[bad[0], :2].tolist()} and {second[bad[0], :2].tolist()}: "
-                           f"neighbours must share {feed} and differ in the other parameter")
-    turn = (first[:, 1 - along] > second[:, 1 - along])[:, None]
-    pair = np.where(turn, second, first), np.where(turn, first, second)
-    geometry = face.surface.data, -1.0 if face.flip else 1.0, cutter_numbers(tool, tool.radius / 2, allowance)
-    axes = np.ascontiguousarray(np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(first), 3)))
-    out = np.empty(len(first))
-    _heights(geometry, pair, axes, float(allowance), out)
-    return out
+        raise InvalidInput(f"contacts {bad[0]} are {one[bad[0]].tolist()} and {two[bad[0]].tolist()}: neighbours must "
+                           f"share {feed} and differ in the other parameter")
+    behind = (one[:, step] > two[:, step])[:, None]
+    pair = first._replace(uv=np.where(behind, two, one)), second._replace(uv=np.where(behind, one, two))
+    axes = np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(one), 3))
+    return _heights(face, cutter_parameters(tool, tool.radius / 2, allowance), pair, axes, along)
 
 
 def effective_radius(tool: Tool, lean: ArrayLike, direction: ArrayLike = 0.0) -> Array:

@@ -7,46 +7,41 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.frame import Feed, contact_frame
-from toolaxis.contact.strip.cutter_parameters import CAP, cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters, cutter_parameters
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import jit
-from toolaxis.numeric.vectors import as_rows, dot, unit
+from toolaxis.numeric.jit import jit, jit_inline
+from toolaxis.numeric.triples import Triple, dot
+from toolaxis.numeric.vectors import as_rows, unit
+from toolaxis.numeric.vectors import dot as dots
 from toolaxis.shape.differential import curvature_form
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
-Numbers: TypeAlias = Array | tuple[float, float, float, float]
 Form: TypeAlias = tuple[float, float, float]
 """Entries (ff, fk, kk) of a symmetric form in the frame of feed and left."""
 
 SHARPEST = 1e-9
+"""Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
 #: Contacts with an axis each that are screened at once, every axis at every one of them.
 _TOGETHER = 64
-"""Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
 
 
 @jit
-def surface_form(d: Array, frame: Array) -> Form:
+def surface_form(d: Array, feed: Triple, left: Triple, normal: Triple) -> Form:
     """Second fundamental form in an orthonormal tangent frame, 1/mm, positive where bending towards the normal.
 
     Parameters
     ----------
     d : (6, 3) array
         S, Su, Sv, Suu, Suv, Svv.
-    frame : (3, 3) array
-        Rows feed, left, normal.
+    feed, left, normal : Triple
     """
-    a = b = p = q = l = m = n = 0.0
-    for c in range(3):
-        a += d[1, c] * frame[0, c]
-        b += d[2, c] * frame[0, c]
-        p += d[1, c] * frame[1, c]
-        q += d[2, c] * frame[1, c]
-        l += d[3, c] * frame[2, c]
-        m += d[4, c] * frame[2, c]
-        n += d[5, c] * frame[2, c]
+    su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
+    a, b, p, q = dot(su, feed), dot(sv, feed), dot(su, left), dot(sv, left)
+    l, m = dot((d[3, 0], d[3, 1], d[3, 2]), normal), dot((d[4, 0], d[4, 1], d[4, 2]), normal)
+    n = dot((d[5, 0], d[5, 1], d[5, 2]), normal)
     det = a * q - b * p
     if det == 0.0:
         return 0.0, 0.0, 0.0
@@ -56,18 +51,19 @@ def surface_form(d: Array, frame: Array) -> Form:
 
 
 @jit
-def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
+def cutter_form(flat: float, corner: float, axis_f: float, axis_k: float) -> Form:
     """Curvature of the cutter at a contact on its corner arc, 1/mm.
 
     1/r along the projection of T and sin lambda / (a + r sin lambda) across it; upright on a flat bottom it is zero.
 
     Parameters
     ----------
-    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
+    flat, corner : float
+        Radii of the flat bottom and of the corner arc, mm.
     axis_f, axis_k : float
         Components of the unit axis along feed and left.
     """
-    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
+    a, r = flat, max(corner, SHARPEST * (flat + corner))
     lean = sqrt(axis_f * axis_f + axis_k * axis_k)
     if a <= 0.0:
         return 1.0 / r, 0.0, 1.0 / r
@@ -80,7 +76,7 @@ def cutter_form(cutter: Numbers, axis_f: float, axis_k: float) -> Form:
 
 
 @jit
-def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tuple[float, float, bool]:
+def compliance(surface: Form, cutter: CutterParameters, axis: Triple) -> tuple[float, float, bool]:
     """(D^-1)_kk, mm, and the advance of the covering contact along the feed per unit to the left.
 
     D = C_cutter - K_surface in the frame of feed and left: to the second order the lifted surface leaves the swept
@@ -90,10 +86,9 @@ def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tup
     ----------
     surface : (ff, fk, kk)
         Second fundamental form in the frame, 1/mm.
-    frame : (3, 3) array
-        Rows feed, left, normal.
-    cutter : (flat radius, corner radius, cos, sin of the side's inclination), or more
-    axis : (3,) array
+    cutter : CutterParameters
+    axis : Triple
+        Components of the tool axis along feed, left and normal.
 
     Returns
     -------
@@ -102,12 +97,9 @@ def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tup
         False where D is not positive definite (the cutter gouges by curvature) or the contact lies on no arc of the
         cutter; then both numbers are 0.
     """
-    tf = frame[0, 0] * axis[0] + frame[0, 1] * axis[1] + frame[0, 2] * axis[2]
-    tk = frame[1, 0] * axis[0] + frame[1, 1] * axis[1] + frame[1, 2] * axis[2]
-    tn = frame[2, 0] * axis[0] + frame[2, 1] * axis[1] + frame[2, 2] * axis[2]
-    if tn < cutter[3] - 1e-9:
+    if axis[2] < cutter.sin - 1e-9:
         return 0.0, 0.0, False
-    c_ff, c_fk, c_kk = cutter_form(cutter, tf, tk)
+    c_ff, c_fk, c_kk = cutter_form(cutter.flat, cutter.corner, axis[0], axis[1])
     ff, fk, kk = c_ff - surface[0], c_fk - surface[1], c_kk - surface[2]
     if not ff > 0.0:
         return 0.0, 0.0, False
@@ -118,29 +110,35 @@ def compliance(surface: Form, frame: Array, cutter: Numbers, axis: Array) -> tup
 
 
 @jit
-def _screen(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
+def _screen(forms: Array, axes: Array, cutter: CutterParameters, scallop: float, out: Array) -> None:
     """Half widths of k axes at n contacts into out (k, n); forms as in `contact_forms`."""
-    cap = CAP * (cutter[0] + cutter[1])
+    cap = CAP * (cutter.flat + cutter.corner)
     for j in range(forms.shape[0]):
-        form = (forms[j, 9], forms[j, 10], forms[j, 11])
-        frame = forms[j, :9].reshape((3, 3))
+        f = forms[j]
         for i in range(axes.shape[0]):
-            rest, _, free = compliance(form, frame, cutter, axes[i])
-            out[i, j] = min(sqrt(2.0 * scallop * rest), cap) / forms[j, 12] if free else 0.0
+            rest, _, free = compliance((f[9], f[10], f[11]), cutter, axis_in_frame(f, axes[i]))
+            out[i, j] = min(sqrt(2.0 * scallop * rest), cap) / f[12] if free else 0.0
 
 
-def screen_numpy(forms: Array, axes: Array, cutter: Array, scallop: float, out: Array) -> None:
+@jit_inline
+def axis_in_frame(form: Array, axis: Array) -> Triple:
+    """Components of an axis along feed, left and normal of a contact, from its row of `contact_forms`."""
+    t = (axis[0], axis[1], axis[2])
+    return dot((form[0], form[1], form[2]), t), dot((form[3], form[4], form[5]), t), dot((form[6], form[7], form[8]), t)
+
+
+def screen_numpy(forms: Array, axes: Array, cutter: CutterParameters, scallop: float, out: Array) -> None:
     """The plain twin of the screening kernel, written on whole arrays; parameters as there."""
     tf, tk, tn = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
     ff, fk, kk = relative_forms(forms, (tf, tk), cutter)
     with np.errstate(divide="ignore", invalid="ignore"):
         rest = kk - fk * (fk / ff)
-        free = (tn >= cutter[3] - 1e-9) & (ff > 0) & (rest > 0)
-        width = np.minimum(np.sqrt(2 * scallop / rest), CAP * (cutter[0] + cutter[1])) / forms[:, 12]
+        free = (tn >= cutter.sin - 1e-9) & (ff > 0) & (rest > 0)
+        width = np.minimum(np.sqrt(2 * scallop / rest), CAP * (cutter.flat + cutter.corner)) / forms[:, 12]
     out[:] = np.where(free, width, 0.0)
 
 
-def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tuple[Array, Array, Array]:
+def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: CutterParameters) -> tuple[Array, Array, Array]:
     """Curvature of the cutter less that of the surface, entries (ff, fk, kk) in the frame of feed and left, 1/mm.
 
     Parameters
@@ -149,11 +147,10 @@ def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tu
         As `contact_forms` gives.
     axis : two (..., n) arrays
         Components of unit axes along feed and left.
-    cutter : array
-        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    cutter : CutterParameters
     """
     tf, tk = axis
-    a, r = cutter[0], max(cutter[1], SHARPEST * (cutter[0] + cutter[1]))
+    a, r = cutter.flat, max(cutter.corner, SHARPEST * (cutter.flat + cutter.corner))
     lean = np.hypot(tf, tk)
     bottom = (lean <= 1e-12) & (a > 0)
     size = np.where(lean > 0, lean, 1.0)
@@ -165,7 +162,7 @@ def relative_forms(forms: Array, axis: tuple[Array, Array], cutter: Array) -> tu
             np.asarray(along * y * y + across * x * x - forms[:, 11]))
 
 
-def screen_many(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+def screen_many(forms: Array, axes: Array, cutter: CutterParameters, scallop: float) -> Array:
     """Second-order half widths of many axes at many contacts, (k, n).
 
     Parameters
@@ -174,8 +171,7 @@ def screen_many(forms: Array, axes: Array, cutter: Array, scallop: float) -> Arr
         As of `contact_forms`.
     axes : (k, 3) array
         Unit vectors.
-    cutter : (6,) array
-        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    cutter : CutterParameters
     scallop : float
         mm
     """
@@ -184,7 +180,7 @@ def screen_many(forms: Array, axes: Array, cutter: Array, scallop: float) -> Arr
     return out
 
 
-def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) -> Array:
+def second_order_each(forms: Array, axes: Array, cutter: CutterParameters, scallop: float) -> Array:
     """Second-order half widths of contacts with an axis each, (n,).
 
     Parameters
@@ -193,8 +189,7 @@ def second_order_each(forms: Array, axes: Array, cutter: Array, scallop: float) 
         As of `contact_forms`.
     axes : (n, 3) array
         Unit vectors.
-    cutter : (6,) array
-        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    cutter : CutterParameters
     scallop : float
         mm
     """
@@ -226,7 +221,7 @@ def contact_forms(face: Face, uv: ArrayLike, feed: Feed, steps: bool) -> Array:
     form = curvature_form(d, frame.normal, frame.feed)
     pace = np.ones(len(rows))
     if steps:
-        pace = np.abs(dot(d.sv if feed == "u" else d.su, frame.left))
+        pace = np.abs(dots(d.sv if feed == "u" else d.su, frame.left))
     return np.column_stack([*frame, form[:, 0, 0], form[:, 0, 1], form[:, 1, 1], pace])
 
 
@@ -266,7 +261,7 @@ def second_order_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLik
     **Source**: [zhu2016] Sec. 2.2 uses the section's width; this is that of the swept cutter, the limit of
     `strip_width` for small h.
     """
-    cutter = cutter_numbers(tool, scallop, 0.0)
+    cutter = cutter_parameters(tool, scallop, 0.0)
     forms = contact_forms(face, uv, feed, steps)
     return screen_many(forms, np.asarray(unit(as_rows(axes, 3, "axes"))), cutter, scallop)
 
@@ -317,7 +312,7 @@ def second_order_step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayL
 
 
 def _one_axis_each(forms: Array, tool: Tool, axis: ArrayLike, scallop: float) -> Array:
-    cutter = cutter_numbers(tool, scallop, 0.0)
+    cutter = cutter_parameters(tool, scallop, 0.0)
     rows = np.ascontiguousarray(unit(as_rows(axis, 3, "axis")))
     screen = _screen if _compiled.available else screen_numpy
     if len(rows) not in (1, len(forms)):

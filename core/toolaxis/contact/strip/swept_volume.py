@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import CutterParameters, parameters_of_tool
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit
@@ -22,18 +22,18 @@ _GROUP, _TOGETHER = 16, 24
 
 
 @jit
-def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
+def _least_of(cutter: CutterParameters, move: Array, point: Array, best: float) -> float:
     """The least of a bound and the distance of a point to the cutter on one motion.
 
     Along a motion the distance is convex: beyond the middle it stays above the line from the other end to the middle.
     """
     up, half = (0.0, 0.0, 1.0), move[6]
     x, y, z = point[0] - move[0], point[1] - move[1], point[2] - move[2]
-    value = float(signed_distance(cutter, up, x, y, z))
+    value = float(signed_distance(cutter, up, (x, y, z)))
     if value - half >= best:
         return best
-    before = float(signed_distance(cutter, up, x + move[3], y + move[4], z + move[5]))
-    after = float(signed_distance(cutter, up, x - move[3], y - move[4], z - move[5]))
+    before = float(signed_distance(cutter, up, (x + move[3], y + move[4], z + move[5])))
+    after = float(signed_distance(cutter, up, (x - move[3], y - move[4], z - move[5])))
     best = min(best, value, before, after)
     if 2.0 * value - max(before, after, value) >= best:
         return best
@@ -42,8 +42,8 @@ def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
         if (high - low) * half < RESOLUTION:
             break
         s, t = low + (high - low) / 3.0, high - (high - low) / 3.0
-        one = float(signed_distance(cutter, up, x - s * move[3], y - s * move[4], z - s * move[5]))
-        other = float(signed_distance(cutter, up, x - t * move[3], y - t * move[4], z - t * move[5]))
+        one = float(signed_distance(cutter, up, (x - s * move[3], y - s * move[4], z - s * move[5])))
+        other = float(signed_distance(cutter, up, (x - t * move[3], y - t * move[4], z - t * move[5])))
         best = min(best, one, other)
         if min(one, other) - (high - low) * half >= best:
             break
@@ -55,7 +55,7 @@ def _least_of(cutter: Array, move: Array, point: Array, best: float) -> float:
 
 
 @jit
-def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
+def _near(cutter: CutterParameters, balls: Array, moves: Array, ball: Array, most: float,
           groups: NDArray[np.int64], near: NDArray[np.int64]) -> int:
     """Motions that may come nearer than a distance to a point of a ball, by group; the number of groups with any.
 
@@ -64,12 +64,12 @@ def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
     up, some, count = (0.0, 0.0, 1.0), 0, 0
     for g in range(balls.shape[0]):
         x, y, z = ball[0] - balls[g, 0], ball[1] - balls[g, 1], ball[2] - balls[g, 2]
-        if signed_distance(cutter, up, x, y, z) - balls[g, 3] - ball[3] >= most:
+        if signed_distance(cutter, up, (x, y, z)) - balls[g, 3] - ball[3] >= most:
             continue
         before = count
         for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
             x, y, z = ball[0] - moves[k, 0], ball[1] - moves[k, 1], ball[2] - moves[k, 2]
-            if signed_distance(cutter, up, x, y, z) - moves[k, 6] - ball[3] < most:
+            if signed_distance(cutter, up, (x, y, z)) - moves[k, 6] - ball[3] < most:
                 near[count] = k
                 count += 1
         if count > before:
@@ -79,7 +79,8 @@ def _near(cutter: Array, balls: Array, moves: Array, ball: Array, most: float,
 
 
 @jit
-def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple[float, float], out: Array) -> None:
+def _least(cutter: CutterParameters, balls: Array, moves: Array, points: Array, told: tuple[float, float],
+           out: Array) -> None:
     """Points and moves (middle, half way, half length) in the frame whose z is the axis.
 
     Points that follow each other are looked at together, and first at the motion that was the nearest for the last one.
@@ -101,7 +102,7 @@ def _least(cutter: Array, balls: Array, moves: Array, points: Array, told: tuple
                     break
                 g = groups[n, 0]
                 x, y, z = points[i, 0] - balls[g, 0], points[i, 1] - balls[g, 1], points[i, 2] - balls[g, 2]
-                if signed_distance(cutter, up, x, y, z) - balls[g, 3] >= best:
+                if signed_distance(cutter, up, (x, y, z)) - balls[g, 3] >= best:
                     continue
                 for m in range(groups[n - 1, 1] if n > 0 else 0, groups[n, 1]):
                     value = _least_of(cutter, moves[near[m]], points[i], best)
@@ -195,7 +196,7 @@ def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: Ar
     half = (b - a) / 2
     moves = np.ascontiguousarray(np.column_stack([(a + b) / 2 @ frame, half @ frame, np.linalg.norm(half, axis=1)]))
     out = np.empty(len(p))
-    _least(cutter_numbers(tool, tool.radius / 2, 0.0), _balls(moves), moves, np.ascontiguousarray(p @ frame),
+    _least(parameters_of_tool(tool), _balls(moves), moves, np.ascontiguousarray(p @ frame),
            (float(least), float(most)), out)
     return out
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.strip.cutter_parameters import CutterParameters
 from toolaxis.contact.strip.swept_cutter import meridian_distance
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit, jit_fma_inline
@@ -17,7 +18,7 @@ _STEPS = 15
 _QUESTION, _POINT = 20, 5
 
 
-def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes: Array) -> Array:
+def least_distance_to_positions(cutter: CutterParameters, points: Array, tips: Array, axes: Array) -> Array:
     """Least signed distance of points to a cutter on its way past, (n, m) mm.
 
     The least one of the positions is found first, and then the least between its neighbours, on parabolas through the
@@ -25,8 +26,7 @@ def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes:
 
     Parameters
     ----------
-    cutter : (6,) array
-        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    cutter : CutterParameters
     points : (n, m, 3) array
         mm
     tips, axes : (n, k, 3) array
@@ -47,13 +47,12 @@ def least_distance_to_positions(cutter: Array, points: Array, tips: Array, axes:
     return _least_numpy(cutter, rows, at, turn)
 
 
-def cutter_distances(cutter: Array, apart: Array, axes: Array) -> Array:
+def cutter_distances(cutter: CutterParameters, apart: Array, axes: Array) -> Array:
     """Signed distances of points relative to the tip, (..., 3), to the cutter, with axes of any length; mm.
 
     Parameters
     ----------
-    cutter : (6,) array
-        As of `toolaxis.contact.strip.cutter_parameters.cutter_numbers`.
+    cutter : CutterParameters
     apart, axes : (..., 3) array
     """
     z = (apart * axes).sum(axis=-1) / np.linalg.norm(axes, axis=-1)
@@ -65,7 +64,7 @@ def cutter_distances(cutter: Array, apart: Array, axes: Array) -> Array:
     return np.asarray(np.where(arc, np.hypot(x, y) - r, planes))
 
 
-def _least_numpy(cutter: Array, points: Array, tips: Array, axes: Array) -> Array:
+def _least_numpy(cutter: CutterParameters, points: Array, tips: Array, axes: Array) -> Array:
     """The plain twin."""
     off = cutter_distances(cutter, points[:, :, None] - tips[:, None], axes[:, None])
     middle = np.clip(np.argmin(off, axis=2), 1, off.shape[2] - 2)
@@ -88,7 +87,7 @@ def _least_numpy(cutter: Array, points: Array, tips: Array, axes: Array) -> Arra
 
 
 @jit_fma_inline
-def _between(cutter: Array, point: Array, near: tuple[Array, Array], t: float) -> float:
+def _between(cutter: CutterParameters, point: Array, near: tuple[Array, Array], t: float) -> float:
     """Distance to the cutter at t from -1 to 1 on the parabolas through three positions."""
     tips, axes = near
     before, here, after = t * (t - 1.0) / 2.0, (1.0 - t) * (1.0 + t), t * (t + 1.0) / 2.0
@@ -105,7 +104,7 @@ def _between(cutter: Array, point: Array, near: tuple[Array, Array], t: float) -
 
 
 @jit
-def _least(cutter: Array, points: Array, positions: tuple[Array, Array], out: Array) -> None:
+def _least(cutter: CutterParameters, points: Array, positions: tuple[Array, Array], out: Array) -> None:
     tips, axes = positions
     count = tips.shape[1]
     for i in range(points.shape[0]):

@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.frame import Feed
-from toolaxis.contact.strip.curves import ALONG_U, ALONG_V, SECTION
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
-from toolaxis.contact.strip.half_widths import Geometry, Sizes, section_widths, step_half_widths
-from toolaxis.contact.strip.width_numpy import half_widths_numpy
+from toolaxis.contact.strip.curves import ALONG_U, ALONG_V, SECTION, OrientedSurface
+from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
+from toolaxis.contact.strip.half_widths import StripContacts, StripOptions, half_widths, new_workspace
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -22,53 +20,38 @@ from toolaxis.work import spend
 
 Array = NDArray[np.float64]
 
-#: As many bounds of distances as take as long as the half widths of no contact, those of one, and one step of the march
-#: that finds them where Newton's method does not.
-_QUESTION, _CONTACT, _STEP = 500, 40, 6
+#: As many bounds of distances as take as long as the half widths of no contact, those of one in the step parameter and
+#: in a normal section, and one step of the march that finds them where Newton's method does not.
+_QUESTION, _CONTACT, _SECTION, _STEP = 500, 40, 280, 6
 
 
-def _check_inputs(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[Geometry, Sizes]:
-    """What kernels take of a face, a tool and the heights."""
-    cutter = cutter_numbers(tool, scallop, allowance)
-    return (face.surface.data, -1.0 if face.flip else 1.0, cutter), (scallop, scallop + allowance, tool.radius)
+def kernel_inputs(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[OrientedSurface, CutterParameters]:
+    """What kernels take of a face and a tool, checked."""
+    return (OrientedSurface(face.surface.data, -1.0 if face.flip else 1.0),
+            cutter_parameters(tool, scallop, allowance))
 
 
-def contact_rows(uv: ArrayLike, feed: Feed, sections: bool) -> Array:
-    """Rows of u, v, feed code, feed vector, and whether widths are taken along normal sections."""
-    rows = as_rows(uv, 2, "uv")
-    table = np.zeros((len(rows), 7))
-    table[:, :2] = rows
-    table[:, 6] = sections
-    if isinstance(feed, str):
-        if feed not in ("u", "v"):
-            raise InvalidInput(f"feed is {feed!r}: it must be 'u', 'v' or a vector")
-        table[:, 2] = ALONG_U if feed == "u" else ALONG_V
-        return table
-    table[:, 2] = SECTION
-    table[:, 3:6] = unit(as_rows(feed, 3, "feed"))
-    return table
+def kernel_contacts(uv: ArrayLike, feed: Feed, scallop: ArrayLike) -> tuple[StripContacts, int]:
+    """What kernels take of contacts, with one scallop height or one each; and what the pass runs along."""
+    rows = np.array(as_rows(uv, 2, "uv"), dtype=float, order="C")
+    heights = np.array(np.broadcast_to(scallop, len(rows)), dtype=float)
+    if not isinstance(feed, str):
+        direction = np.broadcast_to(unit(as_rows(feed, 3, "feed")), (len(rows), 3))
+        return StripContacts(rows, np.array(direction, order="C"), heights), SECTION
+    if feed not in ("u", "v"):
+        raise InvalidInput(f"feed is {feed!r}: it must be 'u', 'v' or a vector")
+    return StripContacts(rows, np.zeros((len(rows), 3)), heights), ALONG_U if feed == "u" else ALONG_V
 
 
-def _fill(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
-    """Half widths of n contacts with an axis each, by the kernel or by its twin with the kernel for what is left."""
-    spend(_QUESTION + _CONTACT * len(contacts))
-    if _compiled.available:
-        spend(_STEP * section_widths(geometry, contacts, axes, sizes, out))
-        return
-    out[:], found = half_widths_numpy(geometry, contacts, axes, sizes)
-    rest = np.empty(((~found).sum(), 2))
-    spend(_STEP * section_widths(geometry, contacts[~found], axes[~found], sizes, rest))
-    out[~found] = rest
-
-
-def _fill_steps(geometry: Geometry, contacts: Array, axes: Array, sizes: Sizes, out: Array) -> None:
-    """Half widths in the step parameter of n contacts with k axes, likewise."""
-    if _compiled.available:
-        spend(_QUESTION + _CONTACT * len(axes) * len(contacts))
-        spend(_STEP * step_half_widths(geometry, contacts, axes, sizes, out))
-        return
-    for k in range(len(axes)):
-        _fill(geometry, contacts, np.broadcast_to(axes[k], (len(contacts), 3)), sizes, out[k])
+def take_half_widths(surface: OrientedSurface, cutter: CutterParameters, contacts: StripContacts, axes: Array,
+                     options: StripOptions) -> Array:
+    """Half widths (k, n, 2) of n contacts with k axes, (k, n, 3) or (k, 1, 3)."""
+    out = np.empty((len(axes), len(contacts.uv), 2))
+    each = _SECTION if options.normal_section else _CONTACT
+    spend(_QUESTION + each * out.shape[0] * out.shape[1])
+    work = new_workspace(len(axes))
+    spend(_STEP * half_widths(surface, cutter, contacts, np.array(axes, order="C"), options, work, out))
+    return out
 
 
 def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: Feed = "u",
@@ -114,12 +97,10 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     **Properties**: 1. a rigid motion changes nothing, a mirror exchanges left and right; 2. lengths scale; 3. for
     h -> 0 the sum tends to `second_order_width`.
     """
-    geometry, sizes = _check_inputs(face, tool, scallop, allowance)
-    contacts = contact_rows(uv, feed, True)
-    axes = np.ascontiguousarray(axis_rows(axis, len(contacts)))
-    out = np.empty((len(contacts), 2))
-    _fill(geometry, contacts, axes, sizes, out)
-    return out[:, ::-1].copy()
+    inputs = kernel_inputs(face, tool, scallop, allowance)
+    contacts, along = kernel_contacts(uv, feed, scallop)
+    axes = axis_rows(axis, len(contacts.uv))[None]
+    return take_half_widths(*inputs, contacts, axes, StripOptions(along, True))[0, :, ::-1].copy()
 
 
 def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: str = "u",
@@ -144,13 +125,10 @@ def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     InvalidInput
         As in `strip_width`.
     """
-    geometry, sizes, contacts = _step_job(face, tool, uv, feed, (scallop, allowance))
-    axes = unit(as_rows(axis, 3, "axis"))
-    if len(axes) not in (1, len(contacts)):
-        raise InvalidInput(f"{len(axes)} axes for {len(contacts)} contacts: give one axis, or one for each contact")
-    out = np.empty((1, len(contacts), 2))
-    _fill_steps(geometry, contacts, np.ascontiguousarray(axes[None]), sizes, out)
-    return np.asarray(out[0])
+    count, axes = len(as_rows(uv, 2, "uv")), unit(as_rows(axis, 3, "axis"))
+    if len(axes) not in (1, count):
+        raise InvalidInput(f"{len(axes)} axes for {count} contacts: give one axis, or one for each contact")
+    return np.asarray(_take_step_widths(face, tool, uv, axes[None], feed, (scallop, allowance))[0])
 
 
 def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike, scallop: float, feed: str = "u",
@@ -174,16 +152,14 @@ def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike
     InvalidInput
         As in `strip_width`.
     """
-    geometry, sizes, contacts = _step_job(face, tool, uv, feed, (scallop, allowance))
-    rows = np.ascontiguousarray(unit(as_rows(axes, 3, "axes"))[:, None])
-    out = np.empty((len(rows), len(contacts), 2))
-    _fill_steps(geometry, contacts, rows, sizes, out)
-    return out
+    rows = unit(as_rows(axes, 3, "axes"))[:, None]
+    return _take_step_widths(face, tool, uv, rows, feed, (scallop, allowance))
 
 
-def _step_job(face: Face, tool: Tool, uv: ArrayLike, feed: str,
-              heights: tuple[float, float]) -> tuple[Geometry, Sizes, Array]:
+def _take_step_widths(face: Face, tool: Tool, uv: ArrayLike, axes: Array, feed: str,
+                      heights: tuple[float, float]) -> Array:
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
-    geometry, sizes = _check_inputs(face, tool, *heights)
-    return geometry, sizes, contact_rows(uv, feed, False)
+    inputs = kernel_inputs(face, tool, *heights)
+    contacts, along = kernel_contacts(uv, feed, heights[0])
+    return take_half_widths(*inputs, contacts, axes, StripOptions(along, False))

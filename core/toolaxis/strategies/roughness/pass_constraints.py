@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.placement import tips
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
 from toolaxis.contact.strip.scallop import RA_SHARE
 from toolaxis.contact.strip.second_order import contact_forms, relative_forms
 from toolaxis.errors import InvalidInput
@@ -164,9 +164,9 @@ class PassConstraints:
         ----------
         axis : (n, 3) array
         """
-        numbers = cutter_numbers(self.tool, self.wish.scallop, self.allowance)
+        cutter = cutter_parameters(self.tool, self.wish.scallop, self.allowance)
         tf, tk = ((axis * self.forms[:, 3 * c:3 * c + 3]).sum(axis=1) for c in range(2))
-        ff, fk, kk = relative_forms(self.forms, (tf, tk), numbers)
+        ff, fk, kk = relative_forms(self.forms, (tf, tk), cutter)
         least = (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk)
         return kk - fk**2 / np.maximum(ff, 1e-3 / self.tool.radius), least
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
 from toolaxis.contact.strip.scallop import RA_SHARE, effective_radius
 from toolaxis.contact.strip.swept_volume_moving_axis import least_distance_to_positions
 from toolaxis.errors import InvalidInput
@@ -163,12 +163,12 @@ def profile_heights(tool: Tool, points: ArrayLike, normal: ArrayLike, passes: li
         raise InvalidInput(f"{len(passes)} passes over points {lines.shape} with normals {up.shape}: one pass at least "
                            "and a normal for each point are needed")
     as_rows(lines.reshape(-1, 3), 3, "profile point")
-    numbers = cutter_numbers(tool, tool.radius / 2, allowance)
+    cutter = cutter_parameters(tool, tool.radius / 2, allowance)
     heights = np.full(lines.shape[:2], np.inf)
     base = lines + allowance * up
     for tip, axis in passes:
         height = np.zeros(lines.shape[:2])
         for _ in range(_CLIMBS):
-            height += least_distance_to_positions(numbers, base + height[..., None] * up, tip, axis)
+            height += least_distance_to_positions(cutter, base + height[..., None] * up, tip, axis)
         heights = np.minimum(heights, height)
     return heights

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.frame import Feed, contact_frame
 from toolaxis.contact.placement import tips
-from toolaxis.contact.strip.cutter_parameters import cutter_numbers
+from toolaxis.contact.strip.cutter_parameters import cutter_parameters
 from toolaxis.contact.strip.scallop import effective_radius
 from toolaxis.contact.strip.swept_volume_moving_axis import cutter_distances
 from toolaxis.errors import InvalidInput
@@ -61,10 +61,10 @@ class Sections:
 
     def widths(self, axis: Array) -> Array:
         """Widths left and right, (n, 2) mm, of the cutter with unit axes (n, 3); see `section_width`."""
-        numbers = cutter_numbers(self.tool, self.scallop, self.allowance)
+        cutter = cutter_parameters(self.tool, self.scallop, self.allowance)
         tip = tips(self.point, self.normal, axis, self.tool, self.allowance)
         spend(_QUESTION + self.lifted[..., 0].size)
-        off = cutter_distances(numbers, self.lifted - tip[:, None, None], axis[:, None, None])
+        off = cutter_distances(cutter, self.lifted - tip[:, None, None], axis[:, None, None])
         first = np.concatenate([np.full((*off.shape[:2], 1), -min(self.scallop, self.tool.radius)), off], axis=2)
         places = np.concatenate([[0.0], self.places])
         outside = first[..., 1:] > 0
@@ -104,7 +104,7 @@ def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed =
         How far to look on each side, mm; 2 R unless given, and no farther than that.
     """
     check_bull_nose(tool)
-    cutter_numbers(tool, scallop, allowance)
+    cutter_parameters(tool, scallop, allowance)
     rows = np.atleast_2d(np.asarray(uv, dtype=float))
     far = _REACH * tool.radius
     near = far if reach is None else min(reach, far)

@@ -1,4 +1,4 @@
-"""The plain numpy twin of the strip width kernels: Newton's method on whole arrays of contacts.
+"""The oracle of the strip width kernels: Newton's method on whole arrays of contacts, in plain numpy.
 
 It shares no formula with the kernels but the second-order start; contacts on which Newton fails, or whose exit is not
 confirmed, come back as not found.
@@ -9,6 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.strip.curves import OrientedSurface
+from toolaxis.contact.strip.cutter_parameters import CutterParameters
+from toolaxis.contact.strip.half_widths import StripContacts, StripOptions
 from toolaxis.contact.strip.second_order import SHARPEST
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives_many_numpy
 from toolaxis.numeric.vectors import dot
@@ -22,11 +25,11 @@ WINDOW, NODES = 2.5, 20
 
 
 class StripScene(NamedTuple):
-    """Surface, whether it is flipped, and the cutter's numbers."""
+    """Surface, whether it is flipped, and the cutter."""
 
     surface: SurfaceData
     flip: bool
-    cutter: Array
+    cutter: CutterParameters
 
     def derivatives(self, uv: Array) -> Derivatives:
         """Position and derivatives at (n, 2) parameters."""
@@ -53,7 +56,7 @@ class Moving(NamedTuple):
 class Sweep(NamedTuple):
     """Passes and cross curves of n contacts, and axes (n, 3)."""
 
-    road: CurveFamily
+    passes: CurveFamily
     cross: CurveFamily
     axis: Array
 
@@ -127,7 +130,7 @@ def _residual(scene: StripScene, sweep: Sweep, place: Array, lift: float) -> Arr
     """
     a, r = scene.cutter[0], scene.cutter[1]
     point, normal = along(scene, sweep.cross, place[:, 0])
-    tip = place_tips(scene, sweep.road, place[:, 1], sweep.axis)
+    tip = place_tips(scene, sweep.passes, place[:, 1], sweep.axis)
     apart = point.point + lift * normal.point - tip.point
     if a == 0:
         out = apart - r * sweep.axis
@@ -145,7 +148,7 @@ def _solve(scene: StripScene, sweep: Sweep, place: Array, heights: tuple[float, 
     """Newton's method with differences for the matrix; places (n, 2) of (s, w), and whether it converged."""
     lift, radius = heights
     pace = np.stack([np.linalg.norm(along(scene, line, np.zeros(len(place)))[0].rate, axis=1)
-                     for line in (sweep.cross, sweep.road)], -1)
+                     for line in (sweep.cross, sweep.passes)], -1)
     limit = 0.6 * np.abs(place[:, :1]) * pace[:, :1]
     small = np.full(len(place), np.inf)
     for _ in range(40):
@@ -177,15 +180,15 @@ def _first(scene: StripScene, sweep: Sweep, place: Array, heights: tuple[float, 
         """Distances (n, m) of points at x (n,) to cutters at w (n, m)."""
         count, n = w.shape[1], len(x)
         point, normal = along(scene, sweep.cross, x)
-        road = CurveFamily(sweep.road.code, *(np.repeat(rows, count, axis=0) for rows in sweep.road[1:]))
+        line = CurveFamily(sweep.passes.code, *(np.repeat(rows, count, axis=0) for rows in sweep.passes[1:]))
         axis = np.repeat(sweep.axis, count, axis=0)
-        tip = place_tips(scene, road, w.ravel(), axis).point
+        tip = place_tips(scene, line, w.ravel(), axis).point
         lifted = np.repeat(point.point + lift * normal.point, count, axis=0)
         return distance_numpy(scene.cutter, axis, lifted - tip).reshape(n, count)
 
     for share in (0.25, 0.5, 0.75):
         good &= gaps(share * place[:, 0], share * place[:, 1:])[:, 0] < 0
-    pace = np.linalg.norm(along(scene, sweep.road, np.zeros(len(place)))[0].rate, axis=1)
+    pace = np.linalg.norm(along(scene, sweep.passes, np.zeros(len(place)))[0].rate, axis=1)
     far = np.linspace(-WINDOW, WINDOW, 2 * NODES + 1) * radius
     gap = gaps(place[:, 0], place[:, 1:] + far / pace[:, None])
     good &= np.abs(gap[:, NODES]) < 1e-6 * radius
@@ -207,10 +210,10 @@ def _starts(scene: StripScene, sweep: Sweep, frame: Array, height: float) -> tup
     ring = lean / (a + r * lean) if a > 0 else np.full(len(lean), 1 / r)
     form = (bend[:, None, None] * direction[:, :, None] * direction[:, None]
             + ring[:, None, None] * side[:, :, None] * side[:, None])
-    d = scene.derivatives(sweep.road.start)
+    d = scene.derivatives(sweep.passes.start)
     form = form - curvature_form(d, frame[:, 2], frame[:, 0])
     free = (form[:, 0, 0] > 0) & (np.linalg.det(form) > 0)
-    rates = [along(scene, line, np.zeros(len(lean)))[0].rate for line in (sweep.cross, sweep.road)]
+    rates = [along(scene, line, np.zeros(len(lean)))[0].rate for line in (sweep.cross, sweep.passes)]
     c_f, c_k = dot(rates[0], frame[:, 0]), dot(rates[0], frame[:, 1])
     free &= c_k != 0
     safe = np.where(free[:, None, None], form, np.eye(2))
@@ -230,34 +233,32 @@ def _arc(scene: StripScene, line: CurveFamily, x: Array) -> Array:
     return total * np.abs(x)
 
 
-def _sweep(scene: StripScene, contacts: Array, axes: Array) -> tuple[Sweep, Array, Flags]:
-    """Passes and cross curves of rows of contacts, frames (n, 3, 3), and whether there is a feed."""
-    d = scene.derivatives(contacts[:, :2])
+def _sweep(scene: StripScene, contacts: StripContacts, axes: Array,
+           options: StripOptions) -> tuple[Sweep, Array, Flags]:
+    """Passes and cross curves of contacts, frames (n, 3, 3), and whether there is a feed."""
+    d = scene.derivatives(contacts.uv)
     n = normals(d, scene.flip)
-    code = int(contacts[0, 2])
-    feed = contacts[:, 3:6] if code == 2 else (d.su, d.sv)[code]
+    code = options.feed
+    feed = contacts.direction if code == 2 else (d.su, d.sv)[code]
     x = feed - dot(feed, n)[:, None] * n
     size = np.linalg.norm(x, axis=1, keepdims=True)
     sound = size[:, 0] > 1e-9 * np.linalg.norm(feed, axis=1)
     x = x / np.where(size > 0, size, 1.0)
     left = np.cross(n, x)
-    road = CurveFamily(code, contacts[:, :2], x, left)
-    cross = CurveFamily(2 if code == 2 or contacts[0, 6] else 1 - code, contacts[:, :2], left, x)
-    return Sweep(road, cross, axes), np.stack([x, left, n], 1), sound
+    passes = CurveFamily(code, contacts.uv, x, left)
+    cross = CurveFamily(2 if options.normal_section else 1 - code, contacts.uv, left, x)
+    return Sweep(passes, cross, axes), np.stack([x, left, n], 1), sound
 
 
-def half_widths_numpy(geometry: tuple[SurfaceData, float, Array], contacts: Array, axes: Array,
-                      heights: tuple[float, float, float]) -> tuple[Array, Flags]:
+def half_widths_numpy(surface: OrientedSurface, cutter: CutterParameters, contacts: StripContacts, axes: Array,
+                      options: StripOptions) -> tuple[Array, Flags]:
     """Half widths towards lower and upper parameter of the cross curves; arc length on sections.
 
     Parameters
     ----------
-    geometry : (surface, sign, cutter)
-    contacts : (n, 7) array
-        Rows of u, v, feed code, feed vector, and whether the cross curves are normal sections; as kernels take them.
+    surface, cutter, contacts, options
+        As kernels take them, with one scallop height for all contacts.
     axes : (n, 3) array
-    heights : (h, h + allowance, radius)
-        mm
 
     Returns
     -------
@@ -265,13 +266,12 @@ def half_widths_numpy(geometry: tuple[SurfaceData, float, Array], contacts: Arra
     found : (n,) array of bool
         False where the answer must be looked for with more care.
     """
-    if len(contacts) == 0:
-        return np.zeros((0, 2)), np.zeros(0, dtype=bool)
-    h, lift, radius = heights
-    scene = StripScene(geometry[0], geometry[1] < 0, geometry[2])
-    widths = np.zeros((len(contacts), 2))
+    h, radius = contacts.scallop[0], cutter.flat + cutter.corner
+    lift = h + cutter.offset - cutter.corner
+    scene = StripScene(surface.data, surface.sign < 0, cutter)
+    widths = np.zeros((len(contacts.uv), 2))
     with np.errstate(all="ignore"):
-        sweep, frame, found = _sweep(scene, contacts, axes)
+        sweep, frame, found = _sweep(scene, contacts, axes, options)
         start, free = _starts(scene, sweep, frame, h)
         found &= free & (dot(frame[:, 2], axes) >= scene.cutter[3] - 1e-9)
         for side, turn in enumerate((-1.0, 1.0)):
