@@ -1,6 +1,7 @@
-"""The first run on a machine compiles on two cores: another process begins with what a plan needs later.
+"""The first run on a machine compiles on two cores: another process compiles what a plan and its verdict need later.
 
-Whichever of the two comes to a kernel first compiles it; the other one waits and takes it from disk.
+Whichever of the two comes to a kernel first compiles it; the other one waits and takes it from disk.  What is within a
+kernel is not on disk, so kernels that share much, as those of the search do, are left to one process.
 """
 
 import os
@@ -41,11 +42,15 @@ def compiling_ahead() -> Iterator[None]:
         other.wait()
 
 
-def compile_all() -> None:
-    """Plan and judge a small face: first what takes longest and comes last."""
+def compile_ahead() -> None:
+    """Lay passes on a small face and judge them: all but what the search of a plan begins with."""
     from toolaxis.job.output.verify import verify_plan
-    from toolaxis.job.planning.pipeline import plan
+    from toolaxis.machine.work_coordinates import work_coordinates
+    from toolaxis.path.iso_parametric import passes
     from toolaxis.path.pass_count import count
+    from toolaxis.plan.operation import Operation
+    from toolaxis.plan.orientation import Orientation
+    from toolaxis.plan.plan import Plan, PlanInputs
     from toolaxis.shape.face import Face
     from toolaxis.shape.nurbs import NurbsSurface
     from toolaxis.shape.part import Part
@@ -59,10 +64,14 @@ def compile_all() -> None:
         return Face(NurbsSurface(knots, knots, control, (3, 3)), (_SQUARE,), number=number)
 
     waved, below = face(1, 2 * np.sin(3 * u) * v), face(2, np.full_like(u, -_EDGE))
-    tool = Tool.of("torus", 6.0, 1.0)
-    count(waved, tool, (0.0, 0.0, 1.0), _SCALLOP)
-    verify_plan(plan(Part((waved, below)), tool, _SCALLOP, faces=[1]))
+    tool, axis, start = Tool.of("torus", 6.0, 1.0), np.array([0.0, 0.0, 1.0]), np.zeros(3)
+    counted = count(waved, tool, axis, _SCALLOP)
+    path = passes(waved, tool, axis, _SCALLOP)
+    orientation = Orientation(axis, "u", path.passes, counted, path.length(), outcome="feasible")
+    frame = work_coordinates(axis, np.array([1.0, 0.0, 0.0]), start, start)
+    operation = Operation(1, waved, orientation, path, frame)
+    verify_plan(Plan(Part((waved, below)), tool, PlanInputs(_SCALLOP), (operation,), (), start, "complete"))
 
 
 if __name__ == "__main__":
-    compile_all()
+    compile_ahead()
