@@ -19,6 +19,8 @@ from toolaxis.contact.strip.curves import (
     SurfaceCurve,
     curve_point,
     offset_point,
+    read_moving,
+    store_moving,
 )
 from toolaxis.contact.strip.cutter_parameters import CutterParameters
 from toolaxis.contact.strip.swept_cutter import place_tip
@@ -90,12 +92,9 @@ def tabulate_curve(surface: OrientedSurface, curve: SurfaceCurve, sizes: tuple[f
 @jit_uncounted_inline
 def _store_node(nodes: CurveNodes, k: int, w: float, at: CurvePoint, offset: float) -> float:
     """Fill a row; the rate of the curve, mm per unit of its parameter."""
-    table, normal, lifted = nodes.offset, nodes.normal, offset_point(at, offset)
     nodes.w[k] = w
-    table[k, 0], table[k, 1], table[k, 2] = lifted.point
-    table[k, 3], table[k, 4], table[k, 5] = lifted.rate
-    normal[k, 0], normal[k, 1], normal[k, 2] = at.normal
-    normal[k, 3], normal[k, 4], normal[k, 5] = at.turn
+    store_moving(nodes.offset, k, offset_point(at, offset))
+    store_moving(nodes.normal, k, Moving(at.normal, at.turn))
     return sqrt(dot(at.tangent, at.tangent))
 
 
@@ -112,15 +111,9 @@ def find_interval(table: TabulatedCurve, near: int, w: float) -> int:
 
 
 @jit_uncounted_inline
-def node(table: Array, k: int) -> Moving:
-    """A row as a moving point."""
-    return Moving((table[k, 0], table[k, 1], table[k, 2]), (table[k, 3], table[k, 4], table[k, 5]))
-
-
-@jit_uncounted_inline
 def interpolate(nodes: Array, table: Array, k: int, w: float) -> Moving:
     """The cubic between the nodes k and k + 1, at w."""
-    here, ahead = node(table, k), node(table, k + 1)
+    here, ahead = read_moving(table, k), read_moving(table, k + 1)
     size = nodes[k + 1] - nodes[k]
     t = (w - nodes[k]) / size
     u = 1.0 - t
@@ -134,7 +127,7 @@ def interpolate(nodes: Array, table: Array, k: int, w: float) -> Moving:
 @jit_uncounted_inline
 def tip_at_node(cutter: CutterParameters, axis: Triple, nodes: CurveNodes, k: int) -> Moving:
     """The tip for the contact at a node of the pass."""
-    return place_tip(cutter, axis, node(nodes.offset, k), node(nodes.normal, k))
+    return place_tip(cutter, axis, read_moving(nodes.offset, k), read_moving(nodes.normal, k))
 
 
 @jit_uncounted_inline

@@ -123,6 +123,19 @@ def curve_point(surface: OrientedSurface, curve: SurfaceCurve, w: float, scratch
 
 
 @jit_uncounted_inline
+def read_moving(rows: Array, k: int) -> Moving:
+    """A row (x, y, z and their rates) of a table."""
+    return Moving((rows[k, 0], rows[k, 1], rows[k, 2]), (rows[k, 3], rows[k, 4], rows[k, 5]))
+
+
+@jit_uncounted_inline
+def store_moving(rows: Array, k: int, moving: Moving) -> None:
+    """Fill a row of a table."""
+    rows[k, 0], rows[k, 1], rows[k, 2] = moving.point
+    rows[k, 3], rows[k, 4], rows[k, 5] = moving.rate
+
+
+@jit_uncounted_inline
 def offset_point(at: CurvePoint, height: float) -> Moving:
     """The point at a height above the surface."""
     return Moving(plus(at.point, at.normal, height), plus(at.tangent, at.turn, height))

@@ -21,6 +21,8 @@ from toolaxis.contact.strip.curves import (
     SurfaceCurve,
     curve_point,
     offset_point,
+    read_moving,
+    store_moving,
 )
 from toolaxis.contact.strip.cutter_parameters import CAP
 from toolaxis.contact.strip.newton import CutterSweep
@@ -84,12 +86,6 @@ def new_pass_tips() -> PassTips:
 
 
 @jit_uncounted_inline
-def _tip(tips: PassTips, k: int) -> Moving:
-    tip = tips.tip
-    return Moving((tip[k, 0], tip[k, 1], tip[k, 2]), (tip[k, 3], tip[k, 4], tip[k, 5]))
-
-
-@jit_uncounted_inline
 def _length(x: Triple, y: Triple) -> float:
     apart = plus(x, y, -1.0)
     return sqrt(dot(apart, apart))
@@ -109,8 +105,8 @@ def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scrat
             speed, travel = sqrt(dot(at.tangent, at.tangent)), sqrt(dot(tip.rate, tip.rate))
             far = 0.0
             if row != _MIDDLE:
-                last = _tip(tips, row - side)
-                far = _length(tip.point, _tip(tips, _MIDDLE).point)
+                last = read_moving(tips.tip, row - side)
+                far = _length(tip.point, read_moving(tips.tip, _MIDDLE).point)
                 moved = plus(tip.point, last.point, -1.0)
                 jump = plus(moved, plus(tip.rate, last.rate, 1.0), -0.5 * step)
                 apart = max(sqrt(dot(moved, moved)) / 1.5, sqrt(dot(jump, jump)) / _JUMP)
@@ -119,8 +115,7 @@ def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scrat
                     w = last_w + step
                     continue
             tips.w[row] = w
-            tips.tip[row, 0], tips.tip[row, 1], tips.tip[row, 2] = tip.point
-            tips.tip[row, 3], tips.tip[row, 4], tips.tip[row, 5] = tip.rate
+            store_moving(tips.tip, row, tip)
             pace = max(speed, travel)
             if far > WINDOW * radius or row == 0 or row == 2 * _MIDDLE or not pace > 1e-300:
                 break
@@ -143,7 +138,7 @@ def swept_distance(sweep: CutterSweep, axis: Triple, point: Moving, enough: floa
     spacing = _SPACING * (sweep.cutter.flat + sweep.cutter.corner)
     best = SweptDistance(inf, 0.0, 0.0)
     for k in range(tips.first, tips.last + 1):
-        f = gap_rates(sweep.cutter, axis, point, _tip(tips, k))
+        f = gap_rates(sweep.cutter, axis, point, read_moving(tips.tip, k))
         tips.gap[k], tips.slope[k] = f.gap, f.by_w
         if f.gap < best.gap:
             best = SweptDistance(f.gap, tips.w[k], f.by_s)
@@ -174,7 +169,7 @@ def _least_between(sweep: CutterSweep, axis: Triple, point: Moving, tips: PassTi
     bound from the tangents is met, or at a smooth minimum.
     """
     cutter = sweep.cutter
-    lo, hi, left, right = tips.w[k], tips.w[k + 1], _tip(tips, k), _tip(tips, k + 1)
+    lo, hi, left, right = tips.w[k], tips.w[k + 1], read_moving(tips.tip, k), read_moving(tips.tip, k + 1)
     change = plus(right.rate, left.rate, -1.0)
     bend = (abs(change[0]) + abs(change[1]) + abs(change[2])) / (hi - lo)
     low, high = gap_rates(cutter, axis, point, left), gap_rates(cutter, axis, point, right)

@@ -13,11 +13,10 @@ from toolaxis.contact.strip.curve_tables import (
     TabulatedCurve,
     find_interval,
     interpolate,
-    node,
     tip_at_node,
     tip_between_nodes,
 )
-from toolaxis.contact.strip.curves import Moving, OrientedSurface, Scratch, curve_point, offset_point
+from toolaxis.contact.strip.curves import Moving, OrientedSurface, Scratch, curve_point, offset_point, read_moving
 from toolaxis.contact.strip.cutter_parameters import CutterParameters
 from toolaxis.contact.strip.swept_cutter import (
     RelativeMotion,
@@ -232,7 +231,7 @@ def _recedes(cutter: CutterParameters, axis: Triple, point: Moving, nodes: Curve
         after = tip_at_node(cutter, axis, nodes, k)
         parts = 1
         if k != start:
-            centre = plus(node(nodes.offset, k).point, node(nodes.offset, k - side).point, -1.0)
+            centre = plus(read_moving(nodes.offset, k).point, read_moving(nodes.offset, k - side).point, -1.0)
             swing = plus(plus(after.point, before, -1.0), centre, -1.0)
             parts = 1 if dot(swing, swing) < 0.09 * radius * radius else 8
         for part in range(1, parts + 1):

@@ -1,5 +1,7 @@
 """What all view providers have in common: their object, an icon, and nothing saved but the class."""
 
+from abc import ABC, abstractmethod
+
 import FreeCADGui
 from freecad.toolaxis.gui.views.icons import icon
 
@@ -33,7 +35,7 @@ class View:
         """Nothing was saved."""
 
 
-class ResultView(View):
+class ResultView(View, ABC):
     """View provider of an object with results, which may be stale."""
 
     def getIcon(self):
@@ -58,6 +60,7 @@ class ResultView(View):
         FreeCADGui.Control.showDialog(self.panel(view.Object))
         return True
 
+    @abstractmethod
     def panel(self, thing):
         """The panel of an object.
 
@@ -65,4 +68,3 @@ class ResultView(View):
         ----------
         thing : App.DocumentObject
         """
-        raise NotImplementedError
