@@ -66,14 +66,11 @@ def draw_verdict(plan: Plan, verdict: Verdict, folder: Path, progress: Progress 
     folder : Path
     progress : Progress
     """
-    axes = {op.name: op.orientation.axis for op in plan.operations}
     copies = {} if plan.blades is None else plan.blades.copies
     turned = {op.name for op in plan.operations if op.number in copies}
     drawn = [found for found in verdict.operations if found.maps and not (found.passed and found.name in turned)]
     for index, found in enumerate(drawn):
         progress.report("drawing", index, len(drawn))
-        axis = axes[found.name]
-        assert axis is not None
         targets = found.maps[:len(found.faces)]
-        map_picture(targets, found.scallop_limit, found.gouge_allowed, found.name,
-                    axis).savefig(folder / f"{found.name}-verdict.png")
+        map_picture(targets, found.scallop_limit, found.gouge_allowed,
+                    found.name).savefig(folder / f"{found.name}-verdict.png")

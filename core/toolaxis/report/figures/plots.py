@@ -23,6 +23,7 @@ from toolaxis.report.figures.splat_renderer import (
     Camera,
     Canvas,
     camera,
+    camera_onto,
     face_splats,
     mean_direction,
     splats_of_revolution,
@@ -242,8 +243,8 @@ def scale_bar(ax: Axes, seen: Camera) -> None:
     ax.text(x + length / 2, y + 0.012 * (high - low), f"{length:g} mm", ha="center", va="bottom", fontsize=8)
 
 
-def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: str, axis: Array) -> Figure:
-    """Scallop height left and gouge depth over the faces that were judged, seen along the axis.
+def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: str) -> Figure:
+    """Scallop height left and gouge depth over the faces that were judged, seen along their mean normal.
 
     Parameters
     ----------
@@ -251,15 +252,13 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
     limit, gouge : float
         Allowed scallop height and gouge depth, mm.
     name : str
-    axis : (3,) array
-        Direction from which to look.
     """
     made = figure(12.5, 5.8)
     left, right = made.subplots(1, 2)
     scallop = np.concatenate([one.remaining for one in maps])
     depth = np.concatenate([one.gouge for one in maps])
-    seen = camera(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [0.0, 1.0, 0.0],
-                  np.concatenate([one.point for one in maps]), pixels=700)
+    seen = camera_onto(np.concatenate([one.face.normal(one.uv) for one in maps]),
+                       np.concatenate([one.point for one in maps]), pixels=700)
     aside = np.concatenate([one.declared for one in maps])
     _map_panel(made, left, (maps, 1000 * scallop, seen), ("scallop left, µm", 1000 * limit, "viridis"), aside)
     _map_panel(made, right, (maps, 1000 * depth, seen), ("gouge, µm", 1000 * gouge, "Blues"))
@@ -376,9 +375,7 @@ def widths_picture(lines: Sequence[tuple[Array, Array]], area: tuple[Face, Tool]
     face, tool = area
     made = figure(12.5, 5.6)
     plan, graph = made.subplots(1, 2, width_ratios=(1.15, 1.0))
-    normal = mean_direction(face.normal(face.grid(16, 16)))
-    points = np.concatenate([contact for contact, _ in lines])
-    seen = camera(normal, [0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [0.0, 1.0, 0.0], points)
+    seen = camera_onto(face.normal(face.grid(16, 16)), np.concatenate([contact for contact, _ in lines]))
     every = np.concatenate([width for _, width in lines])
     norm = Normalize(float(np.nanmin(every)), float(np.nanpercentile(every, 99)))
     image = None

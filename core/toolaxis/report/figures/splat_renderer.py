@@ -254,6 +254,22 @@ def visible_runs(canvas: Canvas, line: Array, slack: float) -> list[Array]:
             if shown[0] and len(run) > 1]
 
 
+def camera_onto(directions: Array, points: Array, pixels: int = 900) -> Camera:
+    """The camera that looks along the mean of some normals and sees all of some points.
+
+    Parameters
+    ----------
+    directions : (k, 3) array
+        Unit normals.
+    points : (n, 3) array
+    pixels : int
+        Of the longer side.
+    """
+    normal = mean_direction(directions)
+    up = [0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [0.0, 1.0, 0.0]
+    return camera(normal, up, points, pixels)
+
+
 def mean_direction(directions: Array) -> Array:
     """Mean of (n, 3) unit vectors, (3,); the first one where they cancel."""
     mean = directions.sum(axis=0)

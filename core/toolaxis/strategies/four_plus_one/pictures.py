@@ -15,7 +15,7 @@ from toolaxis.feed.continuous_ik import following
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import bare, figure, scale_bar
-from toolaxis.report.figures.splat_renderer import camera, mean_direction
+from toolaxis.report.figures.splat_renderer import camera_onto
 
 Array = NDArray[np.float64]
 
@@ -96,9 +96,8 @@ def free_angle_picture(turning: FreeAxisMotion, op: Operation) -> Figure:
     made = figure(12.5, 5.6)
     grid = made.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     plan, graph, rate = made.add_subplot(grid[:, 0]), made.add_subplot(grid[0, 1]), made.add_subplot(grid[1, 1])
-    normal = mean_direction(op.face.normal(op.face.grid(16, 16)))
-    seen = camera(normal, [0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [0.0, 1.0, 0.0],
-                  np.concatenate([contact for contact, _ in turning.passes]))
+    seen = camera_onto(op.face.normal(op.face.grid(16, 16)),
+                       np.concatenate([contact for contact, _ in turning.passes]))
     every = np.concatenate([angle for _, angle in turning.passes])
     norm = Normalize(float(every.min()), float(every.max()))
     colours = mpl.colormaps[_ORDER](np.linspace(0.0, 0.92, len(turning.passes)))
