@@ -18,7 +18,8 @@ from toolaxis.feasibility.violations import FREE
 from toolaxis.path.parametrization import IsoChart, rows
 from toolaxis.path.pass_count import panels
 from toolaxis.path.trim_intervals import RowPoints, row_points
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.plan.choices import FEEDS
+from toolaxis.search.cost import MachiningCost
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,7 @@ class Floor:
     @cached_property
     def places(self) -> tuple[_PassPoints, _PassPoints]:
         """Places for feed u and v."""
-        return _places(self.worth.charts[0], self.size), _places(self.worth.charts[1], self.size)
+        return _places(IsoChart(self.worth.face, "u"), self.size), _places(IsoChart(self.worth.face, "v"), self.size)
 
     def lengths(self, axes: Array) -> Array:
         """Lower bounds, (k, 2) mm, for feed u and v; inf where an axis leaves no strip at some place."""

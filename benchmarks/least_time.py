@@ -12,9 +12,9 @@ from toolaxis.job.planning.edit_axis import try_axis
 from toolaxis.job.planning.pipeline import plan
 from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.feed_polytopes import Level
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.kinematic_setup import PassSegment, common_feed, reach_along_feed
 from toolaxis.search.machine_limits import mounting_of
 from toolaxis.search.time_estimate import TimeEstimate, require_machine_limits

@@ -1063,8 +1063,8 @@
    <translation>Erlaubt</translation>
   </message>
   <message>
-   <source>Along the parameters of the face, or in parallel planes that contain the tool axis. Planes need fixed axes.</source>
-   <translation>Längs der Parameter der Fläche oder in parallelen Ebenen, in denen die Werkzeugachse liegt. Ebenen gehen nur mit festen Achsen.</translation>
+   <source>Along the parameters of the face; in parallel planes that contain the tool axis; following the scallop height, so that passes lie as far apart as their strips are wide; or whichever of the first and the third is shorter. All but the first need fixed axes.</source>
+   <translation>Längs der Parameter der Fläche; in parallelen Ebenen, in denen die Werkzeugachse liegt; der Rillenhöhe folgend, sodass die Bahnen so weit auseinander liegen, wie ihre Streifen breit sind; oder die kürzere von erster und dritter Art. Alle außer der ersten brauchen feste Achsen.</translation>
   </message>
   <message>
    <source>Also plans the same faces by other methods, and lists what they come to.</source>
@@ -1525,6 +1525,14 @@
   <message>
    <source>fixed axes (3+2)</source>
    <translation>feste Achsen (3+2)</translation>
+  </message>
+  <message>
+   <source>following the scallop height</source>
+   <translation>der Rillenhöhe folgend</translation>
+  </message>
+  <message>
+   <source>whichever is shorter</source>
+   <translation>die kürzeren von beiden</translation>
   </message>
   <message>
    <source>greatest jerk along passes</source>

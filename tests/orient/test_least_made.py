@@ -7,7 +7,7 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.search.cost import FEEDS
+from toolaxis.plan.choices import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem, best_axis, task
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.rank_by_passes import _left as least_made_left

@@ -10,7 +10,8 @@ from toolaxis.feed.fixed_axis_time import Feeds, machining_time
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import unit
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.plan.choices import FEEDS
+from toolaxis.search.cost import MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import best_axis, task
 from toolaxis.search.local_search import CountedAxis

@@ -9,10 +9,14 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
-from toolaxis.path.pass_pattern import chart_of
+from toolaxis.path.estimate import Estimator
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_pattern import PlanePasses
+from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import undercut
 from toolaxis.plan.choices import ISO, PLANES
-from toolaxis.plan.plan import PlanInputs, describe_feed
+from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import describe_feed
 from toolaxis.search.fixed_axis import best_axis, check_candidate, task
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.shape.face import Face
@@ -20,6 +24,10 @@ from toolaxis.tools.tool import Tool
 
 TOOL, H = Tool.torus(diameter=12, corner_radius=1), 0.1
 UP = np.array([0.0, 0.0, 1.0])
+
+
+def _chart(face: Face, axis: np.ndarray, feed: str) -> PlaneChart:
+    return PlanePasses(Estimator.of(face, TOOL, H)).chart(Cut(TOOL, axis, H), feed)
 
 
 def _fan() -> Face:
@@ -37,7 +45,7 @@ def test_planes_take_the_way_of_the_fan_and_iso_lines_its_rays() -> None:
     rays, parallel = (job.made(UP, "u") for job in (iso, planes))
     assert planes.worth.counted(UP, "u")[1] < 0.9 * iso.worth.counted(UP, "u")[1]
     assert parallel.length(Motion.CUT) < rays.length(Motion.CUT)
-    chart = chart_of(face, UP, "u", PLANES)
+    chart = _chart(face, UP, "u")
     assert chart.feed_at(np.array([[0.5, 0.5]]))[0] @ (1, 0, 0) > 0.99
     uv = face.grid(7, 7)
     places = chart.places(uv)
@@ -67,7 +75,7 @@ def test_further_passes_beside_a_wall_lie_in_planes_too(make) -> None:
         made = job.completed(job.laid(axis, feed))
         assert sum(zone.area for zone in made.zones) <= sum(zone.area for zone in job.left_by(plain)) + 1e-9
         assert undercut(made.zones) <= undercut(job.left_by(plain)) + 1e-9
-        across = chart_of(part.faces[0], axis, feed, PLANES).frame[1]
+        across = _chart(part.faces[0], axis, feed).frame[1]
         cuts = np.flatnonzero(made.path.kind == Motion.CUT)
         same = made.path.cc[cuts] @ across - made.path.cc[cuts - 1] @ across
         assert np.abs(same).max() < 1e-6
@@ -78,7 +86,9 @@ def test_a_plan_along_planes_passes_the_judge_and_keeps_its_choice() -> None:
     made = ta.plan(ta.Part.from_faces([fan]), TOOL, H, passes=PLANES)
     assert made.outcome == "complete" and made.inputs.passes == PLANES
     assert ta.verify(made).passed
-    assert describe_feed("u", made.inputs) == "u, in planes" and describe_feed("u", PlanInputs(H)) == "u"
+    assert describe_feed(Orientation(UP, "u", pattern=PLANES)) == "u, in planes"
+    assert describe_feed(Orientation(UP, "u")) == "u"
+    assert made.operations[0].orientation.pattern == PLANES
 
 
 def test_a_face_that_turns_away_refuses_the_axis_with_its_reason() -> None:
@@ -104,14 +114,14 @@ def test_a_face_that_covers_itself_is_refused_with_the_place() -> None:
     up = UP if ramp.normal(ramp.grid(8, 8))[:, 2].min() > 0 else -UP
     assert (ramp.normal(ramp.grid(8, 8)) @ up).min() > 0.5
     with pytest.raises(UnsupportedGeometry, match=r"covers itself as seen along the axis, by \d+\.\d\d mm at \["):
-        chart_of(ramp, up, "u", PLANES)
+        _chart(ramp, up, "u")
 
 
 def test_passes_that_would_run_out_where_the_surface_turns_away_are_refused() -> None:
     """z = 0.08 x y, seen along (1, 0, 1), turns away beyond y = 12.5: points on passes there are none."""
     x, y = np.array([[0.0, 0], [10, 10]]), np.array([[0.0, 10], [0, 10]])
     face = Face.from_bspline(np.stack([x, y, 0.08 * x * y], axis=-1), degree=(1, 1))
-    chart = chart_of(face, np.array([1.0, 0, 1]) / np.sqrt(2), "v", PLANES)
+    chart = _chart(face, np.array([1.0, 0, 1]) / np.sqrt(2), "v")
     place = chart.places(np.array([[0.3, 0.0], [0.3, 1.0]]))
     low, inside, step = place[0, 0], place[1, 0], place[0, 1]
     pieces = np.array([[low, low + 0.5 * (inside - low), step], [low, low + 1.5 * (inside - low), step]])
@@ -126,14 +136,15 @@ def test_a_trimmed_face_is_found_again_though_its_surface_turns_away_beyond() ->
     v0, v1 = whole.bounds[2:]
     face = whole.trimmed((np.array([[0.45, v0], [1.0, v0], [1.0, v1], [0.45, v1]]),))
     uv = face.grid(9, 9)
-    chart = chart_of(face, UP, "v", PLANES)
+    chart = _chart(face, UP, "v")
     assert chart.uv(*chart.places(uv).T) == pytest.approx(uv, abs=1e-9)
 
 
 @pytest.mark.parametrize("words", [{"passes": "spiral"}, {"passes": PLANES, "strategy": "sturz"},
                                    {"passes": PLANES, "strategy": "two-point"}])
 def test_what_does_not_go_with_planes_is_refused(words: dict[str, str]) -> None:
-    with pytest.raises(InvalidInput, match=r"passes 'spiral' is unknown: use iso or planes|need a fixed axis"):
+    known = r"passes 'spiral' is unknown: use iso, planes, field or auto"
+    with pytest.raises(InvalidInput, match=rf"{known}|need a fixed axis"):
         ta.plan(_fan(), Tool.flat(20) if words.get("strategy") == "two-point" else TOOL, H, **words)
 
 

@@ -7,16 +7,17 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.path.cl_points import trace
+from toolaxis.path.estimate import Estimator
 from toolaxis.path.mending import FurtherPasses, add_passes_over_zones, complete_passes
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_layout import lay_out
-from toolaxis.path.pass_pattern import chart_of
+from toolaxis.path.pass_pattern import patterns_of
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, left_over
-from toolaxis.plan.choices import ISO, PLANES
+from toolaxis.plan.choices import FIELD, ISO, PLANES
 
 SCALLOP, CHORD = 0.02, 0.002
 CUTTERS = [ta.Tool.ball(diameter=12), ta.Tool.torus(diameter=10, corner_radius=2)]
-LAID = [("u", ISO), ("v", ISO), ("v", PLANES)]
+LAID = [("u", ISO), ("v", ISO), ("v", PLANES), ("u", FIELD)]
 AXES = [np.array([0.1, -0.2, 0.97]), np.array([0.25, 0.15, 0.95])]
 T = np.linspace(0, 2 * np.pi, 48, endpoint=False)
 ROUND = np.column_stack([np.cos(T), np.sin(T)])
@@ -37,7 +38,8 @@ def sheet(outline: str) -> ta.Face:
 def laid(face: ta.Face, number: int, feed: str, passes: str = ISO) -> FurtherPasses:
     """Passes that stay on the face, and what they leave."""
     tool, cut = CUTTERS[number], Cut(CUTTERS[number], AXES[number], SCALLOP)
-    placed = lay_out(chart_of(face, cut.axis, feed, passes), cut, face.contains)
+    pattern, = patterns_of(Estimator.of(face, tool, SCALLOP), passes)
+    placed = lay_out(pattern.chart(cut, feed), cut, face.contains)
     path = trace(placed, CHORD)
     return FurtherPasses(placed, path, left_over(face, tool, path, SCALLOP, walls=lambda uv: ~face.contains(uv)))
 

@@ -14,8 +14,9 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
+from toolaxis.plan.choices import FEEDS
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import CLEAN_UP, FEEDS, MachiningCost
+from toolaxis.search.cost import CLEAN_UP, MachiningCost
 from toolaxis.search.time_estimate import TimeEstimate
 
 Array = NDArray[np.float64]

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed
 from toolaxis.path.chord_tolerance import follow
-from toolaxis.path.parametrization import Chart, Cut, IsoChart, extents, tip_points
+from toolaxis.path.parametrization import Chart, Cut, extents, tip_points
 from toolaxis.path.pass_layout import Layout, Reach, sampling
+from toolaxis.path.pass_pattern import PassChart
 from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import FACTOR, may_stay, undercut
 from toolaxis.path.step_over import Spacing
@@ -164,7 +165,7 @@ def add_passes_over_zones(placed: Layout, zones: Sequence[Zone], reach: Reach | 
 def _aim_at_zone(placed: Layout, zone: Zone, reach: Reach | None) -> _Aim | None:
     """What is to be cut of a zone; None of one that lies at walls."""
     chart, cut = placed.chart, placed.cut
-    assert isinstance(chart, IsoChart | PlaneChart)
+    assert isinstance(chart, PassChart)
     piece = chart.face.trimmed(zone.loops)
     uv = _centres(piece)
     if not len(uv) or (reach is not None and reach(uv).mean() < _STANDING):

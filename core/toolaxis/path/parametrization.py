@@ -125,6 +125,12 @@ class Chart(Protocol):
     def uv(self, along: Array, step: Array) -> Array:
         """Parameters (n, 2) of the face at along and step, (n,) each; beyond the face too."""
 
+    def places(self, uv: Array) -> Array:
+        """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""
+
+    def feed_at(self, uv: Array) -> "str | Array":
+        """The feed of passes at parameters, as `strip_width` takes it: "u", "v", or unit vectors (n, 3)."""
+
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end."""
 

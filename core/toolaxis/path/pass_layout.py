@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.path.overrun import overrun_length
-from toolaxis.path.parametrization import Chart, Cut, columns, extents
+from toolaxis.path.parametrization import Chart, Cut, columns, extents, tip_points
 from toolaxis.path.step_over import PITCH, Spacing, lines, space
 from toolaxis.path.trim_intervals import Intervals, filter_intervals, merge_intervals, table
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -23,6 +23,8 @@ _RUN_OUT = 1.05
 #: where that makes fewer; how exactly the ends are found, in radii of the cutter, and as a share of the range.
 _REACH_SAMPLES = 192
 _ENDS, _LEAST_ENDS = 2e-4, 2e-7
+#: Points of a pass from which its length is told.
+_ALONG = 65
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,3 +164,19 @@ def sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
     """
     radius = cut.tool.radius / max(length, np.finfo(float).tiny)
     return span * max(1 / _REACH_SAMPLES, PITCH * radius), span * max(_LEAST_ENDS, min(_ENDS * radius, 1.0))
+
+
+def pass_length(placed: Layout) -> float:
+    """About how far the tip goes along the passes of a layout, mm.
+
+    Parameters
+    ----------
+    placed : Layout
+    """
+    if not len(placed.pieces):
+        return 0.0
+    low, high, steps = placed.pieces.T
+    share = np.linspace(0.0, 1.0, _ALONG)
+    along = low[:, None] + share * (high - low)[:, None]
+    _, tips, _ = tip_points(placed.chart, placed.cut, along.ravel(), np.repeat(steps, _ALONG))
+    return float(np.linalg.norm(np.diff(tips.reshape(-1, _ALONG, 3), axis=1), axis=2).sum())

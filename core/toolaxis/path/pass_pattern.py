@@ -1,46 +1,180 @@
-"""How passes lie on a face: along its own parameters, or along parallel planes that contain the tool axis."""
+"""How passes lie on a face: along its own parameters, along parallel planes, or along the levels of a field.
 
-from typing import TypeAlias
+Each pattern prices axes, coarsely for many of them and well for one, and gives the chart by which its passes are laid.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.errors import UnsupportedGeometry
 from toolaxis.machine.work_coordinates import mean_feed_across
-from toolaxis.path.parametrization import IsoChart
+from toolaxis.path.estimate import Estimates, Estimator
+from toolaxis.path.field.direction_table import tabulate_directions
+from toolaxis.path.field.field_chart import FieldChart
+from toolaxis.path.field.ideal_lengths import DirectionForms
+from toolaxis.path.field.pass_field import find_field
+from toolaxis.path.parametrization import Chart, Cut, IsoChart
+from toolaxis.path.pass_count import Count, measure
 from toolaxis.path.planes import PlaneChart
-from toolaxis.plan.choices import ISO
+from toolaxis.plan.choices import AUTO, FEEDS, FIELD, ISO, PLANES
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 
 #: Charts of the passes that a plan can ask for.
-PassChart: TypeAlias = IsoChart | PlaneChart
+PassChart: TypeAlias = IsoChart | PlaneChart | FieldChart
 
 #: Places each way whose feed directions make up the mean one.
 _GRID = 16
+#: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
+_PRICED, _MADE = (12, 8, 25), (24, 14, 60)
+#: Fields that are remembered.
+_KEPT = 64
 
 
-def chart_of(face: Face, axis: Array, feed: str, passes: str = ISO) -> PassChart:
-    """The chart by which passes are laid on a face.
+class PassPattern(Protocol):
+    """Passes of one kind over a face."""
+
+    @property
+    def name(self) -> str:
+        """One of `toolaxis.plan.choices.PATTERNS`."""
+
+    def screen(self, axes: Array) -> Estimates:
+        """About how many passes axes (k, 3) take and how long, for both feeds."""
+
+    def count(self, cut: Cut, feed: str) -> Count:
+        """Number and length of the passes with one axis; infinite where there are none of this kind."""
+
+    def chart(self, cut: Cut, feed: str) -> PassChart:
+        """The chart by which passes with an axis are laid.
+
+        Raises
+        ------
+        UnsupportedGeometry
+            When passes of this kind do not go with the face.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class IsoPasses:
+    """Passes along a parameter of the face."""
+
+    estimator: Estimator
+    name: str = ISO
+
+    @cached_property
+    def _charts(self) -> tuple[IsoChart, IsoChart]:
+        return IsoChart(self.estimator.face, "u"), IsoChart(self.estimator.face, "v")
+
+    def screen(self, axes: Array) -> Estimates:
+        """About how many passes axes (k, 3) take and how long, for both feeds: from second-order widths."""
+        return self.estimator.many(axes, exact=False)
+
+    def count(self, cut: Cut, feed: str) -> Count:
+        """Number and length of the passes with one axis by exact widths."""
+        return measure(self.chart(cut, feed), cut)
+
+    def chart(self, cut: Cut, feed: str) -> IsoChart:
+        """The face in its own parameters."""
+        return self._charts[FEEDS.index(feed)]
+
+
+@dataclass(frozen=True, eq=False)
+class PlanePasses:
+    """Passes along parallel planes in the mean direction of a parameter."""
+
+    estimator: Estimator
+    name: str = PLANES
+
+    def screen(self, axes: Array) -> Estimates:
+        """About how many passes axes (k, 3) take and how long: as those along parameters do."""
+        return self.estimator.many(axes, exact=False)
+
+    def count(self, cut: Cut, feed: str) -> Count:
+        """Number and length of the passes with one axis by exact widths; infinite where planes do not go."""
+        try:
+            return measure(self.chart(cut, feed), cut)
+        except UnsupportedGeometry:  # told where such passes are made
+            return Count(np.inf, np.inf)
+
+    def chart(self, cut: Cut, feed: str) -> PlaneChart:
+        """The face as seen along the axis."""
+        return PlaneChart(self.estimator.face, cut.axis, mean_feed_across(cut.axis, feeds_over(self.estimator.face,
+                                                                                               feed)))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldPasses:
+    """Passes along the levels of a field, each of which runs through every value of one parameter."""
+
+    estimator: Estimator
+    name: str = FIELD
+    _kept: dict[tuple[bytes, str], FieldChart] = field(default_factory=dict)
+
+    @cached_property
+    def _forms(self) -> DirectionForms:
+        own = self.estimator
+        return DirectionForms.of(own.face, own.tool, own.scallop, own.allowance)
+
+    def screen(self, axes: Array) -> Estimates:
+        """Ideal number and length of the passes with axes (k, 3), the same for both feeds."""
+        return self._forms.estimate(axes)
+
+    def count(self, cut: Cut, feed: str) -> Count:
+        """About the number and the length of the passes with one axis, from a coarse field."""
+        cells, count, rounds = _PRICED
+        try:
+            table = tabulate_directions(self.estimator.face, cut, cells)
+        except UnsupportedGeometry:
+            return Count(np.inf, np.inf)
+        if not table.cut_everywhere:
+            return Count(np.inf, np.inf)
+        found = find_field(table, 1 - FEEDS.index(feed), count, rounds)
+        return Count(found.passes, found.length)
+
+    def chart(self, cut: Cut, feed: str) -> FieldChart:
+        """The face in the levels of the field of least length."""
+        key = cut.axis.tobytes(), feed
+        if key not in self._kept:
+            cells, count, rounds = _MADE
+            table = tabulate_directions(self.estimator.face, cut, cells)
+            found = FieldChart(self.estimator.face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
+            if len(self._kept) >= _KEPT:
+                self._kept.pop(next(iter(self._kept)))
+            self._kept[key] = found
+        return self._kept[key]
+
+
+def patterns_of(estimator: Estimator, passes: str) -> tuple[PassPattern, ...]:
+    """The patterns among which a plan's choice of passes leaves the shortest to be taken.
 
     Parameters
     ----------
-    face : Face
-    axis : (3,) array
-        Tool axis, from tip to spindle.
-    feed : "u" or "v"
-        The parameter that varies along the passes; of planes their line: the mean direction of that parameter.
+    estimator : Estimator
+        The face made ready.
     passes : str
         One of `toolaxis.plan.choices.PASSES`.
-
-    Raises
-    ------
-    UnsupportedGeometry
-        When planes do not go with the face: it is not seen along the axis everywhere.
     """
-    if passes == ISO:
-        return IsoChart(face, feed)
-    return PlaneChart(face, axis, mean_feed_across(axis, feeds_over(face, feed)))
+    known: dict[str, tuple[PassPattern, ...]] = {
+        ISO: (IsoPasses(estimator),), PLANES: (PlanePasses(estimator),), FIELD: (FieldPasses(estimator),),
+        AUTO: (IsoPasses(estimator), FieldPasses(estimator))}
+    return known[passes]
+
+
+def pattern_name(chart: Chart) -> str:
+    """How the passes of a chart lie: one of `toolaxis.plan.choices.PATTERNS`.
+
+    Parameters
+    ----------
+    chart : Chart
+    """
+    if isinstance(chart, FieldChart):
+        return FIELD
+    return PLANES if isinstance(chart, PlaneChart) else ISO
 
 
 def feeds_over(face: Face, feed: str) -> Array:

@@ -1,7 +1,12 @@
 """Words of which a plan takes one: what is least, and how passes go."""
 
+#: Parameters of a face that may vary along passes.
+FEEDS = ("u", "v")
 OBJECTIVES = ("length", "passes", "time")
 DIRECTIONS = ("zigzag", "climb", "conventional")
-#: How passes lie: along a parameter of the face, or along parallel planes that contain the tool axis.
-ISO, PLANES = "iso", "planes"
-PASSES = (ISO, PLANES)
+#: How passes lie: along a parameter of the face, along parallel planes that contain the tool axis, or along the levels
+#: of a field that keeps them as far apart as their strips are wide; or each face whichever of the first and the last is
+#: shorter.
+ISO, PLANES, FIELD, AUTO = "iso", "planes", "field", "auto"
+PATTERNS = (ISO, PLANES, FIELD)
+PASSES = (*PATTERNS, AUTO)

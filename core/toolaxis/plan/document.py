@@ -13,6 +13,7 @@ from toolaxis.errors import Fault, about
 from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
@@ -99,7 +100,7 @@ def orientation_document(found: Orientation) -> Document:
         record[name] = float(record[name]) if np.isfinite(record[name]) else None
     return {**record, "passes": int(found.passes), "evaluations": int(found.evaluations), "axis": _rows(found.axis),
             "clearance": {name: float(v) if np.isfinite(v) else None for name, v in found.clearance.items()},
-            "reasons": list(found.reasons), "lead": found.lead,
+            "reasons": list(found.reasons), "lead": found.lead, "pattern": found.pattern, "ideal": float(found.ideal),
             "lobes": [orientation_document(lobe) for lobe in found.lobes], "map": _map_document(found.map)}
 
 
@@ -115,6 +116,7 @@ def orientation_from(document: Mapping[str, Any]) -> Orientation:
     return Orientation(axis=None if axis is None else np.array(axis, dtype=float), **scalars,
                        clearance={k: np.inf if v is None else v for k, v in document["clearance"].items()},
                        reasons=tuple(document["reasons"]), map=_map_from(document["map"]), lead=document.get("lead"),
+                       pattern=document.get("pattern", ISO), ideal=document.get("ideal", 0.0),
                        lobes=tuple(orientation_from(lobe) for lobe in document["lobes"]))
 
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.plan.choices import ISO
+
 Array = NDArray[np.float64]
 
 #: What came of a face; "failed" where the program itself went wrong, which says nothing of the face.
@@ -76,6 +78,11 @@ class Orientation:
     lead : float or None
         Where the axis moves: its constant angle from the normal towards growing `feed`, or the mean of its angles to
         the normal, rad; `axis` is the mean one then.  None for a fixed axis.
+    pattern : str
+        How the passes lie: one of `toolaxis.plan.choices.PATTERNS`.
+    ideal : float
+        What passes with this axis tend to as the scallop height goes to zero, mm, each place cut in its best direction;
+        no bound.  0 where it is not known.
     """
 
     axis: Array | None
@@ -93,3 +100,5 @@ class Orientation:
     lobes: "tuple[Orientation, ...]" = ()
     unreached: float = 0.0
     lead: float | None = None
+    pattern: str = ISO
+    ideal: float = 0.0

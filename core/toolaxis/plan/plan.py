@@ -11,8 +11,9 @@ from toolaxis.errors import Fault, InvalidInput
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
-from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES
+from toolaxis.plan.choices import DIRECTIONS, FIELD, ISO, OBJECTIVES, PASSES, PLANES
 from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
 from toolaxis.shape.part import Part
@@ -22,6 +23,8 @@ from toolaxis.work import LIMIT
 
 Array = NDArray[np.float64]
 
+#: How passes lie that do not lie along a parameter.
+_LIE = {PLANES: "planes", FIELD: "a field"}
 #: What a change of the tool axis between operations is reckoned to take, s.
 INDEX_SECONDS = 6.0
 
@@ -126,15 +129,14 @@ class PlanInputs:
                                "give a smaller scallop height")
 
 
-def describe_feed(feed: str, inputs: PlanInputs) -> str:
+def describe_feed(found: Orientation) -> str:
     """How passes go, as tables and titles say it: "u", or "u, in planes" for planes in the mean direction of u.
 
     Parameters
     ----------
-    feed : "u" or "v"
-    inputs : PlanInputs
+    found : Orientation
     """
-    return feed if inputs.passes == ISO else f"{feed}, in {inputs.passes}"
+    return found.feed if found.pattern == ISO else f"{found.feed}, in {_LIE[found.pattern]}"
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.machine.kinematics import linear_coordinates, placement
-from toolaxis.plan.choices import PLANES
+from toolaxis.plan.choices import FIELD, ISO, PLANES
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Program, ProgramContext
 from toolaxis.post.indexed_positions import IndexedPosition
@@ -15,6 +15,9 @@ from toolaxis.post.program import Dialect, number
 from toolaxis.post.tcp_program import TcpPath, TipControl, courses
 
 Array = NDArray[np.float64]
+
+_PATTERNS = {PLANES: "along parallel planes that contain the tool axis",
+             FIELD: "along the levels of a field, as far apart as their strips are wide"}
 
 
 def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "not judged yet") -> str:
@@ -129,8 +132,9 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
             ["part", program.plan.part.source or "-"], ["scallop height", f"{program.inputs.scallop:g} mm"],
             ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict of the plan", verdict],
             ["not checked", ", ".join(program.plan.not_checked)]]
-    if program.inputs.passes == PLANES:
-        rows.insert(4, ["passes", "along parallel planes that contain the tool axis"])
+    patterns = {op.orientation.pattern for op in program.plan.operations if op.done} - {ISO}
+    if patterns:
+        rows.insert(4, ["passes", ", ".join(_PATTERNS[name] for name in sorted(patterns))])
     if missing:
         rows.append(["NOT IN THE PROGRAM", f"no axis was found for {', '.join(missing)}"])
     return _table(["", ""], rows)

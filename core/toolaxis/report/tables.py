@@ -71,7 +71,7 @@ def _operation_row(op: Operation, inputs: PlanInputs) -> list[str]:
     found = op.orientation
     if not op.done:
         return [op.face.label, "left to clean-up" if op.left else found.outcome, *["-"] * 6]
-    return [op.face.label, _axis(op), describe_feed(found.feed, inputs), str(found.passes),
+    return [op.face.label, _axis(op), describe_feed(found), str(found.passes),
             number(found.average_strip_width, 3), number(found.length, 1), number(found.gouge, 4),
             _clearances(found.clearance)]
 
@@ -85,7 +85,7 @@ def plan_table(plan: Plan) -> Table:
         Gouge is an upper bound, clearance a lower one.
     """
     blades = plan.blades
-    rows = [[*_operation_row(op, plan.inputs), *_links(op, plan.inputs), _clean_up(op),
+    rows = [[*_operation_row(op, plan.inputs), _over_ideal([op]), *_links(op, plan.inputs), _clean_up(op),
              "clean-up" if op.left else op.orientation.outcome]
             for op in plan.operations if blades is None or op.number not in blades.copies]
     if blades is not None:
@@ -101,12 +101,31 @@ def plan_table(plan: Plan) -> Table:
         shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
         rows = [[*row[:2], _angles(plan, op), *row[2:]] for row, op in zip(rows, shown, strict=True)]
         title += f", {plan.machine.machine.name}"
-    columns = [*_COLUMNS, ("with links\nmm", "right"), ("time\nmin:s", "right"), ("clean-\nup %", "right"),
-               ("outcome", "left")]
+    columns = [*_COLUMNS, ("over\nideal %", "right"), ("with links\nmm", "right"), ("time\nmin:s", "right"),
+               ("clean-\nup %", "right"), ("outcome", "left")]
     if plan.machine is not None:
         columns.insert(2, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    return table(title, columns, rows, "\n".join(filter(None, (_BOUNDS, points, reckoning(plan), _order(plan)))))
+    notes = _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
+    return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def _over_ideal(operations: Sequence[Operation]) -> str:
+    """By how many percent cuts are longer than the ideal ones with the same axes; a dash where these are not known."""
+    ideal = sum(op.orientation.ideal for op in operations)
+    known = all(op.orientation.ideal > 0 for op in operations) and ideal > 0
+    return number(100 * (sum(op.orientation.length for op in operations) / ideal - 1), 1) if known else "-"
+
+
+def _ideal(plan: Plan) -> str:
+    """What the ideal lengths of a plan come to; empty where one is not known."""
+    done = [op for op in plan.operations if op.done]
+    over = _over_ideal(done)
+    if over == "-":
+        return ""
+    length = sum(op.orientation.ideal for op in done)
+    return (f"ideal: {length:.1f} mm with these axes, to which passes tend as the scallop height goes to zero (no "
+            f"bound); the cuts are {over} % longer, run-outs included")
 
 
 def _order(plan: Plan) -> str:

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path.estimate import Estimates, Estimator
-from toolaxis.path.parametrization import Cut, IsoChart
-from toolaxis.path.pass_count import measure
-from toolaxis.path.pass_pattern import PassChart, chart_of
+from toolaxis.path.field.direction_table import tabulate_directions
+from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_pattern import PassPattern, patterns_of
 from toolaxis.path.sampling import Samples
-from toolaxis.plan.choices import ISO
+from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -20,12 +20,13 @@ from toolaxis.tools.tool import Tool
 Array = NDArray[np.float64]
 
 OBJECTIVES = ("length", "passes", "time")
-FEEDS = ("u", "v")
 #: What a mm of the clean-up tool's passes is worth in mm of this tool's: a ball a quarter as large takes about half the
 #: feed rate.  With 3, the example with one boss took a fifth more cutting length for a tenth less to clean up, dearer
 #: even by that measure; with 1, a narrow strip of this tool costs no more than the clean-up tool's, which comes with a
 #: seam, so that reachable area would be left.
 CLEAN_UP = 2.0
+#: Cells each way from which the ideal length of an axis is told.
+_IDEAL = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +48,7 @@ class MachiningCost:
     feed : "u" or "v", optional
         The only feed that may be chosen, where one is asked for.
     passes : str
-        One of `toolaxis.plan.choices.PASSES`; screening prices passes along parameters in any case.
+        One of `toolaxis.plan.choices.PASSES`.
 
     Raises
     ------
@@ -82,24 +83,32 @@ class MachiningCost:
         return Estimator.of(self.face, self.tool, self.scallop, self.allowance)
 
     @cached_property
-    def charts(self) -> tuple[IsoChart, IsoChart]:
-        """The face in its own parameters, for feed u and v."""
-        return IsoChart(self.face, "u"), IsoChart(self.face, "v")
+    def patterns(self) -> tuple[PassPattern, ...]:
+        """The patterns of passes of which the shortest is taken."""
+        return patterns_of(self.estimator, self.passes)
 
-    def chart(self, axis: Array, feed: str) -> PassChart:
-        """The chart by which passes with an axis are laid.
+    def cut(self, axis: Array) -> Cut:
+        """What cuts with an axis.
 
         Parameters
         ----------
         axis : (3,) array
-        feed : str
-
-        Raises
-        ------
-        UnsupportedGeometry
-            When passes of this kind do not go with the face.
         """
-        return chart_of(self.face, axis, feed, self.passes)
+        made = Cut(self.tool, axis, self.scallop, self.allowance)
+        made.__dict__["leans"] = self.estimator.leans
+        return made
+
+    def ideal_length(self, axis: Array) -> float:
+        """What passes with an axis tend to as the scallop height goes to zero, mm; 0 where it is not known.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        """
+        try:
+            return tabulate_directions(self.face, self.cut(axis), _IDEAL).ideal_length
+        except UnsupportedGeometry:
+            return 0.0
 
     @property
     def samples(self) -> Samples:
@@ -114,7 +123,11 @@ class MachiningCost:
         axes : (k, 3) array
             Unit vectors.
         """
-        return self.estimator.many(axes, exact=False)
+        found = [pattern.screen(axes) for pattern in self.patterns]
+        best = np.argmin([one.length for one in found], axis=0)[None]
+        passes, length = (np.take_along_axis(np.array(values), best, axis=0)[0]
+                          for values in ([one.passes for one in found], [one.length for one in found]))
+        return Estimates(passes, length)
 
     def values(self, axes: Array, found: Estimates) -> Array:
         """What is to be least for axes in both feed directions, (k, 2).
@@ -156,13 +169,8 @@ class MachiningCost:
         axis : (3,) array
         feed : str
         """
-        cut = Cut(self.tool, axis, self.scallop, self.allowance)
-        cut.__dict__["leans"] = self.estimator.leans
-        try:
-            chart = self.charts[FEEDS.index(feed)] if self.passes == ISO else self.chart(axis, feed)
-        except UnsupportedGeometry:  # told where such passes are made
-            return np.inf, np.inf
-        found = measure(chart, cut)
+        cut = self.cut(axis)
+        found = min((pattern.count(cut, feed) for pattern in self.patterns), key=lambda one: one.length)
         return found.passes, found.length
 
     def charge(self, length: float, unreached: float) -> float:

@@ -11,9 +11,10 @@ from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, Screening
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.numeric.rounding import round_costs, round_significant
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.cost import MachiningCost
 from toolaxis.work import spend
 
 Array = NDArray[np.float64]

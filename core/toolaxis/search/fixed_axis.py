@@ -21,15 +21,15 @@ from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
-from toolaxis.path.parametrization import Cut
-from toolaxis.path.pass_layout import Layout, lay_out
+from toolaxis.path.pass_layout import Layout, lay_out, pass_length
+from toolaxis.path.pass_pattern import pattern_name
 from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import left_over, may_stay
-from toolaxis.plan.choices import ISO
+from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.search.cost import MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
@@ -150,13 +150,26 @@ class FaceProblem:
         ----------
         axis : (3,) array
         feed : str
+
+        Raises
+        ------
+        InvalidInput, UnsupportedGeometry
+            When the axis leaves no strip, or passes of this kind do not go with the face.
         """
-        worth, feasibility = self.worth, self.feasibility
-        cut = Cut(worth.tool, axis, worth.scallop, worth.allowance)
-        placed = lay_out(worth.chart(axis, feed), cut, lambda uv: feasibility.reach(uv, axis), self.progress)
-        if isinstance(placed.chart, PlaneChart):
-            placed.chart.check_pieces(placed.pieces)
-        return placed
+        cut, reach = self.worth.cut(axis), lambda uv: self.feasibility.reach(uv, axis)
+        found: list[Layout] = []
+        refused: list[InvalidInput | UnsupportedGeometry] = []
+        for pattern in self.worth.patterns:
+            try:
+                placed = lay_out(pattern.chart(cut, feed), cut, reach, self.progress)
+                if isinstance(placed.chart, PlaneChart):
+                    placed.chart.check_pieces(placed.pieces)
+                found.append(placed)
+            except (InvalidInput, UnsupportedGeometry) as reason:
+                refused.append(reason)
+        if not found:
+            raise refused[0]
+        return found[0] if len(found) == 1 else min(found, key=pass_length)
 
     def traced(self, placed: Layout) -> ToolPath:
         """Passes with their links.
@@ -285,7 +298,9 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
     passes : str
-        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis.
+        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis; "field":
+        along the levels of a field that keeps them as far apart as their strips are wide; "auto": the shorter of "iso"
+        and "field".
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional
@@ -322,6 +337,8 @@ def find_axis(job: FaceProblem, method: str = "sphere",
               starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
     """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
 
+    Where the shorter of several patterns of passes is to be taken, each has its own axis.
+
     Parameters
     ----------
     job : FaceProblem
@@ -330,6 +347,18 @@ def find_axis(job: FaceProblem, method: str = "sphere",
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others.
     """
+    names = [pattern.name for pattern in job.worth.patterns]
+    found = _find_axis(replace(job, worth=replace(job.worth, passes=names[0])), method, starts)
+    for name in names[1:]:
+        if found[0].outcome == "cancelled":
+            break
+        with suppress(OutOfWork):
+            found = better_of(found, _find_axis(replace(job, worth=replace(job.worth, passes=name)), method, starts))
+    return found
+
+
+def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> tuple[Orientation, ToolPath | None]:
+    """The axis and its passes for passes of one pattern."""
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
     ledger = AxisTable(job.feasibility, job.worth, job.progress, first)
     result: tuple[Orientation, ToolPath | None] | None = None
@@ -517,7 +546,8 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     width = area * (1 - unreached) / length if length > 0 else 0.0
     words = left_reasons(made.zones, job.worth.face)
     found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
-                        "feasible", words, unreached=unreached)
+                        "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
+                        ideal=job.worth.ideal_length(one.axis))
     return CheckedCandidate(one, found, proof, path, made.longer)
 
 

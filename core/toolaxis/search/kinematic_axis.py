@@ -19,7 +19,8 @@ from toolaxis.machine.feed_polytopes import Level, box, check_jerk_stated
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, as_rows
 from toolaxis.path.sampling import sample_passes
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.plan.choices import FEEDS
+from toolaxis.search.cost import MachiningCost
 from toolaxis.search.direction_grid import spiral
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.hemisphere import REPELLED, SPACING, TIE, frame_of, search

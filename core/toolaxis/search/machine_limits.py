@@ -177,7 +177,8 @@ def make_room(ledger: AxisTable, axis: Array, found: Violation) -> None:
 
 def better_of(one: tuple[Orientation, ToolPath | None],
               other: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
-    """The better one of a result and of another search that left the machine the room that passes turned out to need.
+    """The better one of a result and of another search: one that left the machine the room that passes turned out to
+    need, or one for passes of another pattern.
 
     Parameters
     ----------

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.fixed_axis_time import machining_time
-from toolaxis.search.cost import FEEDS, MachiningCost
+from toolaxis.plan.choices import FEEDS, FIELD
+from toolaxis.search.cost import MachiningCost
 from toolaxis.search.local_search import CountedAxis
 
 Array = NDArray[np.float64]
@@ -29,7 +30,8 @@ def least_made(worth: MachiningCost, found: list[CountedAxis],
 
     For the objective "time" these are the ones of nearly the least estimate.  For others, where the best of few passes
     is sought, those that count less than the best one so far takes and leave no more to clean-up than the first; ties
-    stay in their order.  A face of many passes keeps the order of the counts.
+    stay in their order.  A face of many passes keeps the order of the counts, but for passes in a field, whose counts are
+    those of a coarse one.
 
     Parameters
     ----------
@@ -40,7 +42,8 @@ def least_made(worth: MachiningCost, found: list[CountedAxis],
         Lays the passes of an axis and a feed.
     """
     timed = worth.pace is not None
-    if len(found) < 2 or (not timed and found[0].passes > _FEW):
+    told = found and found[0].passes > _FEW and worth.passes != FIELD
+    if len(found) < 2 or (not timed and told):
         return found
     few: list[CountedAxis] = []
     values: list[float] = []

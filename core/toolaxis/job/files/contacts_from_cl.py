@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.contact_from_cl import contacts_of
 from toolaxis.contact.strip.width import strip_width
-from toolaxis.path.pass_pattern import chart_of
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 
@@ -70,7 +70,6 @@ def widths_along(plan: Plan, op: Operation) -> list[tuple[Array, Array]]:
     assert axis is not None and path is not None
     rows, uv = _touching(plan, op, path)
     points = op.face.evaluate(uv).point
-    chart = chart_of(op.face, axis, op.orientation.feed, plan.inputs.passes)
     follows = (np.diff(rows) == 1) & (path.kind[rows[1:]] == Motion.CUT)
     lines = []
     for first, last in zip(np.flatnonzero(~np.append(False, follows)), np.flatnonzero(~np.append(follows, False)),
@@ -78,9 +77,10 @@ def widths_along(plan: Plan, op: Operation) -> list[tuple[Array, Array]]:
         dense = _dense(uv[first:last + 1], points[first:last + 1], _APART * op.face.diagonal)
         dense = dense[op.face.contains(dense)]
         if len(dense) > 1:
-            feed = chart.feed_at(dense)
+            along = op.face.evaluate(dense).point
+            feed = op.orientation.feed if op.orientation.pattern == ISO else np.gradient(along, axis=0)
             width = strip_width(op.face, plan.tool, dense, axis, plan.inputs.scallop, feed).sum(axis=1)
-            lines.append((op.face.evaluate(dense).point, width))
+            lines.append((along, width))
     return lines
 
 

@@ -13,11 +13,11 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.work_coordinates import WorkCoordinates, work_coordinates
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.pass_pattern import feeds_over
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import FaceProblem, check_candidate, task
 from toolaxis.search.local_search import count_row

@@ -34,13 +34,12 @@ from toolaxis.partition.face_division import MOST, Divider, Regions
 from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
 from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
-from toolaxis.plan.choices import ISO
+from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.fixed_axis import task as search_task
 from toolaxis.search.machine_limits import intersect_limits

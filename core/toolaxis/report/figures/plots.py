@@ -91,7 +91,7 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
     _close_up(close, op, (back, axis))
     _with_tool(whole, plan, op, (np.cross(axis, np.cross(normal + 0.4 * op.frame.x - 0.9 * op.frame.y, axis))
                                  + 0.35 * axis, axis))
-    along = describe_feed(op.orientation.feed, plan.inputs)
+    along = describe_feed(op.orientation)
     close.set_title(f"{op.name}: {op.orientation.passes} passes along {along}, "
                     f"cutting length {op.orientation.length:.0f} mm", fontsize=10)
     lead, shown = op.orientation.lead, ", ".join(f"{value:+.3f}" for value in axis)

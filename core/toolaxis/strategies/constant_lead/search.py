@@ -18,8 +18,8 @@ from toolaxis.contact.placement import place
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.violations import Violation
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.search.messages import sentence

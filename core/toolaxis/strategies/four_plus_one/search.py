@@ -22,8 +22,8 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.path.moving_axis import MovingCut
 from toolaxis.path.pass_count import Count
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem, find_axis
 from toolaxis.search.machine_limits import mounting_of
 from toolaxis.search.messages import sentence

@@ -52,7 +52,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
     if op.done:
         widths_picture(width_lines(plan, op, task), (op.face, plan.tool),
                        op.name).savefig(folder / f"{op.name}-widths.png")
-    if op is studied and plan.inputs.passes == ISO:  # the estimate is one of passes along parameters
+    if op is studied and op.orientation.pattern == ISO:  # the estimate is one of passes along parameters
         _draw_study(plan, op, task, folder)
 
 
@@ -115,7 +115,7 @@ def width_lines(plan: Plan, op: Operation, job: FaceProblem) -> list[tuple[Array
         uv = placed.chart.uv(np.linspace(low, high, _POINTS), np.full(_POINTS, step))
         uv = uv[_reach(uv)]
         if len(uv) > 1:
-            along = job.worth.chart(axis, feed).feed_at(uv)
+            along = placed.chart.feed_at(uv)
             width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, along).sum(axis=1)
             lines.append((op.face.evaluate(uv).point, width))
     return lines

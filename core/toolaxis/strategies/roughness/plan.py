@@ -10,8 +10,8 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.path.moving_axis import ConstantLeadField, MovingCut
 from toolaxis.path.pass_layout import Layout
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, plan_passes

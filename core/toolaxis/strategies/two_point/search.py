@@ -17,8 +17,8 @@ from toolaxis.feasibility.violations import GOUGE, LIMITS, Violation
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.links import Linking
+from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.cost import FEEDS
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import while_moving

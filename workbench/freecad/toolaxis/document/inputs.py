@@ -86,7 +86,8 @@ class JobInputs:
     roughness : float
         Greatest Ra across the feed, micrometres; for strategies that look at it.
     passes : str
-        "iso" or "planes": along parameters of the face, or in parallel planes that contain the axis.
+        One of `toolaxis.plan.choices.PASSES`: along parameters of the face, in parallel planes that contain the axis,
+        in a field, or the shorter of the first and the last.
     """
 
     faces: tuple = ()

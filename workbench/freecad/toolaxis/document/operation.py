@@ -32,8 +32,8 @@ INPUTS = (
     Property("Enumeration", "Objective", _ASKED, "What is to be least", False, False, ("length", "passes")),
     Property("Enumeration", "Direction", _ASKED, "Direction of the passes", False, False,
              DIRECTIONS),
-    Property("Enumeration", "CutPattern", _ASKED, "Passes along parameters of the face, or in parallel planes", False,
-             False, PASSES),
+    Property("Enumeration", "CutPattern", _ASKED, "Passes along parameters of the face, in parallel planes, or in a "
+             "field", False, False, PASSES),
     Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting motion"),
     Property("Float", "SpindleSpeed", _ASKED, "rev/min"),
     Property("String", "Regions", _ASKED, "Sub-surfaces of each face: a number, auto, or nothing for whole faces"),

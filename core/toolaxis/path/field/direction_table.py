@@ -1,0 +1,244 @@
+"""What passes in every direction cost at places of a face: how wide their strip is, and how far the tip goes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.placement import place
+from toolaxis.contact.strip.width import strip_width
+from toolaxis.errors import UnsupportedGeometry
+from toolaxis.numeric.vectors import dot
+from toolaxis.path.parametrization import Cut
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Directions in half a turn at which widths are taken, and the highest harmonic of twice the angle that is kept.
+_DIRECTIONS, _HARMONICS = 16, 6
+#: Strips narrower than this share of the widest at a place, or of the scallop height, count as so wide: series of
+#: logarithms go no deeper.
+_NARROW, _NARROWEST = 0.05, 1e-3
+#: Rates with a parameter below this share of the face's diagonal over its range are those of a pole; ends of a face
+#: nearer than this share of its diagonal meet.
+_POLE, _MEET = 1e-6, 1e-6
+#: Step of the differences of tips, as a share of the parameter range.
+_STEP = 1e-5
+#: Directions in half a turn among which the best one is looked for.
+_TRIED = 64
+
+
+class Harmonics(NamedTuple):
+    """The logarithm of a number that depends on a direction, at n places, as a series in twice its angle.
+
+    cosine : (n, m + 1) array;  sine : (n, m + 1) array, of which the first column is zero
+    """
+
+    cosine: Array
+    sine: Array
+
+    def at(self, double: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Values (n,), and their rates with the angle (n,), at one direction for each place.
+
+        Parameters
+        ----------
+        double : (cosine, sine)
+            Of twice the angle, (n,) each.
+        """
+        c, s = double
+        value, rate = self.cosine[:, 0].copy(), np.zeros(len(c))
+        x, y = np.ones(len(c)), np.zeros(len(c))
+        for m in range(1, self.cosine.shape[1]):
+            x, y = x * c - y * s, y * c + x * s
+            a, b = self.cosine[:, m], self.sine[:, m]
+            value += a * x + b * y
+            rate += 2 * m * (b * x - a * y)
+        return value, rate
+
+    def over(self, angles: Array) -> Array:
+        """Values (n, k) at k directions for every place.
+
+        Parameters
+        ----------
+        angles : (k,) array
+        """
+        m = np.arange(self.cosine.shape[1])
+        turns = 2 * m[:, None] * angles
+        return np.asarray(self.cosine @ np.cos(turns) + self.sine @ np.sin(turns))
+
+
+@dataclass(frozen=True, eq=False)
+class DirectionTable:
+    """A face with a cut, made ready for fields of passes; make it with `tabulate_directions`.
+
+    The angle of a direction is that of the way from pass to pass: from Su towards the other side of the face in which v
+    grows.
+
+    Attributes
+    ----------
+    face : Face
+    uv : (n, 2) array
+        Even places over the parameter range, u slowest, its borders among them: there passes are often narrowest.
+    count : int
+        Places each way.
+    area : (n,) array
+        mm^2 of the face that a place stands for; 0 off the face.
+    metric : (n, 3) array
+        |Su|, and the components of Sv along Su and across it.
+    width : Harmonics
+        Of the strip width, mm, across passes that lie one after the other in the direction.
+    tip : Harmonics
+        Of the way of the tip per way of the contact along these passes.
+    cut_everywhere : bool
+        Whether every place has a strip in some direction.
+    """
+
+    face: Face
+    uv: Array
+    count: int
+    area: Array
+    metric: Array
+    width: Harmonics
+    tip: Harmonics
+    cut_everywhere: bool
+
+    @cached_property
+    def ideal_length(self) -> float:
+        """What passes tend to as the scallop height goes to zero, mm of the tip's motion.
+
+        The integral over the face of the tip's way over the strip width, each place cut in its best direction. It is
+        no bound: strips of finite height vary across, and contacts beside the face help.
+        """
+        angles = np.arange(_TRIED) * np.pi / _TRIED
+        best = (self.tip.over(angles) - self.width.over(angles)).min(axis=1)
+        return float(self.area @ np.exp(best))
+
+
+def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
+    """Widths of strips in all directions over a face.
+
+    Parameters
+    ----------
+    face : Face
+    cut : Cut
+        With a fixed axis.
+    count : int
+        Places each way.
+
+    Raises
+    ------
+    UnsupportedGeometry
+        Where the face closes on itself or has a pole inside.
+
+    Notes
+    -----
+    Widths are exact: where the second order knows none, since a hollow is as tight as the cutter, strips of finite
+    height still have one.
+
+    **Properties**: 1. moving the face and the axis together changes nothing; 2. to the second order the width is
+    sqrt(8 h k . D^-1 k) with D the difference of the second forms of cutter and surface, k the way from pass to pass.
+    """
+    _check_open(face)
+    uv = _places(face, count)
+    angles = np.arange(_DIRECTIONS) * np.pi / _DIRECTIONS
+    frame = feed_frame(face, uv)
+    halves = strip_width(face, cut.tool, np.repeat(uv, _DIRECTIONS, axis=0), cut.axis, cut.scallop,
+                         feeds_in(frame, angles), cut.allowance)
+    width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), _DIRECTIONS)
+    widest = width.max(axis=1)
+    least = np.maximum(_NARROW * widest, _NARROWEST * cut.scallop)[:, None]
+    inside = face.contains(uv)
+    u0, u1, v0, v1 = face.bounds
+    d = face.evaluate(uv)
+    share = np.ones(count)
+    share[[0, -1]] = 0.5
+    cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
+    area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
+    return DirectionTable(face, uv, count, area, frame[2], _series(np.log(np.maximum(width, least))),
+                          _series(np.log(_tip_ways(face, cut, uv, angles))),
+                          bool((widest[inside] > _NARROWEST * cut.scallop).all()))
+
+
+def _check_open(face: Face) -> None:
+    u0, u1, v0, v1 = face.bounds
+    share = np.linspace(0.0, 1.0, 5)
+    u, v = u0 + (u1 - u0) * share, v0 + (v1 - v0) * share
+    for name, low, high in (("u", np.column_stack([np.full(5, u0), v]), np.column_stack([np.full(5, u1), v])),
+                            ("v", np.column_stack([u, np.full(5, v0)]), np.column_stack([u, np.full(5, v1)]))):
+        apart = np.linalg.norm(face.evaluate(low).point - face.evaluate(high).point, axis=1)
+        if (apart <= _MEET * face.diagonal).all():
+            raise UnsupportedGeometry(f"face {face.label} is closed in {name}: passes in a field need a face that is "
+                                      "open both ways; use iso-parametric passes, or divide the face")
+
+
+def _places(face: Face, count: int) -> Array:
+    u0, u1, v0, v1 = face.bounds
+    grid = np.meshgrid(np.linspace(u0, u1, count), np.linspace(v0, v1, count), indexing="ij")
+    return np.stack(grid, axis=-1).reshape(-1, 2)
+
+
+def feed_frame(face: Face, uv: Array) -> tuple[Array, Array, Array]:
+    """Unit vectors along Su and across it towards growing v, (n, 3) each, and the metric in them, (n, 3).
+
+    Parameters
+    ----------
+    face : Face
+    uv : (n, 2) array
+
+    Raises
+    ------
+    UnsupportedGeometry
+        Where a place has no two directions, as a pole.
+    """
+    d, normal = face.evaluate(uv), face.normal(uv)
+    size = np.linalg.norm(d.su, axis=1)
+    first = d.su / np.maximum(size, np.finfo(float).tiny)[:, None]
+    second = np.cross(normal, first)
+    second *= np.where(dot(second, d.sv) < 0, -1.0, 1.0)[:, None]
+    metric = np.column_stack([size, dot(first, d.sv), dot(second, d.sv)])
+    u0, u1, v0, v1 = face.bounds
+    poor = np.flatnonzero(np.minimum(size, metric[:, 2]) * max(u1 - u0, v1 - v0) <= _POLE * face.diagonal)
+    if len(poor):
+        u, v = uv[poor[0]]
+        raise UnsupportedGeometry(f"face {face.label} has no two directions at u {u:.4g}, v {v:.4g}, as in a pole: "
+                                  "passes in a field do not go there; use iso-parametric passes")
+    return first, second, metric
+
+
+def feeds_in(frame: tuple[Array, Array, Array], angles: Array) -> Array:
+    """Feeds of passes that lie one after the other in the directions, (n k, 3), a place's one after the other.
+
+    Parameters
+    ----------
+    frame
+        As `feed_frame` returns it.
+    angles : (k,) array
+        From the first direction of the frame towards the second.
+    """
+    first, second, _ = frame
+    feed = np.cos(angles)[:, None] * second[:, None] - np.sin(angles)[:, None] * first[:, None]
+    return np.asarray(feed.reshape(-1, 3))
+
+
+def _tip_ways(face: Face, cut: Cut, uv: Array, angles: Array) -> Array:
+    """Way of the tip per way of the contact along passes, (n, k)."""
+    metric = feed_frame(face, uv)[2]
+    u0, u1, v0, v1 = face.bounds
+    rates = []
+    for shift in np.diag([_STEP * (u1 - u0), _STEP * (v1 - v0)]):
+        ends = [place(face, cut.tool, uv + sign * shift, cut.axis, cut.allowance) for sign in (1, -1)]
+        rates.append((ends[0] - ends[1]) / (2 * shift.sum()))
+    along = rates[0] / metric[:, :1]
+    across = (rates[1] - metric[:, 1:2] * along) / metric[:, 2:]
+    way = np.cos(angles)[:, None] * across[:, None] - np.sin(angles)[:, None] * along[:, None]
+    return np.asarray(np.maximum(np.linalg.norm(way, axis=2), _NARROWEST))
+
+
+def _series(values: Array) -> Harmonics:
+    """Values (n, k) at even directions over half a turn, as a series in twice the angle."""
+    turns = np.fft.rfft(values, axis=1)[:, :_HARMONICS + 1] / values.shape[1]
+    turns[:, 1:] *= 2
+    return Harmonics(np.ascontiguousarray(turns.real), np.ascontiguousarray(-turns.imag))
