@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.machine.work_coordinates import mean_feed_across
 from toolaxis.path.estimate import Estimates, Estimator
-from toolaxis.path.field.direction_table import tabulate_directions
+from toolaxis.path.field.direction_table import DirectionTable, tabulate_directions
 from toolaxis.path.field.field_chart import FieldChart
 from toolaxis.path.field.ideal_lengths import DirectionForms
 from toolaxis.path.field.pass_field import find_field
@@ -31,7 +31,7 @@ PassChart: TypeAlias = IsoChart | PlaneChart | FieldChart
 #: Places each way whose feed directions make up the mean one.
 _GRID = 16
 #: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
-_PRICED, _MADE = (12, 8, 25), (24, 14, 60)
+_PRICED, _MADE = (16, 8, 25), (28, 14, 60)
 #: Fields that are remembered.
 _KEPT = 64
 
@@ -114,6 +114,7 @@ class FieldPasses:
     estimator: Estimator
     name: str = FIELD
     _kept: dict[tuple[bytes, str], FieldChart] = field(default_factory=dict)
+    _last: dict[bytes, DirectionTable] = field(default_factory=dict)
 
     @cached_property
     def _forms(self) -> DirectionForms:
@@ -126,15 +127,23 @@ class FieldPasses:
 
     def count(self, cut: Cut, feed: str) -> Count:
         """About the number and the length of the passes with one axis, from a coarse field."""
-        cells, count, rounds = _PRICED
+        _, count, rounds = _PRICED
         try:
-            table = tabulate_directions(self.estimator.face, cut, cells)
+            table = self._priced(cut)
         except UnsupportedGeometry:
             return Count(np.inf, np.inf)
         if not table.cut_everywhere:
             return Count(np.inf, np.inf)
         found = find_field(table, 1 - FEEDS.index(feed), count, rounds)
         return Count(found.passes, found.length)
+
+    def _priced(self, cut: Cut) -> DirectionTable:
+        """The table of an axis by which it is priced, the same for both feeds: the last one is kept."""
+        key = cut.axis.tobytes()
+        if key not in self._last:
+            self._last.clear()
+            self._last[key] = tabulate_directions(self.estimator.face, cut, _PRICED[0])
+        return self._last[key]
 
     def chart(self, cut: Cut, feed: str) -> FieldChart:
         """The face in the levels of the field of least length."""

@@ -14,11 +14,12 @@ from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.feasibility.violations import BACK, FREE, Violation
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.plan.choices import FIELD
 from toolaxis.search.branch_and_bound import hunt
 from toolaxis.search.direction_grid import COVER, own_frame, ring, spiral
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.flank_axes import flank_axes
-from toolaxis.search.local_search import CountedAxis, count_row, polish, proven, sound
+from toolaxis.search.local_search import FINEST, CountedAxis, count_row, polish, proven, sound
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -39,6 +40,8 @@ _POOR = 1.5
 _POLISHED = 4
 #: Lobes whose first exact value is this much worse than the best are not polished.
 _HOPELESS = 0.02
+#: The same where values are those of coarse fields of passes, and the last radius of the rings then, rad.
+_DOUBTED, _COARSE = 0.2, radians(0.3)
 #: Values closer than this are ties.
 TIE = 0.001
 #: Free axes so near a refused one are not tried, rad.
@@ -219,9 +222,10 @@ def local_optima(ledger: AxisTable, spacing: float) -> list[CountedAxis]:
             starts.append(start)
     starts.sort(key=lambda c: c.value)
     done: list[CountedAxis] = []
+    doubt, finest = (_DOUBTED, _COARSE) if ledger.worth.passes == FIELD else (_HOPELESS, FINEST)
     for k, start in enumerate(starts):
-        hopeless = start.value > starts[0].value * (1 + _HOPELESS) or k >= _POLISHED
-        done.append(start if hopeless else polish(ledger, start, spacing))
+        hopeless = start.value > starts[0].value * (1 + doubt) or k >= _POLISHED
+        done.append(start if hopeless else polish(ledger, start, spacing, finest))
     return rank_candidates(ledger, distinct(sorted(done, key=lambda c: c.value)))
 
 

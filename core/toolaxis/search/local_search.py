@@ -16,7 +16,7 @@ from toolaxis.search.evaluated_axes import AxisTable
 Array = NDArray[np.float64]
 
 #: Last radius of the rings, rad: in front of a border that keeps better axes away, and otherwise.
-_FINEST, _FINE = radians(0.02), radians(0.12)
+FINEST, _FINE = radians(0.02), radians(0.12)
 #: Axes of a ring.
 _RING = 6
 #: Smallest step that counts as one, as a share of the value; what is gained by walking on must promise more.
@@ -156,7 +156,7 @@ class _LocalSearch:
         return False
 
 
-def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = _FINEST) -> CountedAxis:
+def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = FINEST) -> CountedAxis:
     """Walk to a local optimum by exact counts.
 
     Rings, turned from one to the next, go around the best axis; where no axis of a ring counts better, the lowest

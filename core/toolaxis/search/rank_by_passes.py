@@ -30,8 +30,8 @@ def least_made(worth: MachiningCost, found: list[CountedAxis],
 
     For the objective "time" these are the ones of nearly the least estimate.  For others, where the best of few passes
     is sought, those that count less than the best one so far takes and leave no more to clean-up than the first; ties
-    stay in their order.  A face of many passes keeps the order of the counts, but for passes in a field, whose counts are
-    those of a coarse one.
+    stay in their order.  A face of many passes keeps the order of the counts, unless they lie in a field: there counts
+    are those of a coarse one.
 
     Parameters
     ----------

@@ -17,8 +17,11 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: Directions in half a turn at which widths are taken, and the highest harmonic of twice the angle that is kept.
-_DIRECTIONS, _HARMONICS = 16, 6
+#: Directions in half a turn at which widths are taken, and the highest harmonic of twice the angle that is kept of what
+#: the form of second degree does not tell.
+_DIRECTIONS, _HARMONICS = 16, 4
+#: The least value of a form, as a share of the square of the least width that was found.
+_POSITIVE = 0.5
 #: Strips narrower than this share of the widest at a place, or of the scallop height, count as so wide: series of
 #: logarithms go no deeper.
 _NARROW, _NARROWEST = 0.05, 1e-3
@@ -31,12 +34,17 @@ _STEP = 1e-5
 _TRIED = 64
 
 
-class Harmonics(NamedTuple):
-    """The logarithm of a number that depends on a direction, at n places, as a series in twice its angle.
+class DirectionFunction(NamedTuple):
+    """The logarithm of a positive number that depends on a direction, at n places.
 
-    cosine : (n, m + 1) array;  sine : (n, m + 1) array, of which the first column is zero
+    To the second order the square of the number is a form of second degree in the direction: how narrow strips are in
+    the worst direction and how wide in the best. The logarithm of what is left is a series in twice the angle.
+
+    form : (n, 3) array, the form's constant, cosine and sine of twice the angle
+    cosine, sine : (n, m + 1) array, of the series; the first column of the sine is zero
     """
 
+    form: Array
     cosine: Array
     sine: Array
 
@@ -49,7 +57,9 @@ class Harmonics(NamedTuple):
             Of twice the angle, (n,) each.
         """
         c, s = double
-        value, rate = self.cosine[:, 0].copy(), np.zeros(len(c))
+        square = self.form[:, 0] + self.form[:, 1] * c + self.form[:, 2] * s
+        value = 0.5 * np.log(square) + self.cosine[:, 0]
+        rate = (self.form[:, 2] * c - self.form[:, 1] * s) / square
         x, y = np.ones(len(c)), np.zeros(len(c))
         for m in range(1, self.cosine.shape[1]):
             x, y = x * c - y * s, y * c + x * s
@@ -67,7 +77,8 @@ class Harmonics(NamedTuple):
         """
         m = np.arange(self.cosine.shape[1])
         turns = 2 * m[:, None] * angles
-        return np.asarray(self.cosine @ np.cos(turns) + self.sine @ np.sin(turns))
+        return np.asarray(0.5 * np.log(self.form @ _degree_two(angles)) + self.cosine @ np.cos(turns)
+                          + self.sine @ np.sin(turns))
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,9 +99,9 @@ class DirectionTable:
         mm^2 of the face that a place stands for; 0 off the face.
     metric : (n, 3) array
         |Su|, and the components of Sv along Su and across it.
-    width : Harmonics
+    width : DirectionFunction
         Of the strip width, mm, across passes that lie one after the other in the direction.
-    tip : Harmonics
+    tip : DirectionFunction
         Of the way of the tip per way of the contact along these passes.
     cut_everywhere : bool
         Whether every place has a strip in some direction.
@@ -101,8 +112,8 @@ class DirectionTable:
     count: int
     area: Array
     metric: Array
-    width: Harmonics
-    tip: Harmonics
+    width: DirectionFunction
+    tip: DirectionFunction
     cut_everywhere: bool
 
     @cached_property
@@ -157,8 +168,8 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     share[[0, -1]] = 0.5
     cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
     area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
-    return DirectionTable(face, uv, count, area, frame[2], _series(np.log(np.maximum(width, least))),
-                          _series(np.log(_tip_ways(face, cut, uv, angles))),
+    return DirectionTable(face, uv, count, area, frame[2], _fitted(np.maximum(width, least), angles),
+                          _fitted(_tip_ways(face, cut, uv, angles), angles),
                           bool((widest[inside] > _NARROWEST * cut.scallop).all()))
 
 
@@ -237,8 +248,23 @@ def _tip_ways(face: Face, cut: Cut, uv: Array, angles: Array) -> Array:
     return np.asarray(np.maximum(np.linalg.norm(way, axis=2), _NARROWEST))
 
 
-def _series(values: Array) -> Harmonics:
-    """Values (n, k) at even directions over half a turn, as a series in twice the angle."""
-    turns = np.fft.rfft(values, axis=1)[:, :_HARMONICS + 1] / values.shape[1]
+def _degree_two(angles: Array) -> Array:
+    """What a form of second degree is made of in directions, (3, k)."""
+    return np.stack([np.ones(len(angles)), np.cos(2 * angles), np.sin(2 * angles)])
+
+
+def _fitted(values: Array, angles: Array) -> DirectionFunction:
+    """Positive values (n, k) at even directions over half a turn, as a function of the direction."""
+    square = values**2
+    terms = _degree_two(angles)
+    weight = 1 / square**2  # errors count by their share of the value
+    normal = np.einsum("ak,bk,nk->nab", terms, terms, weight)
+    form = np.linalg.solve(normal, np.einsum("ak,nk->na", terms, 1 / square)[..., None])[..., 0]
+    swing = np.hypot(form[:, 1], form[:, 2])
+    least = _POSITIVE * square.min(axis=1)
+    form[:, 0] = np.maximum(form[:, 0], 2 * least)
+    form[:, 1:] *= np.minimum(1.0, (form[:, 0] - least) / np.maximum(swing, np.finfo(float).tiny))[:, None]
+    left = np.log(values) - 0.5 * np.log(form @ terms)
+    turns = np.fft.rfft(left, axis=1)[:, :_HARMONICS + 1] / values.shape[1]
     turns[:, 1:] *= 2
-    return Harmonics(np.ascontiguousarray(turns.real), np.ascontiguousarray(-turns.imag))
+    return DirectionFunction(form, np.ascontiguousarray(turns.real), np.ascontiguousarray(-turns.imag))

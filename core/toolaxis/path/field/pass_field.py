@@ -22,6 +22,8 @@ _FIRST_POWERS, _LAST_POWERS = (4.0, 12.0), (12.0, 32.0)
 #: Passes lean at most so much against the parameter along them; how hard more is punished; places each way, off a
 #: trimmed face too, at which it is looked at.
 _STEEPEST, _PUNISHED, _LOOKED = 2.5, 30.0, 24
+#: Least rate across the passes, as a share of the mean one; places each way at which it is kept.
+_LEAST_RATE, _KEPT = 0.02, 96
 #: Weight of the bend of the field.
 _BEND = 1e-3
 #: Levels at which it is asked what the narrowest place of a pass is.
@@ -239,6 +241,20 @@ class FieldProblem:
             value, found = descend(partial(self.cost, power=power), found, rounds)
         return value, found.reshape(self.count, self.count)
 
+    def grown(self, coefficients: Array) -> Array:
+        """Coefficients mixed with those of a straight field, as little as makes the field grow across all passes."""
+        ends = [np.linspace(knots[0], knots[-1], _KEPT) for knots in self.knots]
+        lattice = _Basis.at(self.knots, (ends[0], ends[1]))
+        straight = self.straight(0.0)
+        rate, even = (lattice.rates(one)[self.across] for one in (coefficients, straight))
+        mean = float(rate.mean())
+        if mean <= 0:
+            return straight
+        straight, even = straight * (mean / even.mean()), even * (mean / even.mean())
+        short = np.maximum(_LEAST_RATE * mean - rate, 0.0)
+        share = float((short / np.where(short > 0, even - rate, 1.0)).max())
+        return np.asarray((1 - share) * coefficients + share * straight)
+
     def made(self, coefficients: Array) -> PassField:
         """The field, scaled so that it grows by one from pass to pass, with what its passes come to.
 
@@ -286,7 +302,7 @@ def find_field(table: DirectionTable, across: int, count: int = 14, rounds: int 
     problem = FieldProblem(table, count, across)
     tried = [problem.descend(problem.straight(slope), _FIRST_POWERS, rounds // 2) for slope in _STARTS]
     best = min(tried, key=lambda one: one[0])
-    return problem.made(problem.descend(best[1], _LAST_POWERS, rounds)[1])
+    return problem.made(problem.grown(problem.descend(best[1], _LAST_POWERS, rounds)[1]))
 
 
 def _middles(knots: Array) -> Array:
