@@ -1196,7 +1196,7 @@
   </message>
   <message>
    <source>How many different axes there are in all; automatic: every number is tried, and a curve shows what each comes to.</source>
-   <translation>Wie viele verschiedene Achsen es insgesamt gibt; selbsttätig: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
+   <translation>Wie viele verschiedene Achsen es insgesamt gibt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
   </message>
   <message>
    <source>How the axis of each sub-surface is found; greatest jerk needs a machine; those after it are there for comparison.</source>
@@ -1208,7 +1208,7 @@
   </message>
   <message>
    <source>Into how many sub-surfaces each face is divided; automatic: as many as pay for their index moves, around bosses too.</source>
-   <translation>In wie viele Teilflächen jede Fläche geteilt wird; selbsttätig: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
+   <translation>In wie viele Teilflächen jede Fläche geteilt wird; automatisch: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
   </message>
   <message>
    <source>Job</source>
@@ -1484,7 +1484,7 @@
   </message>
   <message>
    <source>automatic</source>
-   <translation>selbsttätig</translation>
+   <translation>automatisch</translation>
   </message>
   <message>
    <source>ball end, mean normals</source>
