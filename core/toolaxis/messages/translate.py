@@ -108,7 +108,7 @@ def _patterns(language: str) -> tuple[MessagePattern, ...]:
 
 
 @cache
-def _fixed(language: str) -> dict[str, str]:
+def _entries_without_places(language: str) -> dict[str, str]:
     """Entries without places."""
     return {_OPTION.sub("", english): form for english, form in catalogue(language).items()
             if not _PLACE.search(english)}
@@ -167,7 +167,7 @@ def matching(sentence: str, language: str) -> str:
         One of `languages`.
     """
     text = _OPTION.sub("", sentence)
-    if text in _fixed(language):
+    if text in _entries_without_places(language):
         return text
     return next((one.english for one in _patterns(language) if _match(one, text, language)), "")
 
@@ -188,22 +188,22 @@ def translate(sentence: str, language: str, point: str = ".") -> str:
     if language not in languages():
         return sentence
     text = _OPTION.sub("", sentence)
-    if text in _fixed(language):
-        return _fixed(language)[text]
+    if text in _entries_without_places(language):
+        return _entries_without_places(language)[text]
     for one in _patterns(language):
         found = _match(one, text, language)
         if found is not None:
-            values = {name: _joined(value, language) if name in AS_WRITTEN else _value(value, language, point)
+            values = {name: _join_words(value, language) if name in AS_WRITTEN else _value(value, language, point)
                       for name, value in found.groupdict().items()}
             return _PLACE.sub(lambda place, values=values: values[place[1]], one.form)  # type: ignore[misc]
     listed = _list(text, language, point)
     return sentence if listed == text else listed
 
 
-def _joined(text: str, language: str) -> str:
+def _join_words(text: str, language: str) -> str:
     """Words as they are written, with the other language's words between them."""
     for separator in _SEPARATORS:
-        text = text.replace(separator, _fixed(language).get(separator, separator))
+        text = text.replace(separator, _entries_without_places(language).get(separator, separator))
     return text
 
 
@@ -215,7 +215,7 @@ def _list(text: str, language: str, point: str) -> str:
             continue
         made = [translate(item, language, point) for item in items]
         if made != items:
-            return _fixed(language).get(separator, separator).join(made)
+            return _entries_without_places(language).get(separator, separator).join(made)
     return text
 
 
