@@ -53,6 +53,16 @@ def test_a_turned_face_is_matched_whatever_its_parameters(how):
         face.evaluate(uv).point @ matrix[:3, :3].T + matrix[:3, 3], abs=1e-9)
 
 
+@pytest.mark.parametrize("how", ["", "u", "swap v", "swap scaled"])
+def test_parameters_that_do_not_begin_at_zero_are_carried_over(how):
+    face, matrix = rewritten("scaled"), turn_about(POINT, AXIS, ANGLE)
+    other = counterpart(face, matrix, [elsewhere(rewritten(how))])
+    assert other is not None and other.chart is not None
+    uv = face.grid(7, 7)
+    assert other.face.evaluate(other.chart(uv)).point == pytest.approx(
+        face.evaluate(uv).point @ matrix[:3, :3].T + matrix[:3, 3], abs=1e-9)
+
+
 @pytest.mark.parametrize("how", ["", "swap u", "scaled v"])
 def test_pieces_of_the_counterpart_add_up_and_lie_where_the_turn_puts_them(how):
     face, matrix = plain(), turn_about(POINT, AXIS, ANGLE)
