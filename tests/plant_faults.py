@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,6 +25,8 @@ LEFT_OUT = shutil.ignore_patterns(".git", ".venv*", "out", "build", ".mypy_cache
                                   ".import_linter_cache")
 #: s; a run that takes longer has found nothing.
 LIMIT = 600
+#: s that a run which is stopped gets to end what it has started.
+PATIENCE = 30
 #: What pytest answers with: tests passed, a test failed, and the text cannot even be collected.
 PASSED, FAILED, BROKEN = 0, 1, 2
 
@@ -114,7 +116,7 @@ FAULTS = (
     Fault(BENCH + "document/machine_limits.py", "Mounting(load_machine(name), offset, tool.gauge_length)",
           "Mounting(load_machine(name), None, tool.gauge_length)", ("workbench/test_machines.py",)),
     Fault(BENCH + "document/placement.py", "chain.insert(0, other)", "chain.append(other)",
-          ("workbench/test_document_parts.py",)),
+          ("workbench/test_objects_tree.py", "workbench/test_tessellation_offset.py")),
 )
 
 
@@ -167,8 +169,8 @@ def planted(copy: Path, fault: Fault) -> Iterator[None]:
 
 def environment_of(root: Path, copy: Path) -> dict[str, str]:
     """The environment in which the copy is what is imported, by Python and by the FreeCAD that it names."""
-    inner = {name: value.replace(str(root), str(copy)) if name.startswith("TOOLAXIS_") else value
-             for name, value in os.environ.items()}
+    inner = {name: value.replace(str(root), str(copy)).replace(str(ROOT), str(copy))
+             if name.startswith("TOOLAXIS_") else value for name, value in os.environ.items()}
     inner.pop("TOOLAXIS_FREECAD_OLD", None)
     return {**inner, "PYTHONPATH": str(copy / "core"), "TOOLAXIS_SHARED": str(copy / "none")}
 
@@ -184,9 +186,17 @@ def run_tests(copy: Path, files: list[str], environment: dict[str, str]) -> tupl
     except subprocess.TimeoutExpired:
         return None, ""
     finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+        _end(process)
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    """End a run of pytest as Ctrl-C does, so that it ends what it has started, and at once where it does not."""
+    for how, patience in ((signal.SIGINT, PATIENCE), (signal.SIGKILL, None)):
+        if process.poll() is not None:
+            return
+        os.killpg(process.pid, how)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(patience)
 
 
 def failed_test(said: str) -> str:
@@ -206,22 +216,23 @@ def verdict_of(answer: int | None, said: str) -> str:
     return "NOT FOUND" if answer == PASSED else f"not run: {said.strip().splitlines()[-1:]}"
 
 
-def is_there(root: Path, fault: Fault) -> bool:
-    """Whether the text of a fault stands in a tree as it should."""
-    try:
-        checked_text(root, fault)
-        return True
-    except LookupError:
-        return False
+def find_in_older_tree(root: Path, fault: Fault) -> Fault | None:
+    """A fault as it can be planted in a tree with other files: where its text stands once; None where it does not."""
+    holders = [path for name in (CORE, BENCH) for path in sorted((root / name).rglob("*.py"))
+               if fault.old in path.read_text(encoding="utf-8")]
+    if len(holders) != 1 or holders[0].read_text(encoding="utf-8").count(fault.old) != 1:
+        return None
+    moved = fault._replace(file=holders[0].relative_to(root).as_posix())
+    return moved if test_files(root, moved) else None
 
 
-def plant(root: Path, numbers: list[int]) -> int:
+def plant(root: Path, faults: dict[int, Fault]) -> int:
     """Plant faults, print what became of each, and return how many were not found."""
     found, lost = 0, 0
     with copied_tree(root) as copy:
         environment = environment_of(root, copy)
-        for number in numbers:
-            fault, began = FAULTS[number - 1], time.monotonic()
+        for number, fault in faults.items():
+            began = time.monotonic()
             with planted(copy, fault):
                 answer, said = run_tests(copy, test_files(copy, fault), environment)
             verdict = verdict_of(answer, said)
@@ -232,25 +243,30 @@ def plant(root: Path, numbers: list[int]) -> int:
             found += verdict.startswith("found")
             lost += verdict.startswith("NOT")
             print(f"{number:2d}  {fault.file}: {verdict}  ({time.monotonic() - began:.0f} s)", flush=True)
-    print(f"{found} of {found + lost} found, {len(numbers) - found - lost} not run")
+    print(f"{found} of {found + lost} found, {len(faults) - found - lost} not run")
     return lost
 
 
 def main(words: list[str]) -> int:
     """0 where all faults are found, 1 where one is not, 2 where the text of one is not there."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", type=int, nargs="+", metavar="N", help="numbers of the faults, from 1")
+    parser.add_argument("--only", type=int, nargs="+", metavar="N", choices=range(1, len(FAULTS) + 1),
+                        help=f"numbers of the faults, 1 to {len(FAULTS)}")
     parser.add_argument("--folder", type=Path, default=ROOT, help="the tree that is copied (this one)")
-    parser.add_argument("--skip-missing", action="store_true", help="leave out faults whose text is not there")
+    parser.add_argument("--skip-missing", action="store_true",
+                        help="for an older tree: plant a fault in whatever file has its text, and leave out those "
+                             "whose text stands in none")
     given = parser.parse_args(words)
-    root, numbers = given.folder.resolve(), given.only or list(range(1, len(FAULTS) + 1))
+    root = given.folder.resolve()
     try:
+        faults = {number: FAULTS[number - 1] for number in given.only or range(1, len(FAULTS) + 1)}
         if given.skip_missing:
-            numbers = [number for number in numbers if is_there(root, FAULTS[number - 1])]
-        for number in numbers:
-            checked_text(root, FAULTS[number - 1])
-        return 1 if plant(root, numbers) else 0
-    except (LookupError, IndexError) as reason:
+            found = {number: find_in_older_tree(root, fault) for number, fault in faults.items()}
+            faults = {number: fault for number, fault in found.items() if fault is not None}
+        for fault in faults.values():
+            checked_text(root, fault)
+        return 1 if plant(root, faults) else 0
+    except LookupError as reason:
         print(f"plant_faults: {reason}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
