@@ -182,7 +182,7 @@ class Remaining:
         now : float
             s
         """
-        seconds = self._left_of_pieces(now)
+        seconds = self._seconds_of_pieces(now)
         if seconds is not None:
             return WorkLeft(seconds, True)
         begun, start = self._since
@@ -190,7 +190,7 @@ class Remaining:
             return None
         return WorkLeft((now - begun) * (1.0 - self._share) / (self._share - start), False)
 
-    def _left_of_pieces(self, now: float) -> float | None:
+    def _seconds_of_pieces(self, now: float) -> float | None:
         """Seconds that all pieces still take, as many at a time as now and as long as those that are finished took.
 
         A piece that is not heard of again after a later one began is finished.  When the present ones take longer than

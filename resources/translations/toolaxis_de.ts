@@ -52,7 +52,7 @@
   </message>
   <message>
    <source>Clean-up {}</source>
-   <translation>Nacharbeit {}</translation>
+   <translation>Restmaterial {}</translation>
   </message>
   <message>
    <source>Click a point: the plan is computed again with that many axes.</source>
@@ -84,7 +84,7 @@
   </message>
   <message>
    <source>Deepest gouge</source>
-   <translation>Tiefste Verletzung</translation>
+   <translation>Tiefste Konturverletzung</translation>
   </message>
   <message>
    <source>Diameter</source>
@@ -152,11 +152,11 @@
   </message>
   <message>
    <source>Gouge allowed</source>
-   <translation>Erlaubte Verletzung</translation>
+   <translation>Erlaubte Konturverletzung</translation>
   </message>
   <message>
    <source>Gouge, at most</source>
-   <translation>Verletzung, höchstens</translation>
+   <translation>Konturverletzung, höchstens</translation>
   </message>
   <message>
    <source>Height</source>
@@ -188,7 +188,7 @@
   </message>
   <message>
    <source>Left to clean-up</source>
-   <translation>Für die Nacharbeit</translation>
+   <translation>Restmaterial</translation>
   </message>
   <message>
    <source>Length against the number of orientations</source>
@@ -592,7 +592,7 @@
   </message>
   <message>
    <source>checking for gouges and collisions</source>
-   <translation>Verletzungen und Kollisionen werden geprüft</translation>
+   <translation>Konturverletzungen und Kollisionen werden geprüft</translation>
   </message>
   <message>
    <source>chosen axis</source>
@@ -620,11 +620,11 @@
   </message>
   <message>
    <source>infeasible (proven)</source>
-   <translation>unmöglich (bewiesen)</translation>
+   <translation>unmöglich (nachgewiesen)</translation>
   </message>
   <message>
    <source>left to clean-up</source>
-   <translation>für die Nacharbeit</translation>
+   <translation>Restmaterial</translation>
   </message>
   <message>
    <source>machine {}</source>
@@ -664,7 +664,7 @@
   </message>
   <message>
    <source>optimal (proven)</source>
-   <translation>optimal (bewiesen)</translation>
+   <translation>optimal (nachgewiesen)</translation>
   </message>
   <message>
    <source>other good axes</source>
@@ -744,11 +744,11 @@
   </message>
   <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
-   <translation>{} von {} Flächen haben eine Achse, {} bleiben einem Nacharbeitswerkzeug, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
   <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into the document.</source>
-   <translation>{} von {} Flächen haben eine Achse, {} bleiben einem Nacharbeitswerkzeug. OK stellt sie ins Dokument.</translation>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
@@ -792,7 +792,7 @@
   </message>
   <message>
    <source>{}: left to clean-up</source>
-   <translation>{}: für die Nacharbeit</translation>
+   <translation>{}: Restmaterial</translation>
   </message>
   <message>
    <source>{}: no axis</source>
@@ -1196,7 +1196,7 @@
   </message>
   <message>
    <source>How many different axes there are in all; automatic: every number is tried, and a curve shows what each comes to.</source>
-   <translation>Wie viele verschiedene Achsen es insgesamt gibt; selbsttätig: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
+   <translation>Wie viele verschiedene Achsen es insgesamt gibt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
   </message>
   <message>
    <source>How the axis of each sub-surface is found; greatest jerk needs a machine; those after it are there for comparison.</source>
@@ -1208,7 +1208,7 @@
   </message>
   <message>
    <source>Into how many sub-surfaces each face is divided; automatic: as many as pay for their index moves, around bosses too.</source>
-   <translation>In wie viele Teilflächen jede Fläche geteilt wird; selbsttätig: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
+   <translation>In wie viele Teilflächen jede Fläche geteilt wird; automatisch: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
   </message>
   <message>
    <source>Job</source>
@@ -1456,7 +1456,7 @@
   </message>
   <message>
    <source>Where all faces of a part with blades are chosen, one blade is planned, and what is done there is turned to the others and proven there.</source>
-   <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant; was dort geschieht, wird zu den anderen gedreht und dort bewiesen.</translation>
+   <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant; was dort geschieht, wird zu den anderen gedreht und dort nachgewiesen.</translation>
   </message>
   <message>
    <source>Where the corner arc ends; of a tapered cutter, at its tip.</source>
@@ -1484,7 +1484,7 @@
   </message>
   <message>
    <source>automatic</source>
-   <translation>selbsttätig</translation>
+   <translation>automatisch</translation>
   </message>
   <message>
    <source>ball end, mean normals</source>
@@ -1738,7 +1738,7 @@
   </message>
   <message>
    <source>gouge</source>
-   <translation>Verletzung</translation>
+   <translation>Konturverletzung</translation>
   </message>
   <message>
    <source>scallop height</source>
@@ -1889,7 +1889,7 @@
   <name>ToolAxis_Verify</name>
   <message>
    <source>Removes material along the passes and shows scallops and gouges on the faces</source>
-   <translation>Trägt entlang der Bahnen Material ab und zeigt Rillen und Verletzungen auf den Flächen</translation>
+   <translation>Trägt entlang der Bahnen Material ab und zeigt Rillen und Konturverletzungen auf den Flächen</translation>
   </message>
   <message>
    <source>Verify</source>

@@ -119,6 +119,15 @@ def with_unit(new):
     return change
 
 
+def unit_of_itself(step):
+    """A length unit that is so many of a measure in that very unit."""
+    number = int(re.search(DEFINED + r"\(\s*LENGTH_UNIT", step.text)[1])
+    measure = max(step.numbers) + 1
+    unit = f"#{number}=(CONVERSION_BASED_UNIT('ELL',#{measure})LENGTH_UNIT()NAMED_UNIT(*));"
+    text = step.changed(step.of(number), unit)
+    return text.replace(unit, f"{unit}\n#{measure}=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.),#{number});", 1)
+
+
 LENGTH_UNIT = DEFINED + r"\(\s*(CONVERSION_BASED_UNIT[^;]*?)?LENGTH_UNIT[^;]*;"
 MULTIPLICITIES = r"(\.[TFU]\.\s*,\s*\.[TFU]\.\s*,\s*\.[TFU]\.\s*,\s*\(\s*)\d+"
 KNOTS = rf"(\(\s*)({NUMBER})((?:\s*,\s*{NUMBER})*?\s*,\s*)({NUMBER})(\s*\)\s*,\s*\.\w+\.\s*\)\s*;)$"
@@ -165,6 +174,7 @@ REFUSED = {
     "an unknown unit": (with_unit("SI_UNIT(.MILLI.,.FURLONG.)"),
                         r"declares the length unit MILLI FURLONG in #\d+, which is unknown; export the part in mm"),
     "an unknown prefix": (with_unit("SI_UNIT(.FOO.,.METRE.)"), "declares the length unit FOO METRE in #"),
+    "a unit of itself": (unit_of_itself, r"declares the length unit #\d+, which is defined by itself; export the part"),
     "a dangling surface": (without("(?:B_SPLINE_SURFACE_WITH_KNOTS|PLANE)"),
                            DAMAGED + r"#\d+ is not defined in the file"),
     "a dangling face": (without("ADVANCED_FACE"), DAMAGED + r"#\d+ is not defined in the file"),

@@ -55,3 +55,10 @@ def test_links_are_rapid_along_their_own_axis_and_never_while_it_turns() -> None
     cl = np.array([[6.0, 0, 8], [0, 0, 0], [1, 0, 0], [7, 0, 8], [-5, 0, 8], [1.0, 0, 0]])
     path = ToolPath(cl, cl, axis, axis, np.array([3, 3, 0, 3, 3, 3]), np.array([0, 6]))
     assert path.rapid.tolist() == [True, True, False, True, False, True]
+
+
+def test_a_link_high_above_is_not_rapid_where_the_axis_turns() -> None:
+    axis = np.array([[0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]])[[0, 0, 0, 1, 1, 1]]
+    cl = np.array([[6.0, 0, 8], [0, 0, 0], [6, 0, 8], [-6, 0, 8], [0, 0, 0], [-6, 0, 8]])
+    path = ToolPath(cl, cl, axis, axis, np.full(6, Motion.LINK), np.array([0, 6]))
+    assert path.rapid.tolist() == [True, True, True, False, True, True]

@@ -1,6 +1,7 @@
 """Machining time of whole paths, with links and index moves."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -115,6 +116,10 @@ def test_index_moves() -> None:
     assert index_time(MIKRON, (1, 1), (1, 1)) == 0
     fixture = load_machine("three-axes-fixture")
     assert index_time(fixture, (0, 0), (1, 0), by_hand=90.0) == 90
+    slow, free = MIKRON.table
+    half = replace(MIKRON, table=(slow, replace(free, drive=None)))
+    turn = index_time(MIKRON, (0, 0), (2.0, 0))
+    assert index_time(half, (0, 0), (2.0, 1.0), by_hand=0.1) == turn > 0.1
     with pytest.raises(InvalidInput, match="axis C is set by hand"):
         index_time(fixture, (0, 0), (1, 0))
     with pytest.raises(InvalidInput, match="2 each are needed"):

@@ -1,13 +1,14 @@
 """The catalogues of sentences: what they look for stands in the program, and no place is lost on the way."""
 
 import ast
+import re
 from functools import cache
 from itertools import product
 from pathlib import Path
 
 import pytest
 
-from toolaxis.messages.translate import catalogue, languages, pieces_of, places_of
+from toolaxis.messages.translate import COUNTS, LABELS, catalogue, languages, matching, pieces_of, places_of
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Pieces of a sentence that are shorter say nothing of where they come from.
@@ -39,6 +40,27 @@ def constants():
     return found
 
 
+def variants(node, known):
+    """What a node may stand for as a text: of a choice each, a form feed for what is not known."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return [node.value]
+    if isinstance(node, ast.FormattedValue):
+        return variants(node.value, known)
+    if isinstance(node, ast.Name):
+        return known.get(node.id, ["\f"])
+    if isinstance(node, ast.IfExp):
+        return variants(node.body, known) + variants(node.orelse, known)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        return [*variants(node.left, known), ""]
+    if isinstance(node, ast.JoinedStr):
+        parts = node.values
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        parts = [node.left, node.right]
+    else:
+        return ["\f"]
+    return ["".join(chosen) for chosen in product(*(variants(part, known) for part in parts))]
+
+
 @cache
 def strings():
     """All texts of the program, one after the other, a form feed for each value that is put in."""
@@ -46,12 +68,8 @@ def strings():
     found = set()
     for tree in trees():
         for node in ast.walk(tree):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                found.add(node.value)
-            elif isinstance(node, ast.JoinedStr):
-                choices = [[part.value] if isinstance(part, ast.Constant) else
-                           known.get(getattr(part.value, "id", ""), ["\f"]) for part in node.values]
-                found.update("".join(chosen) for chosen in product(*choices))
+            if isinstance(node, (ast.Constant, ast.JoinedStr, ast.BinOp)):
+                found.update(variants(node, known))
     return "\n".join(sorted(found)).replace("--", "")
 
 
@@ -73,6 +91,21 @@ def test_an_entry_has_the_same_places_in_both_languages(language):
     lost = [english for english, form in catalogue(language).items()
             if sorted(set(places_of(english))) != sorted(set(places_of(form)))]
     assert not lost, lost
+
+
+def filled(english):
+    """A sentence of an entry: a number or a word of its own in each place, the ends of its clauses left out."""
+    names = dict.fromkeys(places_of(english))
+    values = {name: "" if name.endswith("?") else str(k) if name in COUNTS | LABELS else f"Q{k}"
+              for k, name in enumerate(names, 3)}
+    return re.sub(r"\{(\w+\??)\}", lambda place: values[place[1]], english)
+
+
+@pytest.mark.parametrize("language", languages())
+def test_no_entry_takes_the_sentences_of_another(language):
+    taken = {english: found for english in catalogue(language)
+             if (found := matching(filled(english), language)) not in (english, english.replace("--", ""))}
+    assert not taken, taken
 
 
 def test_a_sentence_that_changes_is_missed():

@@ -4,11 +4,14 @@ import re
 from dataclasses import replace
 from itertools import product
 from math import nan, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.batch.jobfile import KEYS, read_jobs
+from toolaxis.cad.step.precheck import read_text
 from toolaxis.cad.unit_checks import tool_warnings, unit_warnings
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.collision.machine_collision import CollisionPoint, words
@@ -16,14 +19,18 @@ from toolaxis.errors import ToolAxisError, fault
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, CheckSurfaces
 from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, HOLDER, LIMITS, SHANK, WANDERS, Violation
+from toolaxis.feed.jerk_profile import profile
 from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.messages.translate import matching, translate
+from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.plan import PlanInputs
 from toolaxis.plan.zone import Zone
+from toolaxis.post.read_apt import read_apt
+from toolaxis.post.read_nc import read_nc
 from toolaxis.progress import Progress
 from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.search.messages import COUNTED, left_reasons, nothing_to_cut, sentence
@@ -232,6 +239,57 @@ def test_what_does_not_go_with_a_strategy():
 
 def test_contacts_of_the_two_point_strategy():
     all_german(f"{words} on 12.5 % of the passes" for words in CONTACTS)
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    ("ISO-10303-21;", "PK something"), ("END-ISO-10303-21;", ""), ("ENDSEC;\nEND-ISO", "END-ISO"),
+    ("#12=", "#11="), ("0.", "nan"), ("CARTESIAN_POINT('',(", "CARTESIAN_POINT('',((("),
+    ("ADVANCED_FACE(", "ADVANCED_FACES("), ("CLOSED_SHELL", "SHELL"), ("EDGE_LOOP('',(", "EDGE_LOOP('',(#9999999,"),
+    ("PLANE('',", "PLANE('',#1,"), ("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.MILLI.,.PARSEC.)"), ("(3,3,", "(0,0,")])
+def test_step_files_that_are_refused(tmp_path, old, new):
+    whole = (Path(__file__).parents[2] / "examples" / "saddle.step").read_text()
+    path = tmp_path / "part.step"
+    for text in (whole.replace(old, new), whole.replace(old, new, 1), whole[:len(whole) // 2], ""):
+        path.write_text(text)
+        try:
+            notes = [*read_text(path).notes]
+        except ToolAxisError as reason:
+            notes = [str(reason)]
+        for note in notes:
+            all_german([note.replace(str(path), "'part.step'")])
+
+
+def test_jobs_that_are_refused(tmp_path):
+    (tmp_path / "a.step").write_text("ISO-10303-21;")
+    job = 'part = "a.step"\ntool = "ball:6"\nscallop = 0.02\n'
+    found = []
+    for text in ("", "odd = 1", "defaults = 3\njobs = 4", '[defaults]\nname = "a"', "[defaults]\nodd = 1",
+                 "[[jobs]]\nodd = 1", "[[jobs]]", "not toml", f"[[jobs]]\n{job}name = '.odd/'",
+                 f"[[jobs]]\n{job}[[jobs]]\n{job}", f"[[jobs]]\n{job}memory = -1", f"[[jobs]]\n{job}verify = 3",
+                 f"[[jobs]]\n{job.replace('a.step', 'b.step')}", f"[[jobs]]\n{job.replace('a.step', '')}"):
+        (tmp_path / "jobs.toml").write_text(text)
+        found.append(refusal(lambda: read_jobs(tmp_path / "jobs.toml")))
+    all_german(text.replace(str(tmp_path) + "/", "").replace(", ".join(KEYS), "words") for text in found
+               if "TOML" not in text)
+
+
+def test_programs_that_are_refused():
+    machine, found = ta.load_machine("bc-table-table"), []
+    for line in ("G2 X1 Y2", "G91\nG1 X1 Y2 Z3 B0 C0", "CYCL DEF 7", "G1 X1 Y2 Z3 F-1", "G93", "G1 V3 X1 Y2 Z3",
+                 "G43.4\nX1 Y2 Z3 B0 C0", "G43.4\nG1 X1 Y2 Z3", "G1 X1 Y2 Z3 B0 C0", "G1 ?? X1", "G43.5"):
+        found.append(refusal(lambda line=line: read_nc(f"%\n{line}\nM30\n", machine)))
+    for text in ("GOTO/1,2", "GOTO/1,2,nan", "FEDRAT/MMPM", "FEDRAT/-1", "UNITS/YARDS", "GODLTA/1", "CIRCLE/1,2,3",
+                 "MULTAX/ON\nGOTO/1,2,3,0,0,2", "GOTO/1,2,x", "FEDRAT/1,MMPR", "GOTO/1,2,3"):
+        found.append(refusal(lambda text=text: read_apt(f"{text}\n")))
+    all_german(found)
+
+
+def test_arrays_of_the_wrong_shape():
+    calls = (lambda: as_rows("x", 3, "tool tips"), lambda: as_rows([[1, 2]], 3, "feed directions"),
+             lambda: as_rows([[1, nan, 2]], 3, "ray normal"), lambda: profile(-1.0, 1.0, 1.0, 1.0),
+             lambda: profile(1.0, 1.0, 1.0, 1.0, (2.0, 0.0)), lambda: profile(1.0, -1.0, 1.0, 1.0),
+             lambda: ta.Face.from_bspline(np.zeros((2, 2))), lambda: ta.Face.from_bspline(np.full((4, 4, 3), nan)))
+    all_german(map(refusal, calls))
 
 
 def test_errors_of_the_program_itself():

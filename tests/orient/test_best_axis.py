@@ -105,6 +105,12 @@ def test_a_corner_too_large_is_proven_infeasible(make):
     assert best_axis(make.bowl(9.0, size=5), Tool.ball(8), H).outcome == "feasible"
 
 
+def test_a_corner_that_an_allowance_keeps_off_the_bottom_gouges_nothing(make):
+    found = [impossible.corner_too_large(task(make.bowl(3.5, size=2), Tool.ball(8), H, allowance=stock).feasibility)
+             for stock in (0.0, 0.3)]
+    assert "corner radius 4 mm gouges" in found[0] and found[1] == ""
+
+
 def test_no_proof_is_drawn_from_a_search_that_was_given_up(make, monkeypatch):
     measured = impossible.lower_bounds
 

@@ -197,3 +197,13 @@ def test_room_is_the_clearance_beyond_what_is_required(make):
     held = Tool.torus(8, 1, stickout=30, holder=[(12, 0), (12, 5)])
     judged = judge(face, held, obstacles=roof)
     assert abs(judged.room(unit([0, 0.02, 1.0]), 50.0) - 2.0) < 0.4
+
+
+def test_screening_refuses_an_axis_that_gouges_a_point_it_learnt(make):
+    judged, axis = judge(make.seeded(0, 0.0)), unit(np.array([[0.1, 0.0, 1.0]]))
+    assert judged.screen(axis).reason[0] == FREE
+    contact = judged.sparse
+    inside = contact.point[:1] + 0.05 * contact.normal[:1] + 0.2 * TOOL.radius * axis
+    learnt = judged.learning(inside).screen(axis)
+    assert learnt.reason[0] == GOUGE and learnt.amount[0] > 0.01
+    assert judged.learning(inside - [[0, 0, 9]]).screen(axis).reason[0] == FREE

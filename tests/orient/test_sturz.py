@@ -6,6 +6,7 @@ import pytest
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.feasibility.surroundings import SKIN, CheckSurfaces
+from toolaxis.machine.limits import parse_limits
 from toolaxis.path.moving_axis import MovingChart
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.nearest import nearest
@@ -89,6 +90,14 @@ def test_no_smaller_lead_is_free(found) -> None:
     best = min(one.length for one in candidates)
     assert orientation.length < 1.15 * best
     assert all(search.free(one.lead, one.feed) for one in candidates)
+
+
+def test_a_lead_outside_the_limits_of_the_axis_is_not_free() -> None:
+    """Over a plane with its normal up every lead is free; a cone about the normal allows those inside it."""
+    floor = flat([-15, -15, 0], [30, 0, 0], [0, 30, 0])
+    search = ConstantLeadSearch(task(floor, TOOL, H, parse_limits("cone:0,0,1,12")))
+    assert search.free(np.radians(11.5), "u") and not search.free(np.radians(12.5), "u")
+    assert all(abs(one.lead) <= np.radians(12.0) for one in search.candidates())
 
 
 def test_a_bowl_asks_for_the_lead_at_which_the_heel_clears_it() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.bladed.counterparts import best_motion, counterpart, turn_about, turn_piece
+from toolaxis.bladed.counterparts import best_motion, counterpart, off, turn_about, turn_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 
@@ -51,6 +51,26 @@ def test_a_turned_face_is_matched_whatever_its_parameters(how):
     uv = face.grid(7, 7)
     assert other.face.evaluate(other.chart(uv)).point == pytest.approx(
         face.evaluate(uv).point @ matrix[:3, :3].T + matrix[:3, 3], abs=1e-9)
+
+
+@pytest.mark.parametrize("how", ["", "u", "swap v", "swap scaled"])
+def test_parameters_that_do_not_begin_at_zero_are_carried_over(how):
+    face, matrix = rewritten("scaled"), turn_about(POINT, AXIS, ANGLE)
+    other = counterpart(face, matrix, [elsewhere(rewritten(how))])
+    assert other is not None and other.chart is not None
+    uv = face.grid(7, 7)
+    assert other.face.evaluate(other.chart(uv)).point == pytest.approx(
+        face.evaluate(uv).point @ matrix[:3, :3].T + matrix[:3, 3], abs=1e-9)
+
+
+@pytest.mark.parametrize("away", [0.0, 0.02, -0.3])
+def test_how_far_a_counterpart_lies_off_counts_along_its_normal(away):
+    face, matrix = plain(), turn_about(POINT, AXIS, ANGLE)
+    flat = net() * [1, 1, 0]
+    lifted = counterpart(plain(flat), matrix, [plain(flat + np.array([0, 0, away])).transformed(matrix)])
+    assert lifted is not None and off(plain(flat), lifted, matrix) == pytest.approx(abs(away), abs=1e-9)
+    same = counterpart(face, matrix, [elsewhere(rewritten("swap"))])
+    assert same is not None and off(face, same, matrix) < 1e-9
 
 
 @pytest.mark.parametrize("how", ["", "swap u", "scaled v"])

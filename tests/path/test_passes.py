@@ -10,6 +10,8 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path import planes
 from toolaxis.path.iso_parametric import layout, passes
 from toolaxis.path.links import Linking
+from toolaxis.path.overrun import overrun_length
+from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
@@ -253,3 +255,12 @@ def test_a_part_of_the_face_that_turns_away_may_be_left_out():
         passes(face, ball, [0, 0, 1], H, "v")
     path = passes(face, ball, [0, 0, 1], H, "v", reach=reach)
     assert path.passes > 10 and path.normal[_cut_points(path), 2].min() >= 0.15 - 1e-3
+
+
+@pytest.mark.parametrize("allowance", [-0.3, 0.4, 1.0])
+def test_on_a_plane_passes_overrun_alike_whatever_is_left_on_it(make, allowance):
+    chart, end, step = IsoChart(make["flat"](40, 30), "u"), np.ones(3), np.array([0.3, 0.5, 0.7])
+    for lead, turn, scallop in ((8, 70, 0.02), (20, -80, 0.2), (5, 45, 0.05)):
+        cuts = [Cut(TORUS, make["leaning"](lead, turn), scallop, stock) for stock in (0.0, allowance)]
+        bare, left = (overrun_length(chart, cut, end, step, forward=True) for cut in cuts)
+        assert left == pytest.approx(bare, abs=1e-12) and (bare > 0.003).all()

@@ -82,6 +82,13 @@ def test_words_of_other_writers() -> None:
     assert found.feedrate.tolist() == [np.inf, 254.0, 254.0]
 
 
+def test_inches_hold_for_a_run_of_locations_too() -> None:
+    rows = [f"GOTO/{k},{2 * k},-1,0,0.6,0.8" for k in range(5)]
+    found = read_apt("\n".join(["UNITS/INCHES", "MULTAX/ON", *rows, "FINI"]))
+    steps = np.arange(5)[:, None] * [25.4, 50.8, 0.0]
+    assert np.allclose(found.tip, steps - [0, 0, 25.4], atol=1e-12) and np.allclose(found.axis, [0, 0.6, 0.8])
+
+
 def test_words_of_systems_that_end_each_path() -> None:
     text = ("TOOL PATH/CONTOUR_1,TOOL,BULL_12\nTLDATA/MILL,12.0,1.0,60.0,0.0,0.0\nMSYS/0.0,0.0,0.0,1.0,0.0,0.0\n"
             "$$ centerline data\nPAINT/PATH\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/0.0,0.0,50.0,0.0,0.6,0.8\n"

@@ -41,6 +41,14 @@ def test_the_holder_meets_a_post_where_it_comes_near(copies):
     assert found.at(one.first) is one and found.at(one.first - 1) is None
 
 
+def test_a_motion_that_alone_runs_into_the_post(copies):
+    found = bumps(TOOL, path_of([(-15, 0, 11), (-5, 0, 11), (5, 0, 11), (-5, 0, 11.5)]), copies, NO_PROGRESS)
+    one, = found.found
+    assert (one.first, one.last) == (2, 3) and one.text.endswith(" of the Post by 3.0 mm")
+    alone, = bumps(TOOL, path_of([(-15, 0, 11), (-5, 0, 11), (4, 0, 11)]), copies, NO_PROGRESS).found
+    assert (alone.first, alone.last) == (2, 2) and alone.text.endswith(" of the Post by 2.0 mm")
+
+
 def test_the_cutter_may_touch_what_it_cuts(copies):
     lows = (10.0, 10 - 0.5 * DEPTH, 9.5, 10.0, 9.0)
     path = path_of([(3.0 * k - 15, -10, low) for k, low in enumerate(lows)])

@@ -151,11 +151,11 @@ def _threads(client: "Client", address: str) -> int:
         if client.status == "running":
             return sum(client.nthreads().values())
     except Exception as reason:
-        raise _gone(address) from reason
-    raise _gone(address)
+        raise _scheduler_error(address) from reason
+    raise _scheduler_error(address)
 
 
-def _gone(address: str) -> JobError:
+def _scheduler_error(address: str) -> JobError:
     return JobError("jobs", "cluster", f"the scheduler at {address} is gone: start it and run the batch again, it goes "
                     "on where it stopped")
 

@@ -193,7 +193,7 @@ class BatchFolder:
                         "files": {name: hashlib.sha256(content).hexdigest() for name, content in answer.files.items()}}
             text = json.dumps(document, indent=1, allow_nan=False) + "\n"
             for name, content in {**answer.files, JOB: text.encode()}.items():
-                _written(stage / name, content)
+                _write_synced(stage / name, content)
             _sync_names(stage)
             self._swap(stage, self.path / job.name)
         finally:
@@ -228,7 +228,7 @@ class BatchFolder:
         texts = (summary_csv(rows), json.dumps(summary_document(rows), indent=1, allow_nan=False) + "\n")
         try:
             for name, text in zip(_SUMMARIES, texts, strict=True):
-                _written(self.work / name, text.encode())
+                _write_synced(self.work / name, text.encode())
                 os.replace(self.work / name, self.path / name)
         except OSError as reason:
             raise JobError("summary", str(self.path), f"it cannot be written ({reason.strerror}); the jobs' folders "
@@ -245,7 +245,7 @@ def _read(target: Path) -> dict[str, Any] | None:
         return None
 
 
-def _written(path: Path, content: bytes) -> None:
+def _write_synced(path: Path, content: bytes) -> None:
     with path.open("wb") as file:
         file.write(content)
         file.flush()

@@ -101,7 +101,7 @@ class WorkerProcess:
             try:
                 found: BatchAnswer = self._pipe.recv()
             except (EOFError, OSError):
-                found = self._lost(task)
+                found = self._answer_of_crash(task)
             if found.compiled and not self._repeated:  # now the kernels are on disk, and every process gets the same
                 self._engage()
                 self._task, self._began, self._repeated = task, time.monotonic(), True
@@ -129,7 +129,7 @@ class WorkerProcess:
                                    spent=spent)
         return None
 
-    def _lost(self, task: BatchTask) -> BatchAnswer:
+    def _answer_of_crash(self, task: BatchTask) -> BatchAnswer:
         """What is said of a process that ended without an answer."""
         assert self._process is not None
         code = self._process.wait()

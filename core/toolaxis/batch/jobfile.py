@@ -146,12 +146,12 @@ def _table(path: Path) -> list[dict[str, Any]]:
 def _check_job(row: dict[str, Any], number: int, folder: Path) -> CheckedJob:
     said = row.get("name")
     try:
-        return _checked(row, folder)
+        return _check_row(row, folder)
     except ToolAxisError as reason:
         raise InvalidInput(f"job {number}{f' ({said})' if isinstance(said, str) else ''}: {reason}") from reason
 
 
-def _checked(row: dict[str, Any], folder: Path) -> CheckedJob:
+def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     unknown = sorted(set(row) - set(KEYS))
     if unknown:
         raise InvalidInput(f"unknown {unknown[0]!r}: use {', '.join(KEYS)}")

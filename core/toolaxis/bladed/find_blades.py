@@ -126,7 +126,7 @@ def blades_of(part: Part) -> Bladed:
 
     **Properties**: 1. moving the part changes the axis only; 2. every face belongs to one blade at most.
     """
-    samples = _sampled(part)
+    samples = _sample_faces(part)
     sculptured = [face.number for face in part.sculptured]
     if not sculptured:
         raise NoPattern("the part has no sculptured face: blades are looked for among those")
@@ -155,7 +155,7 @@ def blades_of(part: Part) -> Bladed:
     return Bladed(point, axis, found, tuple(n for n in floor if n in beside and n not in tips))
 
 
-def _sampled(part: Part) -> _Samples:
+def _sample_faces(part: Part) -> _Samples:
     points, normals, bulge, centre, area = {}, {}, {}, {}, {}
     for face in part.faces:
         uv = _inside(face)

@@ -67,7 +67,7 @@ def convert(surface: KernelSurface, box: Box) -> PlainSurface:
     UnsupportedGeometry
         When the kernel cannot approximate a surface that has no exact form here.
     """
-    found = _converted(surface, box)
+    found = _convert_surface(surface, box)
     return replace(found, kind="plane") if found.kind != "plane" and _is_flat(found.control) else found
 
 
@@ -78,7 +78,7 @@ def _is_flat(control: Array) -> bool:
     return bool(spread[-1] <= FLAT * spread[0])
 
 
-def _converted(surface: KernelSurface, box: Box) -> PlainSurface:
+def _convert_surface(surface: KernelSurface, box: Box) -> PlainSurface:
     form = surface.form
     if isinstance(form, PlaneForm):
         return _plane(form, box)
@@ -125,10 +125,10 @@ def _elementary(form: MeridianForm, box: Box, kind: str) -> PlainSurface:
         upright = np.eye(4)[:, [0, 2, 1, 3]]
         upright[:3, 3] = form.start
         profile = arc(upright, (form.course, form.course), box[2], box[3])
-    return _turned(profile, form.placed, box, kind)
+    return _revolve_profile(profile, form.placed, box, kind)
 
 
-def _turned(profile: Spline, placed: Array, box: Box, kind: str) -> PlainSurface:
+def _revolve_profile(profile: Spline, placed: Array, box: Box, kind: str) -> PlainSurface:
     breaks = angle_breaks(box[0], box[1])
     net = revolve_profile(profile.control, breaks) @ placed.T
     return PlainSurface(arc_knots(breaks), profile.knots, net, (2, profile.degree), kind,
@@ -145,7 +145,7 @@ def _revolution(form: RevolutionForm, box: Box) -> PlainSurface:
     placed = np.eye(4)
     placed[:3] = np.column_stack([x, np.cross(z, x), z, form.origin])
     local = profile.control @ np.linalg.inv(placed).T
-    return _turned(profile._replace(control=local), placed, box, "revolution")
+    return _revolve_profile(profile._replace(control=local), placed, box, "revolution")
 
 
 def _extrusion(form: ExtrusionForm, box: Box) -> PlainSurface:

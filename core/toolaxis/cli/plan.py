@@ -132,7 +132,7 @@ def _print_plan(made: Plan, given: Namespace) -> int:
             for reason in (*outcome, *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
         else:
-            _left_over(op)
+            _say_left_over(op)
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
     _of_failures(Path(given.out))
     count = len(made.operations)
@@ -155,7 +155,7 @@ def _of_failures(out: Path) -> None:
             f"{', '.join(written)} of {out}")
 
 
-def _left_over(op: Operation) -> None:
+def _say_left_over(op: Operation) -> None:
     """Say what an operation leaves to a clean-up tool."""
     found, zones = op.orientation, [zone for zone in op.zones if zone.at_wall]
     if found.unreached > 0:

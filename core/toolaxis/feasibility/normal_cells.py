@@ -105,14 +105,15 @@ class NormalCells:
         bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
         u, v = (part.ravel() for part in np.meshgrid(*(np.arange(len(line) - 1) for line in lines), indexing="ij"))
         rect = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)
-        return self._made(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))[0]
+        return self._make_cells(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))[0]
 
     def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
         """The quarters of cells, those of one after those of the other, and how many there are of each."""
-        return self._made(_quarter_rectangles(cells.rect), np.repeat(cells.bounds, 4, axis=0),
-                          np.repeat(cells.crossed, 4), len(cells.rect))
+        return self._make_cells(_quarter_rectangles(cells.rect), np.repeat(cells.bounds, 4, axis=0),
+                                np.repeat(cells.crossed, 4), len(cells.rect))
 
-    def _made(self, rect: Array, bounds: Array, crossed: Bools, parents: int = 1) -> tuple[TrimmedFaceCells, Index]:
+    def _make_cells(self, rect: Array, bounds: Array, crossed: Bools,
+                    parents: int = 1) -> tuple[TrimmedFaceCells, Index]:
         """Cells from rectangles, a few thousand at once; of those that an edge may cross, those that hold something."""
         parts = []
         for first in range(0, len(rect), _AT_ONCE):

@@ -149,14 +149,14 @@ class FiveAxisSchedule:
         best: CurveSchedule | None = None
         for gap in _THINNED:
             some = _apart(places, gap)
-            found = self._scheduled(one, places[some], poses[some])
+            found = self._schedule_poses(one, places[some], poses[some])
             if best is None or not best.duration <= found.duration:
                 best = found
             if best.stretch <= _SLOWED and np.isfinite(best.duration):
                 break
         return best
 
-    def _scheduled(self, one: PathSegment, places: Array, poses: Array) -> CurveSchedule:
+    def _schedule_poses(self, one: PathSegment, places: Array, poses: Array) -> CurveSchedule:
         """What the axes do along poses at places."""
         if len(places) < _POINTS:
             fine = np.linspace(0.0, places[-1], _POINTS)

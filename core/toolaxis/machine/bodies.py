@@ -157,10 +157,10 @@ def body_lines(body: MachineBody) -> list[str]:
     body : MachineBody
     """
     rows = ", ".join("[" + ", ".join(repr(float(value)) for value in row) + "]" for row in body.points)
-    shape = f"step = {_quoted(body.file)}" if body.kind == "step" else f"{body.kind} = [{rows}]"
+    shape = f"step = {_quote(body.file)}" if body.kind == "step" else f"{body.kind} = [{rows}]"
     words = [f"{word} = {body.radius!r}" for word in SHAPES[body.kind]]
-    return [f"name = {_quoted(body.name)}", f"carried = {_quoted(body.carried)}", shape, *words]
+    return [f"name = {_quote(body.name)}", f"carried = {_quote(body.carried)}", shape, *words]
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)

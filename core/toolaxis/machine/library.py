@@ -88,7 +88,7 @@ def machine_from_toml(text: str, folder: Path | None = None) -> Machine:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as reason:
         raise InvalidInput(f"not valid TOML: {reason}") from reason
-    _known(content, _MACHINE, "machine")
+    _check_words(content, _MACHINE, "machine")
     name = content.get("name")
     if not isinstance(name, str) or not name:
         raise InvalidInput("the machine has no name: write name = \"...\"")
@@ -109,7 +109,7 @@ def _list(content: dict[str, Any], word: str) -> list[Any]:
     return items
 
 
-def _known(item: Any, words: set[str], what: str) -> None:
+def _check_words(item: Any, words: set[str], what: str) -> None:
     if not isinstance(item, dict):
         raise InvalidInput(f"{what} is {item!r}: a table of values is needed")
     unknown = sorted(set(item) - words)
@@ -152,7 +152,7 @@ def _limits(item: dict[str, Any], name: str) -> tuple[float, float]:
 
 
 def _linear(item: Any) -> LinearAxis:
-    _known(item, _LINEAR, "a linear axis")
+    _check_words(item, _LINEAR, "a linear axis")
     name = _name(item, "linear")
     drive = _drive(item, name, float)
     direction = _numbers(item.get("direction"), 3, f"direction of axis {name}")
@@ -160,7 +160,7 @@ def _linear(item: Any) -> LinearAxis:
 
 
 def _rotary(item: Any) -> RotaryAxis:
-    _known(item, _ROTARY, "a rotary axis")
+    _check_words(item, _ROTARY, "a rotary axis")
     name = _name(item, "rotary")
     by_hand = item.get("by_hand", False)
     if not isinstance(by_hand, bool):
@@ -189,18 +189,18 @@ def machine_to_toml(machine: Machine) -> str:
     str
         Angles in degrees; a value that was read from degrees comes back as the nearest number that gives it again.
     """
-    lines = [f"name = {_quoted(machine.name)}", f"source = {_quoted(machine.source)}",
-             f"assumed = [{', '.join(map(_quoted, machine.assumed))}]",
-             f"spindle = {_listed(machine.spindle)}", f"gauge = {_listed(machine.gauge)}"]
+    lines = [f"name = {_quote(machine.name)}", f"source = {_quote(machine.source)}",
+             f"assumed = [{', '.join(map(_quote, machine.assumed))}]",
+             f"spindle = {_list_text(machine.spindle)}", f"gauge = {_list_text(machine.gauge)}"]
     for axis in machine.linear:
-        lines += ["", "[[linear]]", f"name = {_quoted(axis.name)}", f"direction = {_listed(axis.direction)}"]
-        lines += _written_limits(axis.low, axis.high, float) + _written_drive(axis.drive, float)
+        lines += ["", "[[linear]]", f"name = {_quote(axis.name)}", f"direction = {_list_text(axis.direction)}"]
+        lines += _limits_text(axis.low, axis.high, float) + _drive_text(axis.drive, float)
     for kind, axes in (("table", machine.table), ("head", machine.head)):
         for turn in axes:
-            lines += ["", f"[[{kind}]]", f"name = {_quoted(turn.name)}", f"direction = {_listed(turn.direction)}",
-                      f"point = {_listed(turn.point)}", f"increment = {_degrees(turn.increment)!r}"]
-            lines += _written_limits(turn.low, turn.high, _degrees)
-            lines += ["by_hand = true"] if turn.drive is None else _written_drive(turn.drive, _degrees)
+            lines += ["", f"[[{kind}]]", f"name = {_quote(turn.name)}", f"direction = {_list_text(turn.direction)}",
+                      f"point = {_list_text(turn.point)}", f"increment = {_degrees(turn.increment)!r}"]
+            lines += _limits_text(turn.low, turn.high, _degrees)
+            lines += ["by_hand = true"] if turn.drive is None else _drive_text(turn.drive, _degrees)
     for body in machine.bodies:
         lines += ["", "[[body]]", *body_lines(body)]
     return "\n".join(lines) + "\n"
@@ -213,20 +213,20 @@ def _degrees(angle: float) -> float:
     return next((one for one in sorted(near, key=lambda one: len(repr(one))) if radians(one) == angle), value)
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _listed(values: Any) -> str:
+def _list_text(values: Any) -> str:
     return "[" + ", ".join(repr(float(value)) for value in np.asarray(values)) + "]"
 
 
-def _written_limits(low: float, high: float, unit: Callable[[float], float]) -> list[str]:
+def _limits_text(low: float, high: float, unit: Callable[[float], float]) -> list[str]:
     if low == -inf and high == inf:
         return []
     return [f"limits = [{', '.join(repr(unit(one)) if np.isfinite(one) else str(one) for one in (low, high))}]"]
 
 
-def _written_drive(drive: Drive, unit: Callable[[float], float]) -> list[str]:
+def _drive_text(drive: Drive, unit: Callable[[float], float]) -> list[str]:
     values = {word: getattr(drive, word) for word in _DRIVE}
-    return [f"{word} = {_quoted(_UNKNOWN) if value is None else repr(unit(value))}" for word, value in values.items()]
+    return [f"{word} = {_quote(_UNKNOWN) if value is None else repr(unit(value))}" for word, value in values.items()]

@@ -169,10 +169,10 @@ class Mounting:
         axis : (3,) array_like
         """
         found = rotary_angles(self.machine, as_rows(axis, 3, "axis")[:1], table_from_part=self.table_from_part)
-        rows = np.unique(self._rounded(found.joints[0][found.within[0]]), axis=0)
+        rows = np.unique(self._round_angles(found.joints[0][found.within[0]]), axis=0)
         return np.asarray(rows[np.argsort(np.abs(rows).sum(axis=1), kind="stable")])
 
-    def _rounded(self, angles: Array) -> Array:
+    def _round_angles(self, angles: Array) -> Array:
         """Angles in the axes' steps and inside their ranges, (s, m) rad."""
         rows = np.array(angles, dtype=float).reshape(len(angles), len(self.machine.rotary))
         for i, axis in enumerate(self.machine.rotary):

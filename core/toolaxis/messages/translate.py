@@ -5,9 +5,10 @@ where they are shown.  An entry is an English sentence with named places and its
 
     "the {component} collides with {which} by {amount} mm{at?}" = "..."
 
-A place takes any text, but never half a bracket; `COUNTS` take one word, `LABELS` no punctuation.  One whose name ends
-in ``?`` is empty or takes what an entry says that begins with a space or with punctuation: the end of a clause, such as
-" at {point}".  What stands in a place is translated by the same catalogue, so that a sentence may hold another one.
+A place takes any text, but never half a bracket; `COUNTS` take one word, `LABELS` no punctuation, "given"
+anything.  One whose name ends in ``?`` is empty or takes what an entry says that begins with a space or with
+punctuation: the end of a clause, such as " at {point}".  What stands in a place is translated by the same catalogue, so
+that a sentence may hold another one.
 """
 
 import re
@@ -18,13 +19,13 @@ from typing import NamedTuple
 
 _PLACE = re.compile(r"\{(\w+)(\??)\}")
 #: Text of a place: brackets stay whole, so that a comma in the coordinates of a point parts no sentence.
-_BRACKET = r"\((?:[^()]|\([^()]*\))*\)|\[[^\[\]]*\]"
+_BRACKET = r"\((?:[^()]|\([^()]*\))*\)|\[(?:[^\[\]]|\[[^\[\]]*\])*\]"
 _TEXT = rf"(?:{_BRACKET}|[^()\[\]])"
 #: Places that hold a number or a unit, and those that hold what a face is called or how many there are.
 COUNTS = frozenset(("i", "j", "k", "m", "n", "count", "unit"))
 LABELS = frozenset(("face", "some"))
-#: Places that hold what has to be written as it is: words of inputs, names of files and of objects.
-AS_WRITTEN = frozenset(("address", "choices", "file", "folder", "forms", "known", "names", "path", "words"))
+#: Places that hold what has to be written as it is: words of inputs, values of Python, names of files and of objects.
+AS_WRITTEN = frozenset(("address", "choices", "file", "folder", "forms", "given", "known", "names", "path", "words"))
 _WORD, _LABEL = r"[^\s,;:()\[\]]+", r"[^,;:()\[\]]+?"
 #: How the end of a clause begins, and how deep ends hang on ends.
 _ENDS, _DEEP = (" ", ",", ";", "."), 2
@@ -46,14 +47,14 @@ class MessagePattern(NamedTuple):
     Attributes
     ----------
     english : str
-    pattern : re.Pattern
-        Matches whole sentences, with a group for each place.
+    pieces : tuple of str
+        What stands between its places: a sentence without one of them is another one.
     form : str
         The counterpart in the other language.
     """
 
     english: str
-    pattern: re.Pattern[str]
+    pieces: tuple[str, ...]
     form: str
 
 
@@ -102,16 +103,18 @@ def _patterns(language: str) -> tuple[MessagePattern, ...]:
     found = [english for english in catalogue(language) if _PLACE.search(english)]
     found.sort(key=lambda english: (-sum(map(len, pieces_of(english))), english))
     forms = catalogue(language)
-    return tuple(MessagePattern(english, _pattern(english, language), forms[english]) for english in found)
+    return tuple(MessagePattern(english, tuple(filter(None, pieces_of(_OPTION.sub("", english)))), forms[english])
+                 for english in found)
 
 
 @cache
-def _fixed(language: str) -> dict[str, str]:
+def _entries_without_places(language: str) -> dict[str, str]:
     """Entries without places."""
     return {_OPTION.sub("", english): form for english, form in catalogue(language).items()
             if not _PLACE.search(english)}
 
 
+@cache
 def _pattern(english: str, language: str) -> re.Pattern[str]:
     """What matches the sentences of an entry; a place that occurs twice has the same text both times."""
     made, known = "", set()
@@ -124,8 +127,17 @@ def _pattern(english: str, language: str) -> re.Pattern[str]:
     return re.compile(made + re.escape(parts[-1]))
 
 
+def _match(one: MessagePattern, text: str, language: str) -> re.Match[str] | None:
+    """How a sentence is one of an entry; patterns are made when a sentence has all pieces of theirs, which few have."""
+    if not all(piece in text for piece in one.pieces):
+        return None
+    return _pattern(one.english, language).fullmatch(text)
+
+
 def _text(name: str) -> str:
     """What a place takes, by its name."""
+    if name == "given":
+        return ".+?"
     return _WORD if name in COUNTS else _LABEL if name in LABELS else f"{_TEXT}+?"
 
 
@@ -155,9 +167,9 @@ def matching(sentence: str, language: str) -> str:
         One of `languages`.
     """
     text = _OPTION.sub("", sentence)
-    if text in _fixed(language):
+    if text in _entries_without_places(language):
         return text
-    return next((one.english for one in _patterns(language) if one.pattern.fullmatch(text)), "")
+    return next((one.english for one in _patterns(language) if _match(one, text, language)), "")
 
 
 @lru_cache(_KEPT)
@@ -176,22 +188,22 @@ def translate(sentence: str, language: str, point: str = ".") -> str:
     if language not in languages():
         return sentence
     text = _OPTION.sub("", sentence)
-    if text in _fixed(language):
-        return _fixed(language)[text]
+    if text in _entries_without_places(language):
+        return _entries_without_places(language)[text]
     for one in _patterns(language):
-        found = one.pattern.fullmatch(text)
+        found = _match(one, text, language)
         if found is not None:
-            values = {name: _joined(value, language) if name in AS_WRITTEN else _value(value, language, point)
+            values = {name: _join_words(value, language) if name in AS_WRITTEN else _value(value, language, point)
                       for name, value in found.groupdict().items()}
             return _PLACE.sub(lambda place, values=values: values[place[1]], one.form)  # type: ignore[misc]
     listed = _list(text, language, point)
     return sentence if listed == text else listed
 
 
-def _joined(text: str, language: str) -> str:
+def _join_words(text: str, language: str) -> str:
     """Words as they are written, with the other language's words between them."""
     for separator in _SEPARATORS:
-        text = text.replace(separator, _fixed(language).get(separator, separator))
+        text = text.replace(separator, _entries_without_places(language).get(separator, separator))
     return text
 
 
@@ -203,7 +215,7 @@ def _list(text: str, language: str, point: str) -> str:
             continue
         made = [translate(item, language, point) for item in items]
         if made != items:
-            return _fixed(language).get(separator, separator).join(made)
+            return _entries_without_places(language).get(separator, separator).join(made)
     return text
 
 

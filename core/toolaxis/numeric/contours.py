@@ -47,7 +47,7 @@ def contours(values: Array, lines: tuple[Array, Array],
         for one, other in _segments(f, above, i, j):
             joined.setdefault(one, []).append(other)
             joined.setdefault(other, []).append(one)
-    return _traced(joined, at)
+    return _trace_lines(joined, at)
 
 
 def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
@@ -70,11 +70,11 @@ def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], 
     outer = ((node[:, 1] == 0) | (node[:, 1] == np.array(f.shape) - 1)).any(axis=1)
     points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
     if function is not None and not outer.all():
-        points[~outer] = _bisected(function, good[~outer], bad[~outer], halvings)
+        points[~outer] = _bisect(function, good[~outer], bad[~outer], halvings)
     return dict(zip(keys, points, strict=True))
 
 
-def _bisected(function: Callable[[Array], Array], good: Array, bad: Array, halvings: int) -> Array:
+def _bisect(function: Callable[[Array], Array], good: Array, bad: Array, halvings: int) -> Array:
     for _ in range(halvings):
         middle = (good + bad) / 2
         holds = (function(middle) > 0)[:, None]
@@ -96,8 +96,8 @@ def _segments(f: Array, above: NDArray[np.bool_], i: int,
     return [(edges[first[0]], edges[first[1]]), (edges[second[0]], edges[second[1]])]
 
 
-def _traced(joined: dict[tuple[int, int, int], list[tuple[int, int, int]]],
-            at: dict[tuple[int, int, int], Array]) -> tuple[Array, ...]:
+def _trace_lines(joined: dict[tuple[int, int, int], list[tuple[int, int, int]]],
+                 at: dict[tuple[int, int, int], Array]) -> tuple[Array, ...]:
     loops, left = [], dict.fromkeys(joined)
     while left:
         key, line = next(iter(left)), []

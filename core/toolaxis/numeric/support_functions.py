@@ -188,14 +188,14 @@ def separation(one: Sequence[ConvexBodies], other: Sequence[ConvexBodies], enoug
     best, meets = _search_separation(pair, towards, (enough, tolerance))
     rows = np.flatnonzero(meets if inner is None else meets & ~inner)
     if len(rows):
-        best[rows] = np.maximum(best[rows], _depths(_chosen(pair, rows), len(rows)))
+        best[rows] = np.maximum(best[rows], _depths(_choose_rows(pair, rows), len(rows)))
     return best
 
 
 _Pair = tuple[tuple[ConvexBodies, ...], tuple[ConvexBodies, ...]]
 
 
-def _chosen(pair: _Pair, rows: NDArray[np.int64] | Bools) -> _Pair:
+def _choose_rows(pair: _Pair, rows: NDArray[np.int64] | Bools) -> _Pair:
     return tuple(each.rows(rows) for each in pair[0]), tuple(each.rows(rows) for each in pair[1])
 
 
@@ -219,7 +219,7 @@ def _search_separation(pair: _Pair, towards: Array, limits: tuple[float, float])
         meets[rows[inside]] = True
         rows, size = rows[~inside], size[~inside]
         ways = near[rows] / size[:, None]
-        found = _nearest_along(_chosen(pair, rows), ways)
+        found = _nearest_along(_choose_rows(pair, rows), ways)
         gap = (found * ways).sum(axis=1)
         best[rows] = np.maximum(best[rows], gap)
         going = (best[rows] < enough) & (~held[rows].any(axis=1) | (size - gap > tolerance))
@@ -270,7 +270,7 @@ def _depths(pair: _Pair, count: int) -> Array:
         good = np.flatnonzero(size > 1e-9)
         if len(good):
             unit = ways[good] / size[good, None]
-            gap = (_nearest_along(_chosen(pair, good), unit) * unit).sum(axis=1)
+            gap = (_nearest_along(_choose_rows(pair, good), unit) * unit).sum(axis=1)
             better = gap > best[good]
             best[good[better]], along[good[better]] = gap[better], unit[better]
 

@@ -104,7 +104,7 @@ def cut_along(piece: Face, line: ArrayLike) -> tuple[Loops, ...]:
     InvalidInput
         When the line does not cross the sub-surface.
     """
-    rows = _drawn(line, 2)
+    rows = _check_line(line, 2)
     low, high = (np.array(piece.bounds)[k::2] for k in (0, 1))
     size = high - low
     unit = (rows - low) / size
@@ -138,7 +138,7 @@ def cut_out(pieces: Sequence[Face], ring: ArrayLike) -> tuple[Loops, list[tuple[
     InvalidInput
         When nothing of the face lies in the line, or what lies in it does not hang together.
     """
-    rows = _drawn(ring, 3)
+    rows = _check_line(ring, 3)
     size = np.ptp(np.concatenate([loop for piece in pieces for loop in piece.outline]), axis=0)
     within: Loops = ()
     stay: list[tuple[Loops, ...]] = []
@@ -152,7 +152,7 @@ def cut_out(pieces: Sequence[Face], ring: ArrayLike) -> tuple[Loops, list[tuple[
     return within, stay
 
 
-def _drawn(line: ArrayLike, least: int) -> Array:
+def _check_line(line: ArrayLike, least: int) -> Array:
     rows = np.asarray(line, dtype=float)
     if rows.ndim != 2 or rows.shape[1:] != (2,) or not np.isfinite(rows).all():
         raise InvalidInput("the line has no corners in (u, v): draw it on the face")

@@ -70,10 +70,10 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     tip = tip - rises(chart, cut, steps, piece, along)[:, None] * normal
     bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
     strokes = [CuttingMove(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
-    return link(_ordered(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))
+    return link(_order_moves(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))
 
 
-def _ordered(strokes: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
+def _order_moves(strokes: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
     climb = climbing(layout.chart, layout.cut)
     passes: list[list[CuttingMove]] = []
     for i in np.unique(layout.owner):

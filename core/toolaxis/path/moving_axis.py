@@ -157,7 +157,7 @@ class MovingChart(IsoChart):
         reach = _WINDOW * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9)
         t = np.linspace(-1.0, 1.0, 2 * _POSITIONS + 1)
         uv = self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t)))
-        near, normal = self._seen(uv)
+        near, normal = self._evaluate_at(uv)
         axes = cut.field.axes(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
         shape = (len(along), len(t), 3)
         return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
@@ -167,11 +167,11 @@ class MovingChart(IsoChart):
         """Distance to the passing cutter at scallop height over places (m, n) beside each contact, (n, m) mm."""
         along, steps = at
         uv = self.uv(np.repeat(along, len(steps)), steps.T.ravel())
-        d, normal = self._seen(uv)
+        d, normal = self._evaluate_at(uv)
         points = d.point + (cut.scallop + cut.allowance) * normal
         return least_distance_to_positions(cutter, points.reshape(len(along), len(steps), 3), *positions)
 
-    def _seen(self, uv: Array) -> tuple[Derivatives, Array]:
+    def _evaluate_at(self, uv: Array) -> tuple[Derivatives, Array]:
         """Derivatives and normals at parameters."""
         (u0, u1), (v0, v1) = self.face.surface.domain
         d = self.face.evaluate(uv)

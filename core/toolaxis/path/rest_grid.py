@@ -60,7 +60,7 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     wanted = above[1:, 1:] | above[:-1, 1:] | above[1:, :-1] | above[:-1, :-1]
     border = np.concatenate([_places(face, loop, size) for loop in face.outline])
     wanted[_cells_of(coarse, border[function(border) > 0])] = True
-    lines = (_divided(coarse[0], parts[0]), _divided(coarse[1], parts[1]))
+    lines = (_divide_line(coarse[0], parts[0]), _divide_line(coarse[1], parts[1]))
     values = np.full((len(lines[0]), len(lines[1])), -1.0)
     own = _own(face, coarse, inside)
     done = np.zeros_like(wanted)
@@ -129,7 +129,7 @@ def _lines(face: Face, axis: int, size: float) -> tuple[Array, int]:
     return np.asarray(low - 1.0637 * pitch + pitch * np.arange(count + 3)), int(np.ceil(fine / count))
 
 
-def _divided(line: Array, parts: int) -> Array:
+def _divide_line(line: Array, parts: int) -> Array:
     share = np.arange(parts) / parts
     return np.append((line[:-1, None] + np.diff(line)[:, None] * share).ravel(), line[-1])
 

@@ -81,7 +81,7 @@ class Excess:
         ----------
         uv : (n, 2) array
         """
-        return self._distance(self._raised(uv), _FAR)
+        return self._distance(self._raise_points(uv), _FAR)
 
     def whole(self, middle: Array, around: Array) -> Bools:
         """Which cells of the face are left all over: their middles are farther from what is removed than they reach.
@@ -92,11 +92,11 @@ class Excess:
         around : (k, 8, 2) array
             Corners and middles of the sides of each.
         """
-        at, ends = self._raised(middle), self._raised(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
+        at, ends = self._raise_points(middle), self._raise_points(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
         reach = _BULGE * np.linalg.norm(ends - at[:, None], axis=2).max(axis=1)
         return np.asarray(self._distance(at, float(reach.max(initial=0.0))) >= reach)
 
-    def _raised(self, uv: Array) -> Array:
+    def _raise_points(self, uv: Array) -> Array:
         return np.asarray(self._face.evaluate(uv).point + self._height * self._face.normal(uv))
 
     def _distance(self, points: Array, most: float) -> Array:

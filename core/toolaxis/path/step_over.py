@@ -82,7 +82,7 @@ def lines(chart: Chart, cut: Cut) -> Lines:
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
             continue
-        guess = _interpolated(coarse.measured, exact[where], fine.measured)
+        guess = _interpolate(coarse.measured, exact[where], fine.measured)
         if (np.abs(guess - exact) <= allowed)[counts].all():
             return coarse
     return fine
@@ -114,7 +114,7 @@ def _stencil(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
     return index, weight
 
 
-def _interpolated(nodes: Array, values: Array, places: Array) -> Array:
+def _interpolate(nodes: Array, values: Array, places: Array) -> Array:
     index, weight = _stencil(nodes, places)
     return np.asarray(np.einsum("mk,mk...->m...", weight, values[index]))
 

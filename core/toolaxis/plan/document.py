@@ -194,12 +194,12 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "failure_file": files.get("failure"),
         "options": [{name: value for name, value in asdict(option).items() if value is not None}
                     for option in plan.options],
-        "operations": [_checked_document(op, plan, names)
+        "operations": [_try_document(op, plan, names)
                        for op, *names in zip(plan.operations, files["operations"], failures, strict=True)],
     }
 
 
-def _checked_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Document:
+def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Document:
     """The record of an operation, tried out as JSON, so that what cannot be written is told of it alone."""
     with about(op.face.label):
         record = _operation_document(op, plan, *names)

@@ -97,7 +97,7 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
         if op.path is None or op.frame is None:
             continue
         given = (chosen or {}).get(op.number)
-        rows = _solutions(op, mounting) if given is None else _given_angles(op, given, mounting)
+        rows = _solutions(op, mounting) if given is None else _check_given_angles(op, given, mounting)
         rows = _close(_round_angles(rows, mounting.machine, angle_digits), op, plan, mounting)
         stand = rows[0] if given is not None else nearest_turn(mounting.machine, rows, stand)
         number = next((k for k, one in enumerate(known) if _same(one, stand)), len(known))
@@ -152,7 +152,7 @@ def _fixed_axis_of(op: Operation) -> Array:
     return axis
 
 
-def _given_angles(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
+def _check_given_angles(op: Operation, angles: ArrayLike, mounting: Mounting) -> Array:
     """Rotary angles that are already chosen, (1, m) rad."""
     _fixed_axis_of(op)
     row, rotary = np.asarray(angles, dtype=float), mounting.machine.rotary

@@ -366,22 +366,22 @@ def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> tuple
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
             return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
-        result = _settled(job, ledger, method)
+        result = _first_proven(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or not METHODS[method].by_cost:
             return result
         ledger = AxisTable(ledger.feasibility, job.worth, job.progress, first)
-        return better_of(result, _settled(job, ledger, method))
+        return better_of(result, _first_proven(job, ledger, method))
     except Cancelled:
         return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
                            evaluations=ledger.evaluations, map=ledger.map()), None
     except OutOfWork as reason:
         if result is not None and result[0].axis is not None:
-            return _ended(result)
+            return _note_end(result)
         return Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
                            evaluations=ledger.evaluations, map=ledger.map()), None
 
 
-def _settled(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
+def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
     how = METHODS[method]
     if how.next_axis is None:
@@ -392,12 +392,12 @@ def _settled(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientat
     except OutOfWork as reason:
         result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)), how)
         if result.axis is not None:
-            return _ended((result, path))
+            return _note_end((result, path))
         return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
     return first_proven(job, ledger, found, how)
 
 
-def _ended(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
+def _note_end(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
     """An axis that is proven, with the word that the limit of work ended the search for a better one."""
     words, (result, path) = better_may_exist(), found
     known = words in result.reasons
@@ -433,7 +433,7 @@ def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis
     """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
     for k, one in enumerate(found):
-        best = _accepted(job, ledger, one, refused, method)
+        best = _accept_candidate(job, ledger, one, refused, method)
         if best is None:
             continue
         others: tuple[Orientation, ...] = ()
@@ -494,8 +494,8 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
     return again if again.proof.witness is None and again.value < done.value else None
 
 
-def _accepted(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],
-              method: Method) -> CheckedCandidate | None:
+def _accept_candidate(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],
+                      method: Method) -> CheckedCandidate | None:
     """What became of a candidate, repaired a few times where the proof refuses it; None when it stays refused."""
     candidate: CountedAxis | None = one
     for attempt in range(_ATTEMPTS):

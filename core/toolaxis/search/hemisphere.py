@@ -78,13 +78,13 @@ def search(ledger: AxisTable) -> list[CountedAxis]:
             ledger.proven = hunt(ledger, first, COVER * SPACING)
         if not np.isfinite(ledger.price).any():
             return []
-        found = ties(ledger) if indifferent(ledger) else _refined(ledger)
+        found = ties(ledger) if indifferent(ledger) else _refine_lobes(ledger)
         if found:
             return found
     return []
 
 
-def _refined(ledger: AxisTable) -> list[CountedAxis]:
+def _refine_lobes(ledger: AxisTable) -> list[CountedAxis]:
     """The best of each lobe from rings around the promising axes; none where a closer look refuses all of them."""
     spacing, most = SPACING, max(_NARROWEST, (len(ledger.axes) - ledger.excluded) // _SHARE)
     for width in np.minimum(_BEAM, most):

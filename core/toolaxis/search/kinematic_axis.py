@@ -146,7 +146,7 @@ def _mounting(ledger: AxisTable) -> Mounting:
 
 def _best_of_feeds(ledger: AxisTable) -> list[CountedAxis]:
     feeds = [k for k, name in enumerate(FEEDS) if ledger.worth.feed in (None, name)]
-    directed = [k for k in feeds if _directed_passes(ledger.worth, k)]
+    directed = [k for k in feeds if _passes_with_direction(ledger.worth, k)]
     if not directed:
         raise InvalidInput(f"the passes of face {ledger.worth.face.label} end where they began and have no mean feed "
                            "direction: choose another method")
@@ -171,7 +171,7 @@ def _best_axis(ledger: AxisTable, feed: int) -> CountedAxis | None:
 def _find_angles(ledger: AxisTable, feed: int, axis: Array | None, starts: Array | None = None) -> Array:
     """Equally good rotary angles for a feed whose tips are those with an axis, if one is given, (k, m) rad."""
     mounting, domain = _mounting(ledger), FreeAxes(ledger)
-    passes = _directed_passes(ledger.worth, feed, axis)
+    passes = _passes_with_direction(ledger.worth, feed, axis)
     return find_best_angles(mounting, Level.JERK, common_feed(passes),
                             lambda rows: are_angles_allowed(mounting, rows, passes, domain), starts).rows
 
@@ -226,7 +226,7 @@ def _row_of(ledger: AxisTable, axis: Array) -> int:
     return int(np.flatnonzero(away <= away.min() + _SAME)[-1])
 
 
-def _directed_passes(worth: MachiningCost, feed: int, axis: Array | None = None) -> list[PassSegment]:
+def _passes_with_direction(worth: MachiningCost, feed: int, axis: Array | None = None) -> list[PassSegment]:
     """A few passes of a face that do not end where they began: the tips with an axis, else the rounding's middles."""
     found = []
     for uv in sample_passes(worth.face, feed):

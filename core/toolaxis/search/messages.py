@@ -169,7 +169,7 @@ def _gouge(found: Violation, feasibility: Feasibility) -> str:
 
 def _collision(found: Violation, feasibility: Feasibility) -> str:
     """A component that is too near to a face."""
-    name, needed = _COMPONENTS[found.reason - CUTTER], _needed(feasibility.tolerance)[found.reason - CUTTER]
+    name, needed = _COMPONENTS[found.reason - CUTTER], _clearances(feasibility.tolerance)[found.reason - CUTTER]
     which = f"face {found.label}" if found.label else "what stands around"
     behind = found.reason == CUTTER and _behind_edges(found, feasibility)
     if not np.isfinite(found.distance):
@@ -191,7 +191,7 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
 
 
-def _needed(tolerance: Tolerance) -> tuple[float, float, float]:
+def _clearances(tolerance: Tolerance) -> tuple[float, float, float]:
     """Clearances of cutter, shank and holder, mm."""
     return tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance
 

@@ -75,7 +75,7 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
     moves = segment_motions(path.cl, path.axis[0])
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        found = _broken(tool, group, moves)
+        found = _find_violation(tool, group, moves)
         if found is not None:
             return PathCheck(found)
     gouge = 0.0
@@ -115,7 +115,7 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
     return np.tile(row, (len(group.faces), 1))
 
 
-def _broken(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation | None:
+def _find_violation(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation | None:
     """The worst motion that is not proven to keep its distances from a group, or None."""
     blocked = keeps_limits(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
     rows = np.flatnonzero(blocked >= 0)

@@ -52,7 +52,7 @@ def least_made(worth: MachiningCost, found: list[CountedAxis],
         if one.value > ((1 + _DOUBTED) * found[0].value if timed else min(values, default=np.inf)):
             break
         few.append(one)
-        values.append(_taken(worth, one, made) + _left(worth, one))
+        values.append(_cost_of_passes(worth, one, made) + _left(worth, one))
     tied = [k for k, value in enumerate(values) if not timed and value <= (1 + _TIE) * min(values)]
     order = [*tied, *(int(k) for k in np.argsort(values, kind="stable") if k not in tied)]
     return [few[k] for k in order] + [one for one in found if all(one is not other for other in few)]
@@ -64,7 +64,7 @@ def _left(worth: MachiningCost, one: CountedAxis) -> float:
     return one.value / charge * (charge - (1 - one.unreached))
 
 
-def _taken(worth: MachiningCost, one: CountedAxis, made: Callable[[Array, str], ToolPath]) -> float:
+def _cost_of_passes(worth: MachiningCost, one: CountedAxis, made: Callable[[Array, str], ToolPath]) -> float:
     """Time, cutting length or number of the passes made; inf for what cannot be made, refused with its reason later."""
     try:
         path, pace = made(one.axis, FEEDS[one.feed]), worth.pace

@@ -171,11 +171,11 @@ def together(tasks: Sequence[FaceProblem], progress: Progress = NO_PROGRESS) -> 
         if len(near):
             pool.look(np.concatenate([ring(axis, angle) for axis in near]))
     found = sorted((pool.exact(axis), tuple(axis)) for axis in pool.best(_COUNTED, _APART))[:_WALKED]
-    walked = sorted(_walked(pool, np.array(axis), value) for value, axis in found if np.isfinite(value))
+    walked = sorted(_walk_to_best(pool, np.array(axis), value) for value, axis in found if np.isfinite(value))
     return np.array([axis for _, axis in walked]).reshape(-1, 3)
 
 
-def _walked(pool: SharedAxisSearch, axis: Array, value: float) -> tuple[float, tuple[float, ...]]:
+def _walk_to_best(pool: SharedAxisSearch, axis: Array, value: float) -> tuple[float, tuple[float, ...]]:
     """The best axis on a walk from one by exact values, and its value: the better one on a ring, or a smaller ring."""
     for angle in STEPS:
         for _ in range(_MOST_STEPS):

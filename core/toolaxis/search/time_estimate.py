@@ -135,14 +135,14 @@ class TimeEstimate:
                 found[:, feed] = sum(line.length for line in lines) / np.sum(times, axis=0)
         return found
 
-    def _turned(self, axes: Array) -> Array:
+    def _rotary_angles_of(self, axes: Array) -> Array:
         """Rotary angles that give axes, (k, m) rad."""
         turned = rotary_angles(self.mounting.machine, axes, table_from_part=self.mounting.table_from_part)
         return np.asarray(turned.joints[np.arange(len(axes)), np.argmax(turned.within, axis=1)])
 
     def _joint_from_part(self, axes: Array) -> Array:
         """What the linear axes move for a motion on the part, with the rotary axes turned to axes, (k, 3, 3)."""
-        return np.asarray(np.linalg.inv(part_from_machine(self.mounting.machine, self._turned(axes),
+        return np.asarray(np.linalg.inv(part_from_machine(self.mounting.machine, self._rotary_angles_of(axes),
                                                           self.mounting.table_from_part)))
 
     def line_seconds(self, uv: Array, axes: Array) -> Array:
@@ -189,7 +189,7 @@ class TimeEstimate:
         axis : (3,) array
         """
         machine, place = self.mounting.machine, self.mounting.table_from_part
-        start = self._turned(axis[None])[0]
+        start = self._rotary_angles_of(axis[None])[0]
         turned = rotary_angles(machine, ring(axis, _ASIDE), start, place)
         times = [min(index_time(machine, start, end, INDEX_SECONDS) for end in ends[within])
                  for ends, within in zip(turned.joints, turned.within, strict=True) if within.any()]

@@ -72,7 +72,7 @@ def arc_parameter(angle: Array, limits: Range) -> Array:
     return np.asarray(limits[0] + width * (index + share))
 
 
-def _revolved(turn: Range, knots: Array, degree: int, generatrix: Array) -> NurbsSurface:
+def _revolve_rows(turn: Range, knots: Array, degree: int, generatrix: Array) -> NurbsSurface:
     """Rows (w rho, w z, w) of a generatrix turned about z."""
     knots_u, circle = _arc(turn)
     rho, z, w = generatrix.T
@@ -81,7 +81,7 @@ def _revolved(turn: Range, knots: Array, degree: int, generatrix: Array) -> Nurb
     return NurbsSurface(knots_u, knots, control, (2, degree))
 
 
-def _turned(u: Array, rho: Array, z: Array) -> Derivatives:
+def _revolve_derivatives(u: Array, rho: Array, z: Array) -> Derivatives:
     """Derivatives of a surface of revolution from rows (value, first, second derivative) of rho(v) and z(v)."""
     c, s, zero = np.cos(u), np.sin(u), np.zeros_like(u)
     radial, around = np.stack([c, s, zero], -1), np.stack([-s, c, zero], -1)
@@ -150,7 +150,7 @@ class CylindricalSurface:
         """Position and derivatives at (n, 2) parameters, mm."""
         u, v = np.asarray(uv, dtype=float).T
         zero = np.zeros_like(v)
-        return _turned(u, np.stack([zero + self.radius, zero, zero]), np.stack([v, zero + 1.0, zero]))
+        return _revolve_derivatives(u, np.stack([zero + self.radius, zero, zero]), np.stack([v, zero + 1.0, zero]))
 
     def principal(self, uv: Array) -> tuple[Array, Array]:
         """Principal curvatures k1 >= k2, each (n,), 1/mm."""
@@ -159,7 +159,7 @@ class CylindricalSurface:
     def nurbs(self) -> NurbsSurface:
         """The same surface as a rational B-spline of degree (2, 1)."""
         knots, height = _line(self.v_range)
-        return _revolved(self.u_range, knots, 1, np.column_stack([np.full(2, self.radius), height]))
+        return _revolve_rows(self.u_range, knots, 1, np.column_stack([np.full(2, self.radius), height]))
 
     def parameters(self, uv: Array) -> Array:
         """Parameters of `nurbs` at (n, 2) parameters of this surface."""
@@ -190,7 +190,7 @@ class SphericalSurface:
         """Position and derivatives at (n, 2) parameters, mm."""
         u, v = np.asarray(uv, dtype=float).T
         c, s = self.radius * np.cos(v), self.radius * np.sin(v)
-        return _turned(u, np.stack([c, -s, -c]), np.stack([s, c, -s]))
+        return _revolve_derivatives(u, np.stack([c, -s, -c]), np.stack([s, c, -s]))
 
     def principal(self, uv: Array) -> tuple[Array, Array]:
         """Principal curvatures k1 >= k2, each (n,), 1/mm."""
@@ -199,7 +199,7 @@ class SphericalSurface:
     def nurbs(self) -> NurbsSurface:
         """The same surface as a rational B-spline of degree (2, 2)."""
         knots, rows = _arc(self.v_range)
-        return _revolved(self.u_range, knots, 2, rows * [self.radius, self.radius, 1.0])
+        return _revolve_rows(self.u_range, knots, 2, rows * [self.radius, self.radius, 1.0])
 
     def parameters(self, uv: Array) -> Array:
         """Parameters of `nurbs` at (n, 2) parameters of this surface."""
@@ -237,8 +237,8 @@ class ConicalSurface:
         """Position and derivatives at (n, 2) parameters, mm."""
         u, v = np.asarray(uv, dtype=float).T
         zero, a = np.zeros_like(v), self.half_angle
-        return _turned(u, np.stack([self.radius + v * sin(a), zero + sin(a), zero]),
-                       np.stack([v * cos(a), zero + cos(a), zero]))
+        return _revolve_derivatives(u, np.stack([self.radius + v * sin(a), zero + sin(a), zero]),
+                                    np.stack([v * cos(a), zero + cos(a), zero]))
 
     def principal(self, uv: Array) -> tuple[Array, Array]:
         """Principal curvatures k1 >= k2, each (n,), 1/mm; minus infinity at the apex."""
@@ -251,7 +251,7 @@ class ConicalSurface:
         knots, rows = _line(self.v_range)
         v = rows[:, 0]
         rho = np.maximum(self.radius + v * sin(self.half_angle), 0.0)
-        return _revolved(self.u_range, knots, 1, np.column_stack([rho, v * cos(self.half_angle), rows[:, 1]]))
+        return _revolve_rows(self.u_range, knots, 1, np.column_stack([rho, v * cos(self.half_angle), rows[:, 1]]))
 
     def parameters(self, uv: Array) -> Array:
         """Parameters of `nurbs` at (n, 2) parameters of this surface."""
@@ -284,7 +284,7 @@ class ToroidalSurface:
         """Position and derivatives at (n, 2) parameters, mm."""
         u, v = np.asarray(uv, dtype=float).T
         c, s = self.minor * np.cos(v), self.minor * np.sin(v)
-        return _turned(u, np.stack([self.major + c, -s, -c]), np.stack([s, c, -s]))
+        return _revolve_derivatives(u, np.stack([self.major + c, -s, -c]), np.stack([s, c, -s]))
 
     def principal(self, uv: Array) -> tuple[Array, Array]:
         """Principal curvatures k1 >= k2, each (n,), 1/mm."""
@@ -295,7 +295,7 @@ class ToroidalSurface:
         """The same surface as a rational B-spline of degree (2, 2)."""
         knots, rows = _arc(self.v_range)
         rho = self.major * rows[:, 2] + self.minor * rows[:, 0]
-        return _revolved(self.u_range, knots, 2, np.column_stack([rho, self.minor * rows[:, 1], rows[:, 2]]))
+        return _revolve_rows(self.u_range, knots, 2, np.column_stack([rho, self.minor * rows[:, 1], rows[:, 2]]))
 
     def parameters(self, uv: Array) -> Array:
         """Parameters of `nurbs` at (n, 2) parameters of this surface."""

@@ -34,13 +34,13 @@ def area(face: "Face") -> float:
     u0, u1, v0, v1 = face.bounds
     cuts = (_cuts(face.surface.knots_u, np.linspace(u0, u1, PIECES + 1)),
             _breaks(v0, v1, face.surface.knots_v, face.outline[:1]))
-    sizes = [abs(_enclosed(face, loop, cuts)) for loop in face.outline]
+    sizes = [abs(_area_inside(face, loop, cuts)) for loop in face.outline]
     return float(sizes[0] - sum(sizes[1:]))
 
 
-def _enclosed(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
+def _area_inside(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
     """Area inside a closed polygon, positive where it runs anticlockwise in the parameters."""
-    start, end = _parted(loop, cuts)
+    start, end = _cut_polygon(loop, cuts)
     moved = start[:, 1] != end[:, 1]
     start, end = start[moved], end[moved]
     short = np.abs(end - start)[:, 1] < (cuts[1][-1] - cuts[1][0]) / 256
@@ -54,7 +54,7 @@ def _enclosed(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
     return total
 
 
-def _parted(loop: Array, cuts: tuple[Array, Array]) -> tuple[Array, Array]:
+def _cut_polygon(loop: Array, cuts: tuple[Array, Array]) -> tuple[Array, Array]:
     """Starts and ends of the parts of a closed polygon between lines of constant u and of constant v."""
     way = np.roll(loop, -1, axis=0) - loop
     edges, shares = [np.arange(len(loop))], [np.zeros(len(loop))]

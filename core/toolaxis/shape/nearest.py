@@ -83,10 +83,10 @@ def _from_inside(face: Face, targets: Array, samples: int) -> NearestPoints | No
     if not len(grid):
         return None
     start = _starts(face.evaluate(grid).point, targets)
-    return _pick([_descended(face, targets, grid[column]) for column in start.T])
+    return _pick([_descend(face, targets, grid[column]) for column in start.T])
 
 
-def _descended(face: Face, targets: Array, uv: Array) -> NearestPoints:
+def _descend(face: Face, targets: Array, uv: Array) -> NearestPoints:
     """Newton steps down the squared distance, halved until they descend, as long as they stay on the face."""
     u0, u1, v0, v1 = face.bounds
     low, high = np.array([u0, v0]), np.array([u1, v1])

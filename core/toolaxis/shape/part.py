@@ -107,7 +107,7 @@ class Part:
         InvalidInput
             Without faces.
         """
-        numbered = tuple(_numbered(face, k + 1) for k, face in enumerate(faces))
+        numbered = tuple(_number_face(face, k + 1) for k, face in enumerate(faces))
         body = Body("faces", tuple(face.number for face in numbered), False)
         if edges is None:
             whole = cls(numbered)
@@ -235,5 +235,5 @@ class Part:
         return replace(self, faces=faces, edges=edges, original=original)
 
 
-def _numbered(face: Face, number: int) -> Face:
+def _number_face(face: Face, number: int) -> Face:
     return replace(face, number=number, label=str(number) if face.label == str(face.number) else face.label)

@@ -281,11 +281,11 @@ class Tool:
         if height <= self.height:
             return self
         if self.holder is not None and self.stickout is not None:
-            return replace(self, holder=_carried(self.holder, height - self.height))
+            return replace(self, holder=_carry_on(self.holder, height - self.height))
         if not self.outlines and self.half_angle == 0:
             return replace(self, flute_length=height)
         end = self.outlines.get("shank", np.array([[self.profile.top_radius, self.flute_length]]))
-        return replace(self, shank=_carried(end, height - self.height))
+        return replace(self, shank=_carry_on(end, height - self.height))
 
     def with_ball_end(self) -> "Tool":
         """A ball end mill of the same radius in the same holder: what 3-axis machining takes.
@@ -352,7 +352,7 @@ def _flute(usual: float, given: Any, corner_radius: float, stickout: float | Non
     return length
 
 
-def _carried(line: Array, further: float) -> Array:
+def _carry_on(line: Array, further: float) -> Array:
     """A polyline (radius, z) that goes on upwards from its upper end, as wide as it is there."""
     top = line[-1, 1]
     wide = line[line[:, 1] == top, 0].max()

@@ -104,11 +104,11 @@ def coarser(view: RestMaterialView, most: int) -> RestMaterialView:
     if step <= 1:
         return view
 
-    def _pooled(cells: Cells) -> Cells:
+    def _pool_cells(cells: Cells) -> Cells:
         high, wide = -(-rows // step) * step, -(-columns // step) * step
         padded = np.full((high, wide), -np.inf, dtype=np.float32)
         padded[:rows, :columns] = np.where(np.isnan(cells), -np.inf, cells)
         most_of = padded.reshape(high // step, step, wide // step, step).max(axis=(1, 3))
         return np.where(most_of == -np.inf, np.nan, most_of).astype(np.float32)
 
-    return RestMaterialView(view.corner, view.cell * step, _pooled(view.scallop), _pooled(view.gouge))
+    return RestMaterialView(view.corner, view.cell * step, _pool_cells(view.scallop), _pool_cells(view.gouge))

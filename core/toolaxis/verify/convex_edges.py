@@ -164,12 +164,12 @@ def _open(face: Face, rays: tuple[Array, Array], others: tuple[Face, ...], reach
     outwards = unit(across[rows])
     step = in_parameters(face, uv[rows], 0.1 * NEAR * outwards)
     sides = face.contains(uv[rows] + step).astype(int) - face.contains(uv[rows] - step).astype(int)
-    alone = (sides != 0) & ~_continued(point[rows], lines, others)
+    alone = (sides != 0) & ~_goes_on_beyond(point[rows], lines, others)
     end.there[rows[alone]], end.point[:, rows], end.outwards[:, rows] = True, point[rows], -sides[:, None] * outwards
     return end
 
 
-def _continued(point: Array, lines: list[BorderLoop], others: tuple[Face, ...]) -> NDArray[np.bool_]:
+def _goes_on_beyond(point: Array, lines: list[BorderLoop], others: tuple[Face, ...]) -> NDArray[np.bool_]:
     """Whether the part goes on beyond points of a border: on another face, or on the same beyond a seam."""
     from scipy.spatial import cKDTree
 

@@ -60,7 +60,7 @@ class Depths:
         left.gouge[deep[near]] = told[near]
         higher = left.gouge[deep] > task.tolerance.gouge
         deep, point = deep[higher], point[higher]
-        left.gouge[deep] = np.maximum(left.gouge[deep] - self._missed(face, point), 0.0)
+        left.gouge[deep] = np.maximum(left.gouge[deep] - self._mismatch_near(face, point), 0.0)
 
     def _of_the_part(self) -> tuple[Face, ...]:
         return (*self.task.targets, *self.task.skin, *self.task.touching)
@@ -79,7 +79,7 @@ class Depths:
             less = self.cut((foot[thin], normal[thin]), depth=np.maximum(limit[thin], _LEAST))
             left.gouge[rows], left.gouged_by[rows] = less.gouge, less.gouged_by
 
-    def _missed(self, face: Face, point: Array) -> Array:
+    def _mismatch_near(self, face: Face, point: Array) -> Array:
         """By how much the face stands out over its neighbours near points of it, mm."""
         if not len(point):
             return np.zeros(0)

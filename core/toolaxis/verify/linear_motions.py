@@ -56,7 +56,7 @@ class Motions:
         return len(self.start)
 
 
-def _checked(tips: ArrayLike, axes: ArrayLike, kind: ArrayLike) -> tuple[Array, Array, NDArray[np.int8]]:
+def _check_motions(tips: ArrayLike, axes: ArrayLike, kind: ArrayLike) -> tuple[Array, Array, NDArray[np.int8]]:
     if np.size(tips) == 0:
         raise InvalidInput("the cutter location data holds no point: nothing can be judged")
     tip, axis = as_rows(tips, 3, "tool tip"), as_rows(axes, 3, "tool axis")
@@ -139,7 +139,7 @@ class Tiles:
     def __init__(self, cl: tuple[ArrayLike, ArrayLike, ArrayLike], reach: float,
                  among: tuple[int, ...] | None = None) -> None:
         self._reach = reach
-        self._tip, self._axis, self._kind = _checked(*cl)
+        self._tip, self._axis, self._kind = _check_motions(*cl)
         self._pieces, self._bow = _pieces_of(self._tip, self._axis, reach)
         arriving = self._kind if len(self._tip) == 1 else self._kind[1:]
         self._wanted = np.ones(len(arriving), dtype=bool) if among is None else np.isin(arriving, among)

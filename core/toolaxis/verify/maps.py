@@ -249,15 +249,15 @@ def surface_map(face: Face, judge: Callable[[Array, Array], RestMaterial], spaci
     left = judge(rays.point, rays.normal)
     aside = np.zeros(len(rays.uv), dtype=bool) if declared is None else declared(rays.uv, rays.point)
     finite = np.where(np.isfinite(left.remaining) & ~aside, left.remaining, -1.0)
-    worst_scallop = _sharpened(face, rays, judge, ("remaining", finite, left.cut_by), declared) if heights else None
-    worst_gouge = _sharpened(face, rays, judge, ("gouge", left.gouge, left.gouged_by))
+    worst_scallop = _sharpen_worst(face, rays, judge, ("remaining", finite, left.cut_by), declared) if heights else None
+    worst_gouge = _sharpen_worst(face, rays, judge, ("gouge", left.gouge, left.gouged_by))
     return SurfaceMap(face, rays.uv, rays.point, rays.weight, rays.border, left.remaining, left.gouge, left.cut_by,
                       left.gouged_by, rays.spacing, worst_scallop, worst_gouge, aside)
 
 
-def _sharpened(face: Face, rays: Rays, judge: Callable[[Array, Array], RestMaterial],
-               coarse: tuple[str, Array, NDArray[np.int64]],
-               aside: Declared | None = None) -> MapPoint | None:
+def _sharpen_worst(face: Face, rays: Rays, judge: Callable[[Array, Array], RestMaterial],
+                   coarse: tuple[str, Array, NDArray[np.int64]],
+                   aside: Declared | None = None) -> MapPoint | None:
     """The worst place, looked for in ever smaller patches around the worst rays, and not where it is aside."""
     what, value, by = coarse
     if value.max() <= 0:

@@ -253,8 +253,8 @@ def _remove(body: Body, tables: RemovalTables, rays: tuple[Array, Array, Index],
         _remove_block(body, tables, ray, out, (ball[b], first[b], first[b + 1]))
 
 
-def _checked_rays(points: ArrayLike, normals: ArrayLike, spans: tuple[ArrayLike, ArrayLike],
-                  ) -> tuple[Array, Array, Array, Array]:
+def _check_rays(points: ArrayLike, normals: ArrayLike, spans: tuple[ArrayLike, ArrayLike],
+                ) -> tuple[Array, Array, Array, Array]:
     """Feet, directions, depths and heights of rays, one of each for every ray."""
     foot, direction = as_rows(points, 3, "ray point"), as_rows(normals, 3, "ray normal")
     if len(direction) != len(foot):
@@ -319,7 +319,7 @@ class Removal:
         InvalidInput
             When there is no ray, a number is not finite, or shapes do not fit.
         """
-        foot, direction, low, high = _checked_rays(*rays, (depth, height))
+        foot, direction, low, high = _check_rays(*rays, (depth, height))
         found = _nothing(len(foot))
         near = self._within(foot, max(float(low.max()), float(high.max())))
         if len(near):

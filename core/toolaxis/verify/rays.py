@@ -87,10 +87,10 @@ def face_rays(face: Face, spacing: float | None = None) -> Rays:
         spacing = default_spacing(face)
     if not (np.isfinite(spacing) and spacing > 0):
         raise InvalidInput(f"ray spacing is {spacing} mm: it must be a finite number above zero")
-    return _KEPT.get((face, spacing), lambda: _made(face, spacing))
+    return _KEPT.get((face, spacing), lambda: _make_rays(face, spacing))
 
 
-def _made(face: Face, spacing: float) -> Rays:
+def _make_rays(face: Face, spacing: float) -> Rays:
     uv, cell = _cells(face, spacing)
     edge = border_points(face, spacing)
     if not len(uv) and not len(edge):
@@ -123,8 +123,8 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
         across = _lengths(u, speed_u[row])
         count = _parts(across, spacing)
         k = np.arange(done + 1, done + count + 1)
-        at_u, step_u = _placed(u, across, (np.arange(count) + np.mod(0.5 + k * _R2[0], 1.0)) / count)
-        at_v, step_v = _placed(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
+        at_u, step_u = _place_at_shares(u, across, (np.arange(count) + np.mod(0.5 + k * _R2[0], 1.0)) / count)
+        at_v, step_v = _place_at_shares(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
         tried.append(np.column_stack([at_u, at_v, step_u * step_v / (count * rows)]))
         done += count
         if sum(map(len, tried)) >= _TRIED or row == rows - 1:
@@ -145,7 +145,7 @@ def _parts(length: Array, spacing: float) -> int:
     return max(1, int(np.ceil(length[-1] / spacing - 1e-9)))
 
 
-def _placed(t: Array, length: Array, share: Array) -> tuple[Array, Array]:
+def _place_at_shares(t: Array, length: Array, share: Array) -> tuple[Array, Array]:
     """Parameters at shares of a line's length, and their rate of change with the share."""
     mark = length / length[-1]
     piece = np.clip(np.searchsorted(mark, share, side="right") - 1, 0, len(t) - 2)

@@ -90,7 +90,7 @@ def face_cells(face: Face, size: float) -> SampledFace:
     size : float
         Side of a cell aimed at, mm; larger on faces with more than `MOST` of them along a parameter.
     """
-    return _KEPT.get((face, size), lambda: _made(face, size))
+    return _KEPT.get((face, size), lambda: _make_cells(face, size))
 
 
 def ball_around(face: Face, size: float) -> Array:
@@ -112,7 +112,7 @@ def ball_around(face: Face, size: float) -> Array:
     return known[size]
 
 
-def _made(face: Face, size: float) -> SampledFace:
+def _make_cells(face: Face, size: float) -> SampledFace:
     u0, u1, v0, v1 = face.bounds
     d = face.evaluate(face.grid(16, 16))
     wide, tall = (float(np.linalg.norm(x, axis=1).max()) if len(x) else 1.0 for x in (d.su, d.sv))

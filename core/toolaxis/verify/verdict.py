@@ -213,7 +213,7 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
     left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
     targets = tuple(surface_map(face, partial(along, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
-    skin = tuple(_kept_of(surface_map(face, partial(along, face), spacing, heights=False)) for face in task.skin)
+    skin = tuple(_keep_touched(surface_map(face, partial(along, face), spacing, heights=False)) for face in task.skin)
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
     edge = _behind_edges(task, depths, threads, progress)
@@ -221,7 +221,7 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
     return OperationMeasurement(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty)
 
 
-def _kept_of(one: SurfaceMap) -> tuple[SurfaceMap, int]:
+def _keep_touched(one: SurfaceMap) -> tuple[SurfaceMap, int]:
     """What is kept of the map of a face of the skin: the rays that something cut or gouged, and how many there were."""
     return one.touched(), len(one.uv)
 
@@ -239,7 +239,7 @@ def _behind_edges(task: VerificationTask, depths: Depths, threads: int, progress
     return find(taken_off=depths.missed_behind_edges) if missed else found
 
 
-def _needed(task: VerificationTask, name: str) -> float:
+def _clearance_of(task: VerificationTask, name: str) -> float:
     """Clearance that a component must keep, mm."""
     needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance}
     return needed.get(name, task.tolerance.holder_clearance)
@@ -253,8 +253,8 @@ def _rooms(task: VerificationTask, threads: int, progress: Progress) -> dict[str
         parts["cutter"] = (cutter_solid(task.profile), task.surroundings)
     rooms: dict[str, Clearance | str] = {"cutter": NOT_CHECKED, "shank": NOT_CHECKED, "holder": NOT_CHECKED}
     for name, (solids, faces) in parts.items():
-        rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=_needed(task, name),
-                                threads=threads, progress=progress)
+        rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces,
+                                enough=_clearance_of(task, name), threads=threads, progress=progress)
     return rooms
 
 
@@ -337,11 +337,11 @@ def _axis_reasons(task: VerificationTask) -> list[str]:
     i = int(np.argmax(apart))
     if apart[i] <= SAME_AXIS:
         return []
-    return [f"the plan names the axis {_written(task.named)}, and the tool stands at {_written(task.axes[i])} at point "
-            f"{i + 1}: plan the operation again"]
+    return [f"the plan names the axis {_axis_text(task.named)}, and the tool stands at {_axis_text(task.axes[i])} at "
+            f"point {i + 1}: plan the operation again"]
 
 
-def _written(axis: Array) -> str:
+def _axis_text(axis: Array) -> str:
     return "(" + ", ".join(f"{float(x) + 0.0:.6f}" for x in axis) + ")"
 
 
@@ -391,7 +391,7 @@ def _link_reasons(task: VerificationTask, place: MapPoint | None) -> list[str]:
 def _room_reasons(task: VerificationTask, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
     for name, room in rooms.items():
-        need = _needed(task, name)
+        need = _clearance_of(task, name)
         if name in KINDS and isinstance(room, Clearance):
             reasons += meeting_reasons(task, name, room)
         elif isinstance(room, Clearance) and room.distance < min(need, FAR):

@@ -62,7 +62,7 @@ def shape_of(thing: Any) -> Any:
     shape = FreecadPart.getShape(thing)
     if shape.isNull():
         raise InvalidInput(f"{name} has no shape: recompute it, or pick a solid, a shell or faces")
-    return _moved(_with_faces(shape, name), container_placement(thing))
+    return _move_shape(_with_faces(shape, name), container_placement(thing))
 
 
 def name_of(thing: Any) -> str:
@@ -122,7 +122,7 @@ def _check_object(thing: Any, name: str) -> None:
         raise InvalidInput(f"{name} could not be computed ({thing.getStatusString()}): repair it first")
 
 
-def _moved(shape: Any, placement: Any) -> Any:
+def _move_shape(shape: Any, placement: Any) -> Any:
     if placement.isIdentity():
         return shape
     moved = FreecadPart.Shape(shape)
@@ -155,5 +155,5 @@ def _pick_face(thing: Any, shape: Any, item: Any) -> Any:
     if "." in item and isinstance(thing, FreeCAD.DocumentObject):
         found = FreecadPart.getShape(thing, item, needSubElement=True)
         if not found.isNull() and found.ShapeType == "Face":
-            return _nearest(shape, _moved(found, container_placement(thing)).Faces[0])
+            return _nearest(shape, _move_shape(found, container_placement(thing)).Faces[0])
     raise InvalidInput(f"{item} is no face of {name}: it has Face1 to Face{len(shape.Faces)}")

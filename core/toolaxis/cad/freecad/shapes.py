@@ -130,10 +130,10 @@ class FreecadFace:
     @cached_property
     def wires(self) -> list[list["FreecadEdge"]]:
         """Edges of every wire in the order of travel."""
-        walks = (self._walked(wire) for wire in self.face.childShapes() if wire.ShapeType == "Wire")
+        walks = (self._walk_wire(wire) for wire in self.face.childShapes() if wire.ShapeType == "Wire")
         return [walk for walk in walks if walk]
 
-    def _walked(self, wire: Any) -> list["FreecadEdge"]:
+    def _walk_wire(self, wire: Any) -> list["FreecadEdge"]:
         listed = [edge for edge in wire.childShapes() if edge.Orientation in ("Forward", "Reversed")]
         twice = [edge.reversed() for edge in listed if edge.isSeam(self.face)]
         ordered = wire.OrderedEdges
@@ -151,7 +151,7 @@ class FreecadEdge:
         self.edge, self.face = edge, face
         self.forward = edge.Orientation != "Reversed"
         self.degenerate = bool(edge.Degenerated)
-        found: tuple[Any, float, float] = face.curveOnSurface(edge) or _projected(edge, face)
+        found: tuple[Any, float, float] = face.curveOnSurface(edge) or _project_edge(edge, face)
         self.curve, first, last = found
         self.range = first, last
         self.first, self.last = (first, last) if self.forward else (last, first)
@@ -214,7 +214,7 @@ class ProjectedCurve:
         return FreeCAD.Base.Vector2d(*(place + turns * self.periods))
 
 
-def _projected(edge: Any, face: Any) -> tuple[ProjectedCurve, float, float]:
+def _project_edge(edge: Any, face: Any) -> tuple[ProjectedCurve, float, float]:
     surface = FreecadSurface(face.Surface)
     if edge.Degenerated or edge.isSeam(face):
         raise UnsupportedGeometry("an edge has no curve in the parameters of its face: repair the part in the "

@@ -183,7 +183,7 @@ def children(shape: Any, kind: Any) -> Iterator[Any]:
         iterator.Next()
 
 
-def _explored(shape: Any, kind: Any, avoid: Any = None) -> list[Any]:
+def _explore_shape(shape: Any, kind: Any, avoid: Any = None) -> list[Any]:
     explorer = TopExp_Explorer(shape, kind) if avoid is None else TopExp_Explorer(shape, kind, avoid)
     found = []
     while explorer.More():
@@ -195,11 +195,11 @@ def _explored(shape: Any, kind: Any, avoid: Any = None) -> list[Any]:
 def _bodies(shape: Any, faces: ShapeMap) -> Iterator[KernelBody]:
     """Solids, then shells outside solids, then loose faces."""
     def numbers(item: Any, *avoid: Any) -> tuple[int, ...]:
-        return tuple(dict.fromkeys(faces.FindIndex(face) for face in _explored(item, TopAbs_FACE, *avoid)))
+        return tuple(dict.fromkeys(faces.FindIndex(face) for face in _explore_shape(item, TopAbs_FACE, *avoid)))
 
-    for solid in _explored(shape, TopAbs_SOLID):
+    for solid in _explore_shape(shape, TopAbs_SOLID):
         yield KernelBody("solid", numbers(solid), True, _inside_out(solid))
-    for shell in _explored(shape, TopAbs_SHELL, TopAbs_SOLID):
+    for shell in _explore_shape(shape, TopAbs_SHELL, TopAbs_SOLID):
         yield KernelBody("shell", numbers(shell), bool(BRep_Tool.IsClosed_s(shell)))
     yield KernelBody("faces", numbers(shape, TopAbs_SHELL), False)
 

@@ -108,20 +108,20 @@ class _Assembly:
 
     def __init__(self, shapes: XCAFDoc_ShapeTool, colouring: XCAFDoc_ColorTool, name: str) -> None:
         self.shapes, self.colouring, self.name, self.label = shapes, colouring, name, shapes.NewShape()
-        _named(self.label, name)
+        _name_label(self.label, name)
 
     def put(self, shape: Any, name: str, colour: Colour) -> None:
         """Add a shape under a name; it stays as one, whatever it is made of."""
         label = self.shapes.AddShape(shape, False)
-        _named(label, name)
+        _name_label(label, name)
         self.colouring.SetColor(label, Quantity_Color(*colour, Quantity_TypeOfColor.Quantity_TOC_sRGB),
                                 XCAFDoc_ColorType.XCAFDoc_ColorGen)
-        _named(self.shapes.AddComponent(self.label, label, TopLoc_Location()), name)
+        _name_label(self.shapes.AddComponent(self.label, label, TopLoc_Location()), name)
 
     def take(self, other: "_Assembly", location: Any) -> None:
         """Add another assembly at a location."""
-        _named(self.shapes.AddComponent(self.label, other.label, location), other.name)
+        _name_label(self.shapes.AddComponent(self.label, other.label, location), other.name)
 
 
-def _named(label: Any, name: str) -> None:
+def _name_label(label: Any, name: str) -> None:
     TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))

@@ -64,7 +64,7 @@ def text_damage(entities: Entities) -> str:
     swallowed = _SWALLOWED.search(bare, start)
     if swallowed:
         return f"lacks a semicolon before entity #{int(swallowed.group(1))}; export the part again"
-    return _twice(entities) or _unbalanced(entities)
+    return _twice(entities) or _bracket_fault(entities)
 
 
 def _endless(entities: Entities) -> "re.Match[bytes] | None":
@@ -103,7 +103,7 @@ def _twice(entities: Entities) -> str:
             "part again")
 
 
-def _unbalanced(entities: Entities) -> str:
+def _bracket_fault(entities: Entities) -> str:
     bare = entities.bare
     for entity in entities.table.values():
         if bare.count(b"(", entity.start, entity.end) + 1 != bare.count(b")", entity.start, entity.end):

@@ -76,7 +76,7 @@ def plain_text(path: Path, content: bytes) -> tuple[bytes, list[str]]:
         return content[len(BOM):], []
     for mark, encoding in WIDE:
         if content.startswith(mark):
-            return _narrowed(path, content, encoding)
+            return _narrow_text(path, content, encoding)
     start = content[:200].lstrip().lower()
     for mark, what in FOREIGN:
         if start.startswith(mark):
@@ -84,7 +84,7 @@ def plain_text(path: Path, content: bytes) -> tuple[bytes, list[str]]:
     return content, []
 
 
-def _narrowed(path: Path, content: bytes, encoding: str) -> tuple[bytes, list[str]]:
+def _narrow_text(path: Path, content: bytes, encoding: str) -> tuple[bytes, list[str]]:
     name = encoding.upper()[:6]
     try:
         text = content.decode(encoding).removeprefix("\ufeff")

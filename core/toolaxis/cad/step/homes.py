@@ -124,7 +124,7 @@ def give_products(mending: Mending, faces: Iterable[int]) -> frozenset[int]:
     """
     entities = mending.entities
     homeless = {number for number in faces if entities.kind(number) in FACES}
-    used = _used_representations(entities)
+    used = _representations_of_products(entities)
     lonely: list[tuple[Entity, set[int]]] = []
     for holder in entities.of(*REPRESENTATIONS):
         own = find_referring(entities, [holder], FACES)
@@ -147,7 +147,7 @@ def give_products(mending: Mending, faces: Iterable[int]) -> frozenset[int]:
     return frozenset()
 
 
-def _used_representations(entities: Entities) -> set[int]:
+def _representations_of_products(entities: Entities) -> set[int]:
     """Representations that a product has, directly or over relationships."""
     used = {number for entity in entities.of("SHAPE_DEFINITION_REPRESENTATION", "REPRESENTATION_MAP")
             for number in entities.references(entity)}

@@ -81,7 +81,7 @@ def read_text(path: Path, accept_lost_faces: bool = False) -> StepText:
     promised, links = face_lists(entities), find_linked_files(entities)
     if not promised.faces:
         raise InvalidInput(f"{path} {_nothing(entities, links)}")
-    left = _left_out(path, entities, promised, accept_lost_faces)
+    left = _faces_to_leave_out(path, entities, promised, accept_lost_faces)
     fault = unit_fault(entities) or place_damage(entities)
     if fault:
         raise InvalidInput(f"{path} {fault}")
@@ -156,7 +156,7 @@ def _nothing(entities: Entities, links: list[str]) -> str:
     return f"holds no faces with exact geometry{only}: export solids or surfaces, not meshes, wires or drawings"
 
 
-def _left_out(path: Path, entities: Entities, promised: FaceLists, accept: bool) -> dict[int, str]:
+def _faces_to_leave_out(path: Path, entities: Entities, promised: FaceLists, accept: bool) -> dict[int, str]:
     """Faces that no kernel is to see, and why: with absurd lengths, and damaged ones where that is accepted."""
     faces = [number for group in promised.lists for number in group]
     far = faces_with(entities, faces, far_entities(entities))

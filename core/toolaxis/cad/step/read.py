@@ -48,7 +48,7 @@ def read_step(path: str | PathLike[str], time_limit: float | None = None, accept
     file = Path(path)
     text = read_text(file, accept_lost_faces)
     found = _transfer(file, text, time_limit)
-    lost = _lost_faces_sentence(file, text, found)
+    lost = _sentence_on_lost_faces(file, text, found)
     if lost and not accept_lost_faces:
         raise InvalidInput(f"{lost}; {ACCEPT}")
     record = found.record
@@ -129,7 +129,7 @@ def _outcome(child: "subprocess.CompletedProcess[bytes]", target: Path, file: Pa
     raise InvalidInput(f"{file} crashed the CAD kernel ({why}): repair the geometry and export it again")
 
 
-def _lost_faces_sentence(file: Path, text: StepText, found: Transfer) -> str:
+def _sentence_on_lost_faces(file: Path, text: StepText, found: Transfer) -> str:
     """A sentence about the faces that the kernel was given and has not made."""
     promised, cause = text.order.promised, _cause(text, found.lost)
     missing = len(found.lost) or promised - found.distinct

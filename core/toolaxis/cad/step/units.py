@@ -51,10 +51,10 @@ def unit_fault(entities: Entities) -> str:
     """
     units = _of_contexts(entities)
     fault = next(filter(None, (_fault(entities, number, ()) for number in units)), "")
-    return fault or ("" if units else _lost_unit(entities))
+    return fault or ("" if units else _find_lost_unit(entities))
 
 
-def _lost_unit(entities: Entities) -> str:
+def _find_lost_unit(entities: Entities) -> str:
     """Which entity may have been the length unit, where the text lacks some."""
     contexts = [number for holder in entities.of(*REPRESENTATIONS) for number in entities.references(holder)[-1:]]
     units = [int(number) for members in _CONTEXT.findall(entities.bare) for number in _REFERENCE.findall(members)]

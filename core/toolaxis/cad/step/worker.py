@@ -134,7 +134,7 @@ def convert(path: str, order: FaceOrder | None = None) -> tuple[Any, ...]:
         Which faces the file has.
     """
     try:
-        return "done", _converted(path, order or FaceOrder((), ()))
+        return "done", _convert_file(path, order or FaceOrder((), ()))
     except ImportError as reason:
         return "failed", MissingBackend, (f"the CAD kernel that is installed is not one that toolaxis knows ({reason})"
                                           ": pip install 'toolaxis[cadquery]' or 'toolaxis[build123d]'")
@@ -148,7 +148,7 @@ def convert(path: str, order: FaceOrder | None = None) -> tuple[Any, ...]:
         return "failed", *_blame_file(reason)
 
 
-def _converted(path: str, order: FaceOrder) -> Transfer:
+def _convert_file(path: str, order: FaceOrder) -> Transfer:
     from toolaxis.cad.ocp.reader import face_map, shape_record
 
     reading = read_file(path)

@@ -143,13 +143,13 @@ def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array,
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
         shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
         asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
-        values, tags = _descended(cells, asked_of, moves, cutoff)
-        total = _merged(total, DistanceBounds(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
-                                              *tags[:, 3:].T))
+        values, tags = _descend_cells(cells, asked_of, moves, cutoff)
+        total = _merge_bounds(total, DistanceBounds(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
+                                                    *tags[:, 3:].T))
     return total
 
 
-def _descended(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
+def _descend_cells(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
     room = scratch(cells.most_edges) if _compiled.available else None
@@ -165,7 +165,7 @@ def _descended(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array)
     return values, tags
 
 
-def _merged(one: DistanceBounds, other: DistanceBounds) -> DistanceBounds:
+def _merge_bounds(one: DistanceBounds, other: DistanceBounds) -> DistanceBounds:
     nearer = (other.lower < one.lower) | (one.face < 0)
     return DistanceBounds(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
                           np.where(nearer[..., None], other.point, one.point),

@@ -69,7 +69,7 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
             continue
         try:
             why = "" if mean_width(op.face) >= 2 * plan.tool.radius else _too_tight(plan, op, progress)
-            made.append(_left_whole(op, why) if why else op)
+            made.append(_leave_whole(op, why) if why else op)
         except Cancelled:
             raise
         except Exception as reason:
@@ -152,14 +152,14 @@ def describe_zones(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operat
     found, area = op.orientation, op.face.area
     at_walls = min(1.0, sum(zone.area for zone in zones if zone.at_wall) / area)
     if at_walls > WHOLLY and mean_width(op.face) < 2 * tool.radius:
-        return _left_whole(op, f"the best axis would leave {100 * at_walls:.1f} % of it")
+        return _leave_whole(op, f"the best axis would leave {100 * at_walls:.1f} % of it")
     notes = (*left_reasons(zones, op.face), *(why for why in found.reasons if not tells_of_left(why)))
     width = area * (1 - at_walls) / found.length if found.length > 0 else 0.0
     return replace(op, zones=zones, orientation=replace(found, unreached=at_walls, average_strip_width=width,
                                                         reasons=notes))
 
 
-def _left_whole(op: Operation, why: str) -> Operation:
+def _leave_whole(op: Operation, why: str) -> Operation:
     """A sub-surface that is left to a clean-up tool as a whole."""
     reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {LEFT_OVER} as a whole: {why}"
     none = Orientation(None, op.orientation.feed, reasons=(reason, *op.orientation.reasons), unreached=1.0,

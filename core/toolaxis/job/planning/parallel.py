@@ -176,7 +176,7 @@ class _Crew(Generic[Result]):
             self._progress.check()
             for pipe in wait(list(self._members), _TICK):
                 assert isinstance(pipe, Connection)
-                if not self._heard(pipe, self._progress):
+                if not self._take_message(pipe, self._progress):
                     continue
                 if pipe in self._members and self._waiting:
                     self._hand(pipe)
@@ -191,7 +191,7 @@ class _Crew(Generic[Result]):
         while ready := wait(list(self._members), 0):
             for pipe in ready:
                 assert isinstance(pipe, Connection)
-                if self._heard(pipe, NO_PROGRESS) and pipe in self._members:
+                if self._take_message(pipe, NO_PROGRESS) and pipe in self._members:
                     self._released.append(self._members.pop(pipe))
                     pipe.close()
 
@@ -229,7 +229,7 @@ class _Crew(Generic[Result]):
         with suppress(BrokenPipeError, ConnectionResetError):  # it has died: that is heard next
             pipe.send(index)
 
-    def _heard(self, pipe: Connection, progress: Progress) -> bool:
+    def _take_message(self, pipe: Connection, progress: Progress) -> bool:
         """Take one message; whether its sender is done with its piece."""
         try:
             kind, value = pipe.recv()

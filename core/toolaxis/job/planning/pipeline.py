@@ -163,7 +163,7 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
-    bodies = tuple(load(body) for body in _listed(obstacles))
+    bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
@@ -248,7 +248,7 @@ def _in_cells(job: PlanningJob, progress: Progress) -> None:
             cells(face)
 
 
-def _listed(obstacles: Any) -> list[Any]:
+def _list_obstacles(obstacles: Any) -> list[Any]:
     if obstacles is None:
         return []
     if isinstance(obstacles, list | tuple) and not all(isinstance(item, Face) for item in obstacles):

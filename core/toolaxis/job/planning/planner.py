@@ -208,9 +208,9 @@ class PlanningJob:
                 return self._alike(targets, progress)
         except Cancelled:
             return self._plan((), "cancelled", options)
-        return self._machined(targets, options, progress)
+        return self._plan_targets(targets, options, progress)
 
-    def _machined(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
+    def _plan_targets(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
         """The plan for sub-surfaces as they are."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
@@ -224,11 +224,11 @@ class PlanningJob:
         axes, targets = self._for_all(targets, progress)
         made = None
         for axis in axes:
-            made = self._machined([target if target.ended else Target(target.face, axis, True) for target in targets],
-                                  (), progress)
+            shared = [target if target.ended else Target(target.face, axis, True) for target in targets]
+            made = self._plan_targets(shared, (), progress)
             if made.outcome == "cancelled" or all(op.done or op.failed for op in made.operations):
                 break
-        return made or self._machined(targets, (), progress)
+        return made or self._plan_targets(targets, (), progress)
 
     def _for_all(self, targets: list[Target], progress: Progress) -> tuple[Array, list[Target]]:
         """Axes that serve all sub-surfaces, those aside on which the program fails; the sub-surfaces with these ended.
@@ -355,13 +355,13 @@ class PlanningJob:
                 found, path = plan_locked(self._task(face, inner), given,
                                           lambda task: self._strategy.plan(task, self.inputs))
             elif axis is not None and target.shared:
-                found, path = self._shared(target, inner)
+                found, path = self._plan_with_shared_axis(target, inner)
             if found.axis is None and self.inputs.method == "one":
                 why = found.reasons or ("no axis found that all sub-surfaces allow",)
                 return Operation(number, face, replace(found, reasons=why))
             if found.axis is None and (given is None or self._strategy.moves):
                 refused = found.reasons
-                found, path = self._searched(face, axis, inner)
+                found, path = self._search_axis(face, axis, inner)
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
         except Cancelled:
             raise
@@ -373,7 +373,7 @@ class PlanningJob:
             raise Cancelled("cancelled by the user")
         return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
 
-    def _shared(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
+    def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
         assert target.axis is not None
         job = self._task(target.face, progress)
@@ -387,7 +387,7 @@ class PlanningJob:
         refused = tuple(f"{REFUSED}{why}; another shared axis serves" for why in found.reasons)
         return replace(other, reasons=(*other.reasons, *refused)), path
 
-    def _searched(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
+    def _search_axis(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
         job = self
         if self._strategy.moves:  # in a comparison with a plan for least time, or along planes

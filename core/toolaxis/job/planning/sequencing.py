@@ -111,7 +111,7 @@ def _at_the_ends(mounting: Mounting, rows: Sequence[list[_State]], way: _Way, ar
     assert first.op.path is not None and last.op.path is not None
     begin, end = Stop(first.op.path.cl[0], first.rotary), Stop(last.op.path.cl[-1], last.rotary)
     told = trouble_at_the_ends(mounting, begin, end, around)
-    return [f"{when} {_named(state.op)}: {why}" for when, state, why in
+    return [f"{when} {_name_of(state.op)}: {why}" for when, state, why in
             zip(("before", "after"), (first, last), told, strict=True) if why]
 
 
@@ -216,7 +216,7 @@ def _without_trouble(steps: TransitionCosts, rows: Sequence[list[_State]], known
         stood = _unwound(mounting, [states[k] for k in tour.states])
         bad = [(a, b, why) for (a, b), both in zip(pairwise(tour.states), pairwise(stood), strict=True)
                if judged and (why := _in_the_way(a, b, both))]
-        way = _Way(tour, tuple(f"before {_named(states[b].op)}: {why}" for _, b, why in bad))
+        way = _Way(tour, tuple(f"before {_name_of(states[b].op)}: {why}" for _, b, why in bad))
         if not bad:
             return way
         first = way if first is None else first
@@ -225,7 +225,7 @@ def _without_trouble(steps: TransitionCosts, rows: Sequence[list[_State]], known
     return first or _Way(in_order(steps, np.arange(steps.things)), ())
 
 
-def _named(op: Operation) -> str:
+def _name_of(op: Operation) -> str:
     return f"face {op.face.label}"
 
 

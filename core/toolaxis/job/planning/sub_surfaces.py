@@ -152,7 +152,7 @@ def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:
     for face in faces:
         try:
             why = why_faceted(face, tool)
-            found += [_left_whole(face, why)] if why else map(Target, split_at_kinks(face))
+            found += [_leave_whole(face, why)] if why else map(Target, split_at_kinks(face))
         except Cancelled:
             raise
         except Exception as reason:
@@ -160,7 +160,7 @@ def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:
     return found
 
 
-def _left_whole(face: Face, why: str) -> Target:
+def _leave_whole(face: Face, why: str) -> Target:
     """A face that is left to clean-up before an axis was looked for."""
     none = Orientation(None, outcome="not_found", reasons=(why,))
     return Target(face, ended=Operation(1, face, none, zones=(Zone(face.outline, face.area),)))

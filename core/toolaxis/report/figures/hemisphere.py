@@ -104,12 +104,12 @@ def _legends(side: Axes, ax: Axes, reasons: list[int]) -> None:
     named = side.legend(marks, labels, loc="upper left", bbox_to_anchor=(0.0, 1.0), fontsize=9, frameon=False,
                         title="axes", alignment="left", borderaxespad=0.0)
     side.add_artist(named)
-    handles = [Patch(facecolor=_GREYS[code], edgecolor="#555555", linewidth=0.5, label=_wrapped(REASONS[code]))
+    handles = [Patch(facecolor=_GREYS[code], edgecolor="#555555", linewidth=0.5, label=_wrap(REASONS[code]))
                for code in reasons]
     if handles:
         side.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=9, frameon=False,
                     title="forbidden by", alignment="left", borderaxespad=0.0)
 
 
-def _wrapped(text: str) -> str:
+def _wrap(text: str) -> str:
     return "\n".join(wrap(text, 20))

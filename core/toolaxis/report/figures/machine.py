@@ -119,9 +119,9 @@ def _panel(plan: Plan, mounting: Mounting, group: Sequence[Operation]) -> tuple[
     at = linear_coordinates(machine, tip, rotary, float(mounting.tool_length or 0.0), mounting.table_from_part)[0]
     bed_from_part: Array = np.linalg.inv(part_from_bed(machine, rotary, mounting.table_from_part)).astype(float)
     places = {body.carried: _place(mounting, body.carried, rotary, at) for body in machine.bodies}
-    corners = [_moved(body.convex.support(_WAYS), places[body.carried]) for body in machine.bodies]
+    corners = [_move_points(body.convex.support(_WAYS), places[body.carried]) for body in machine.bodies]
     axis = bed_from_part[:3, :3] @ mounting.axis_at(rotary)
-    foot = _moved(tip[None], bed_from_part)[0]
+    foot = _move_points(tip[None], bed_from_part)[0]
     top = foot[2] + max(axis[2], 0.0) * float(mounting.tool_length or 0.0) + _ABOVE
     corners = [np.minimum(rows, [np.inf, np.inf, top]) for rows in corners]
     seen = camera(_BACK, (0.0, 0.0, 1.0), np.concatenate(corners), pixels=440)
@@ -129,14 +129,14 @@ def _panel(plan: Plan, mounting: Mounting, group: Sequence[Operation]) -> tuple[
     for body in machine.bodies:
         beside = beside_part(machine, body)
         for points, ways in body_splats(body, seen.pixel):
-            (canvas if beside else head).splat(_moved(points, places[body.carried]),
+            (canvas if beside else head).splat(_move_points(points, places[body.carried]),
                                                ways @ places[body.carried][:3, :3].T, _TABLE if beside else _HEAD)
     machined = {one.face.number for one in group}
     for face in [*plan.part.faces, *(face for obstacle in plan.obstacles for face in obstacle.faces)]:
         own = any(face is one for one in plan.part.faces)
         colour = (_MACHINED if face.number in machined else _PART) if own else _OBSTACLE
         points, ways = face_splats(face, seen)
-        canvas.splat(_moved(points, bed_from_part), ways @ bed_from_part[:3, :3].T, colour)
+        canvas.splat(_move_points(points, bed_from_part), ways @ bed_from_part[:3, :3].T, colour)
     for name, line in tool_outlines(plan.tool, 0.0).items():
         points, ways = splats_of_revolution(line, foot, axis, seen.pixel)
         canvas.splat(points, ways, _TOOL[name])
@@ -156,7 +156,7 @@ def _place(mounting: Mounting, name: str, rotary: Array, at: Array) -> Array:
     return matrix
 
 
-def _moved(points: Array, matrix: Array) -> Array:
+def _move_points(points: Array, matrix: Array) -> Array:
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 

@@ -70,7 +70,7 @@ def plan_scene(plan: Plan, colour: str = "sub-surface",
             _paint(mesh, colours[op.number])
         else:
             view = (views or {}).get(op.name)
-            mesh = _judged(mesh, plan, op, view, (colour, _MOST // max(len(judged), 1)))
+            mesh = _colour_by_map(mesh, plan, op, view, (colour, _MOST // max(len(judged), 1)))
         name = f"{op.name}-surface"
         made.add_geometry(mesh, node_name=name, geom_name=name)
         if op.path is not None and op.frame is not None:
@@ -96,8 +96,8 @@ def _lines(lines: list[Array], frame: WorkCoordinates) -> Path3D:
     return Path3D(entities, frame.from_part(np.concatenate(lines)), process=False)
 
 
-def _judged(mesh: trimesh.Trimesh, plan: Plan, op: Operation, view: RestMaterialView | None,
-            asked: tuple[str, int]) -> trimesh.Trimesh:
+def _colour_by_map(mesh: trimesh.Trimesh, plan: Plan, op: Operation, view: RestMaterialView | None,
+                   asked: tuple[str, int]) -> trimesh.Trimesh:
     """A sub-surface in triangles as fine as the map, coloured by it."""
     colour, most = asked
     if view is None or op.frame is None:

@@ -55,7 +55,7 @@ def triangles(face: Face, bound: float) -> Triangles:
     counts, scale = _counts(face, bound)
     u, v = np.linspace(u0, u1, counts[0] + 1), np.linspace(v0, v1, counts[1] + 1)
     if face.trims:
-        uv, corners = _trimmed(face, (u, v), scale, bound)
+        uv, corners = _triangulate_loops(face, (u, v), scale, bound)
     else:
         uv, corners = _whole(u, v)
     points = face.evaluate(uv).point
@@ -108,7 +108,7 @@ def outline_loops(face: Face, bound: float) -> list[Array]:
     return loops
 
 
-def _trimmed(face: Face, grid: tuple[Array, Array], scale: Array, bound: float) -> tuple[Array, Index]:
+def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, bound: float) -> tuple[Array, Index]:
     """Points and triangles of a face with loops: a Delaunay triangulation that has the outline's edges."""
     from scipy.spatial import Delaunay, QhullError
 
@@ -127,7 +127,7 @@ def _trimmed(face: Face, grid: tuple[Array, Array], scale: Array, bound: float) 
             return border / scale, np.empty((0, 3), dtype=np.int64)
         if attempt == _ROUNDS:
             break
-        halved = [_halved(loop, corners, first) for loop, first in
+        halved = [_halve_edges(loop, corners, first) for loop, first in
                   zip(loops, np.cumsum([0, *map(len, loops)])[:-1], strict=True)]
         if all(len(new) == len(old) for new, old in zip(halved, loops, strict=True)):
             break
@@ -147,7 +147,7 @@ def _away(points: Array, loops: list[Array], least: float) -> NDArray[np.bool_]:
     return np.asarray(cKDTree(np.concatenate(loops)).query(points)[0] > least)
 
 
-def _halved(loop: Array, corners: Index, first: int) -> Array:
+def _halve_edges(loop: Array, corners: Index, first: int) -> Array:
     """A loop with a vertex in the middle of each edge that is no side of a triangle."""
     count, most = len(loop), int(corners.max()) + 1
     sides = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)

@@ -154,7 +154,7 @@ def merge_trees(parts: Sequence[BoundingTree]) -> BoundingTree:
     nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
     top_shape, top_link = _branches(np.stack([p.shape[0] for p in parts]), nodes[:-1])
     top = np.column_stack([top_shape, np.zeros((len(top_shape), 10)), np.full(len(top_shape), np.inf)])
-    links = [_shifted(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
+    links = [_shift_link(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
     start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
     return BoundingTree(tuple(f for p in parts for f in p.faces), np.vstack([top, *(p.nodes for p in parts)]),
                         np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
@@ -183,7 +183,7 @@ def _grown(faces: tuple[Face, ...], fineness: float) -> BoundingTree:
     return merge_trees([cells(face, fineness) for face in faces])
 
 
-def _shifted(link: Indices, node: int, face: int, leaf: int) -> Indices:
+def _shift_link(link: Indices, node: int, face: int, leaf: int) -> Indices:
     moved = link.copy()
     for column, by in ((0, node), (1, node), (2, face), (3, leaf)):
         moved[:, column] = np.where(link[:, column] >= 0, link[:, column] + by, -1)

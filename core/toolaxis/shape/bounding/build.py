@@ -131,7 +131,7 @@ def is_near_face(face: Face, uv: Array, margin: Array) -> Flags:
     return found
 
 
-def _halved(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array]) -> _Level:
+def _halve_nodes(level: _Level, rows: Indices, size: Array, lines: tuple[Array, Array]) -> _Level:
     """Both halves of some nodes, cut across their longer side at a base line or, in one base cell, in the middle."""
     count = level.base[rows, 1::2] - level.base[rows, 0::2]
     several = np.asarray((count > 1).any(axis=1))
@@ -252,7 +252,7 @@ class _Builder:
             self.centres.append(centre)
             self.ready.append(ready)
             size = np.stack([np.linalg.norm(centre[:, 3:6], axis=1), np.linalg.norm(centre[:, 6:9], axis=1)], axis=1)
-            level = self.trimmed(_halved(level, np.flatnonzero(~ready), size, self.lines))
+            level = self.trimmed(_halve_nodes(level, np.flatnonzero(~ready), size, self.lines))
 
     def tree(self) -> TreeArrays:
         """Enclosures from the leaves up, numbered from the root down."""

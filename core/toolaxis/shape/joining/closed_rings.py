@@ -27,11 +27,11 @@ def ring_around(part: Part, number: int) -> tuple[int, ...]:
     **Properties**: 1. neighbours in the ring meet along a whole smooth edge; 2. from any of its faces the same ring is
     found.
     """
-    rings = [ring for axis in (0, 1) if (ring := _walked(part, number, axis))]
+    rings = [ring for axis in (0, 1) if (ring := _walk_ring(part, number, axis))]
     return min(rings, key=len, default=())
 
 
-def _walked(part: Part, number: int, axis: int) -> tuple[int, ...]:
+def _walk_ring(part: Part, number: int, axis: int) -> tuple[int, ...]:
     """The ring that leaves a face where its parameter of that axis is largest."""
     found = [number]
     end = 1

@@ -52,12 +52,12 @@ def sides_of(face: Face) -> list[OpenEdge]:
         closed = np.concatenate([loop, loop[:1]])
         pieces = [closed[k:k + 2] for k in range(len(loop))] if len(loop) <= 8 else [closed]
         for piece in pieces:
-            uv = _refined(piece)
+            uv = _refine_line(piece)
             sides.append(OpenEdge(face.number, face.evaluate(uv).point, uv, left))
     return sides
 
 
-def _refined(line: Array) -> Array:
+def _refine_line(line: Array) -> Array:
     count = max(1, -(-SAMPLES // (len(line) - 1)))
     share = (np.arange(count) / count)[:, None]
     inner = [a + share * (b - a) for a, b in pairwise(line)]

@@ -83,9 +83,9 @@ def join_patches(faces: Sequence[Face], meetings: Sequence[SharedBoundary], tole
     patches = align_parameters(grid)
     ranges = tuple([range_of(grid, patches, axis, k) for k in range(grid.shape[axis])] for axis in (0, 1))
     surfaces = alike(grid, {cell: surface_over(patches[cell], _box(ranges, cell)) for cell in patches})
-    surfaces = _weighed(grid, surfaces, tolerance)
+    surfaces = _match_weights(grid, surfaces, tolerance)
     lines = tuple(_lines(grid, surfaces, ranges[axis], axis) for axis in (0, 1))
-    surface, moved = _assembled(grid, surfaces, lines)
+    surface, moved = _assemble_patches(grid, surfaces, lines)
     places = tuple([*pairwise(line)] for line in lines)
     members = {cell: _member(patch, _box(ranges, cell), _box(places, cell)) for cell, patch in patches.items()}
     kinds = {face.kind for face in faces}
@@ -118,7 +118,7 @@ def _border(surface: NurbsSurface, axis: int, end: int) -> Array:
     return np.asarray(np.take(surface.control, -end, axis=axis))
 
 
-def _weighed(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -> dict[Cell, NurbsSurface]:
+def _match_weights(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -> dict[Cell, NurbsSurface]:
     """The same surfaces with weights that agree on common borders, where these are the same within the tolerance."""
     for cell in sorted(surfaces, key=lambda c: (c[0] + c[1], c)):
         beside = [(before, axis) for axis, before in ((0, (cell[0] - 1, cell[1])), (1, (cell[0], cell[1] - 1)))
@@ -140,13 +140,13 @@ def _apart(one: NurbsSurface, other: NurbsSurface, axis: int) -> float:
     """Greatest way between the last side of a surface and the first of another at equal parameters, at most, mm."""
     knots, degree = knots_along(one, 1 - axis), one.degree[1 - axis]
     own, now = _border(other, axis, 0), _border(one, axis, 1)
-    rough = _moved(own, now)
+    rough = _greatest_move(own, now)
     if rough <= _ROUNDING:
         return rough
     breaks = _breaks(knots)
     rows, first = bezier_rows(knots, degree, breaks[:-1], breaks[1:])
     active = first[:, None] + np.arange(degree + 1)
-    return _moved(rows @ own[active], rows @ now[active])
+    return _greatest_move(rows @ own[active], rows @ now[active])
 
 
 def _breaks(knots: Array) -> Array:
@@ -156,7 +156,7 @@ def _breaks(knots: Array) -> Array:
     return np.concatenate([*inner, spans[-1:]])
 
 
-def _moved(own: Array, now: Array) -> float:
+def _greatest_move(own: Array, now: Array) -> float:
     """Greatest way between points of equal parameters of two splines, an upper bound, mm.
 
     S' - S = (H' - H - (w' - w) S) / w' with H = w S, and every term lies in the hull of its control points.
@@ -176,13 +176,13 @@ def _moved(own: Array, now: Array) -> float:
 
 def _surface_moved(surface: NurbsSurface, control: Array) -> float:
     """How far a surface moves with other control points at most, mm."""
-    rough = _moved(surface.control.reshape(-1, 4), control.reshape(-1, 4))
+    rough = _greatest_move(surface.control.reshape(-1, 4), control.reshape(-1, 4))
     if rough <= _ROUNDING:
         return rough
     lines = _breaks(surface.knots_u), _breaks(surface.knots_v)
     own, now = (bezier_nets((surface.knots_u, surface.knots_v, net, *surface.degree, True), *lines)
                 for net in (surface.control, control))
-    return _moved(own.reshape(*own.shape[:2], -1, 4), now.reshape(*now.shape[:2], -1, 4))
+    return _greatest_move(own.reshape(*own.shape[:2], -1, 4), now.reshape(*now.shape[:2], -1, 4))
 
 
 def _lines(grid: Grid, surfaces: dict[Cell, NurbsSurface], ranges: list[Pair], axis: int) -> Array:
@@ -206,7 +206,8 @@ def _end_speed(surface: NurbsSurface, axis: int, end: int) -> float:
     return float(np.linalg.norm((d.su, d.sv)[axis], axis=1).mean())
 
 
-def _assembled(grid: Grid, surfaces: dict[Cell, NurbsSurface], lines: tuple[Array, ...]) -> tuple[NurbsSurface, float]:
+def _assemble_patches(grid: Grid, surfaces: dict[Cell, NurbsSurface],
+                      lines: tuple[Array, ...]) -> tuple[NurbsSurface, float]:
     """All patches as one surface, and how far it lies beside them at most, mm."""
     knots, firsts = [], []
     degree = surfaces[0, 0].degree
@@ -316,7 +317,7 @@ def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
                 near = np.abs(uv[:, axis, None] - line).argmin(axis=1)
                 close = np.abs(uv[:, axis] - line[near]) <= 1e3 * size[axis]
                 uv[close, axis] = line[near[close]]
-            own.append(_met(uv, corners, lines, size))
+            own.append(_meet_neighbours(uv, corners, lines, size))
         corners = np.concatenate([corners, *own])
         loops = unite_polygons(loops, tuple(own)) if loops else tuple(own)
     order = sorted(loops, key=lambda loop: -float(np.prod(np.ptp(loop, axis=0))))
@@ -330,7 +331,7 @@ def _whole(member: Member) -> bool:
     return bool((np.abs(corners - domain) <= SAME * np.ptp(domain, axis=1)[:, None]).all())
 
 
-def _met(loop: Array, corners: Array, lines: tuple[Array, ...], size: list[float]) -> Array:
+def _meet_neighbours(loop: Array, corners: Array, lines: tuple[Array, ...], size: list[float]) -> Array:
     """A loop whose corners on joins are the very ones of the neighbours where they are as good as these."""
     for i, point in enumerate(loop):
         if any((point[axis] == lines[axis]).any() for axis in (0, 1)) and len(corners):

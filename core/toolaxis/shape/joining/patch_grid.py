@@ -59,7 +59,7 @@ def arrange_patches(faces: Sequence[Face], meetings: Sequence[SharedBoundary]) -
     **Properties**: 1. the order of the faces after the first one does not change how they lie.
     """
     name = f"faces {', '.join(face.label for face in faces)}"
-    turns, cells = _walked(faces[0], meetings)
+    turns, cells = _walk_faces(faces[0], meetings)
     apart = [face.label for face in faces if face.number not in cells]
     if apart:
         raise UnsupportedGeometry(f"{name} cannot be joined: face {apart[0]} does not continue any of the others "
@@ -102,10 +102,10 @@ def arrange_from(face: Face, meetings: Sequence[SharedBoundary]) -> dict[int, Ce
     face : Face
     meetings : sequence of SharedBoundary
     """
-    return _walked(face, meetings)[1]
+    return _walk_faces(face, meetings)[1]
 
 
-def _walked(face: Face, meetings: Sequence[SharedBoundary]) -> tuple[dict[int, Array], dict[int, Cell]]:
+def _walk_faces(face: Face, meetings: Sequence[SharedBoundary]) -> tuple[dict[int, Array], dict[int, Cell]]:
     """Turns and cells of the faces that hang together with one, by number."""
     turns, places = {face.number: np.eye(2)}, {face.number: np.zeros(2)}
     front = [face.number]

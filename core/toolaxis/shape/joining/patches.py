@@ -193,7 +193,7 @@ def alike(grid: Grid, surfaces: dict[Cell, NurbsSurface]) -> dict[Cell, NurbsSur
             target = _common([knots for knots, _ in splines.values()], degree)
             for cell in cells:
                 knots, control = splines[cell]
-                more = insert_knots(_snapped(knots, target), control, degree, target)
+                more = insert_knots(_snap_knots(knots, target), control, degree, target)
                 surfaces[cell] = _with(surfaces[cell], axis, (target, np.moveaxis(more, 0, axis)), degree)
     return surfaces
 
@@ -233,5 +233,5 @@ def _common(sequences: list[Array], degree: int) -> Array:
     return np.concatenate([np.full(degree + 1, low), inner, np.full(degree + 1, high)])
 
 
-def _snapped(knots: Array, target: Array) -> Array:
+def _snap_knots(knots: Array, target: Array) -> Array:
     return np.asarray(target[np.abs(knots[:, None] - target[None]).argmin(axis=1)])

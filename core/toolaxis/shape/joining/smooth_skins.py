@@ -56,7 +56,7 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float
     -----
     **Properties**: 1. areas add up; 2. skin and surroundings of a face are the same faces as before.
     """
-    numbers = _checked(part, faces)
+    numbers = _check_faces(part, faces)
     made = join_patches([part.face(n) for n in numbers], meetings(part, numbers), tolerance, corner)
     first = min(k for k, face in enumerate(part.faces) if face.number in numbers)
     kept = [(k, face) for k, face in enumerate(part.faces) if face.number not in numbers]
@@ -64,12 +64,12 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float
     name = dict.fromkeys(numbers, made.number)
     edges = tuple(replace(edge, faces=(name.get(edge.faces[0], edge.faces[0]), name.get(edge.faces[1], edge.faces[1])))
                   for edge in part.edges if not (edge.kind == "tangent" and set(edge.faces) <= set(numbers)))
-    bodies = tuple(replace(body, faces=_named(body.faces, name)) for body in part.bodies)
-    return replace(part, faces=tuple(order), edges=edges, bodies=bodies, selected=_named(part.selected, name),
+    bodies = tuple(replace(body, faces=_names_text(body.faces, name)) for body in part.bodies)
+    return replace(part, faces=tuple(order), edges=edges, bodies=bodies, selected=_names_text(part.selected, name),
                    warnings=(*part.warnings, *_corner_warning(made)), original=part.original or part)
 
 
-def _checked(part: Part, faces: Iterable[int]) -> list[int]:
+def _check_faces(part: Part, faces: Iterable[int]) -> list[int]:
     numbers = [int(n) if isinstance(n, Integral) else n for n in faces]
     if len(numbers) < 2:
         raise InvalidInput(f"faces to be joined are {numbers}: give at least two numbers")
@@ -83,7 +83,7 @@ def _checked(part: Part, faces: Iterable[int]) -> list[int]:
     return numbers
 
 
-def _named(numbers: tuple[int, ...], name: dict[int, int]) -> tuple[int, ...]:
+def _names_text(numbers: tuple[int, ...], name: dict[int, int]) -> tuple[int, ...]:
     return tuple(dict.fromkeys(name.get(n, n) for n in numbers))
 
 
@@ -188,7 +188,7 @@ def skins(part: Part) -> Skins:
     owner = {n: k for k, group in enumerate(groups) for n in group}
     apart = [pair for pair in dict.fromkeys([*reasons, *(m.faces for m in found)]) if owner[pair[0]] != owner[pair[1]]]
     return Skins(tuple(group for group in groups if len(group) > 1),
-                 tuple(group[0] for group in groups if len(group) == 1), tuple(_told(apart, reasons)))
+                 tuple(group[0] for group in groups if len(group) == 1), tuple(_sentence_on_pairs(apart, reasons)))
 
 
 def _largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> tuple[int, ...]:
@@ -211,7 +211,7 @@ def _largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> tu
     return (free[0],)
 
 
-def _told(apart: list[tuple[int, int]], reasons: dict[tuple[int, int], str]) -> list[str]:
+def _sentence_on_pairs(apart: list[tuple[int, int]], reasons: dict[tuple[int, int], str]) -> list[str]:
     """One sentence about pairs of faces that continue each other smoothly and are not joined."""
     if not apart:
         return []

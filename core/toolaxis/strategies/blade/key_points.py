@@ -107,7 +107,7 @@ def key_curve(free: AngleChannel, start: float, end: float, rule: KeyRule) -> Ke
                          np.where(free.high >= end, np.maximum(free.high - clearance, end), free.high - clearance))
     used = _USED * clearance
     keys = [(ends[0], start), *_between(inner, (ends[0], start), (ends[1], end), used), (ends[1], end)]
-    keys = _needed(inner, keys, used)
+    keys = _drop_redundant(inner, keys, used)
     points = np.array([(s[0], start), *keys, (s[-1], end)])
     if (np.diff(points[:, 0]) <= 0).any() or (np.diff(points[:, 1]) < 0).any():
         raise InvalidInput("key points do not rise: the channel is too narrow for this clearance of key points")
@@ -195,7 +195,7 @@ def _between(free: AngleChannel, one: tuple[float, float], other: tuple[float, f
     return points[1:-1]
 
 
-def _needed(free: AngleChannel, keys: list[tuple[float, float]], used: float) -> list[tuple[float, float]]:
+def _drop_redundant(free: AngleChannel, keys: list[tuple[float, float]], used: float) -> list[tuple[float, float]]:
     """Keys without those that a direct line makes redundant."""
     kept, k = list(keys), 1
     while k < len(kept) - 1:

@@ -138,7 +138,7 @@ class LeastProgramme:
             at = hstack([csr_array(BSpline.design_matrix(self.places, self.knots, 3)),
                          csr_array((len(self.places), 2))])
             most = np.concatenate([np.zeros(self.rows.shape[0]), high, -low])
-            found = _solved(cost, vstack([self.rows, at, -at]).tocsr(), bound, most)[:-2]
+            found = _solve(cost, vstack([self.rows, at, -at]).tocsr(), bound, most)[:-2]
             theta = BSpline(self.knots, found, 3)(x)
             out = np.maximum(scale.angles(free.low) - theta, theta - scale.angles(free.high))
             worst = np.flatnonzero((out[1:-1] > _LEFT) & (out[1:-1] >= out[:-2]) & (out[1:-1] >= out[2:])) + 1
@@ -217,7 +217,7 @@ def least_peak(free: AngleChannel, start: float, end: float, count: int = _BOUND
     low, high = scale.angles(free.low[rows]), scale.angles(free.high[rows])
     low[[0, -1]] = high[[0, -1]] = 0.0, 1.0
     cost = np.concatenate([np.zeros(n), [1.0]])
-    x = _solved(cost, above, [*zip(low, high, strict=True), (0.0, None)], most)
+    x = _solve(cost, above, [*zip(low, high, strict=True), (0.0, None)], most)
     return float(x[-1] * scale.turn / scale.length**2)
 
 
@@ -234,7 +234,7 @@ class _Scale:
         return (theta - self.start) / self.turn
 
 
-def _solved(cost: Array, above: Any, bound: Sequence[tuple[float | None, float | None]], most: Array) -> Array:
+def _solve(cost: Array, above: Any, bound: Sequence[tuple[float | None, float | None]], most: Array) -> Array:
     from scipy.optimize import linprog
 
     found = linprog(cost, above, most, bounds=bound, method="highs-ds")

@@ -136,10 +136,10 @@ def turns_of(ring: Ring, scallop: float, allowance: float, chord: float, directi
         share = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(centre, axis=0), axis=1))])
         share /= share[-1]
         rows = [(way, a + (b - a) * share) for a, b in pairwise([heights[0], *heights, heights[-1]])]
-    return _deepened(ring, rows)
+    return _deepen_turns(ring, rows)
 
 
-def _deepened(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[BladeTurn, ...]:
+def _deepen_turns(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[BladeTurn, ...]:
     """Turns whose points on hollow stretches lie deeper, by as much as straight motions between them would stay above
     the surface: see `toolaxis.path.chord_tolerance.rises`."""
     turns = [BladeTurn(*ring.at(*row)) for row in rows]
@@ -242,18 +242,18 @@ class BladeSearch:
         good = np.array([one.wide.width > 2 * CLEARANCE for one in made])
         if not good.any():
             worst = max(range(len(made)), key=lambda k: made[k].wide.width)
-            self._closed(made, worst)
+            self._report_closed(made, worst)
         first, last = int(np.flatnonzero(good)[0]), int(np.flatnonzero(good)[-1])
         if not good[first:last + 1].all():
-            self._closed(made, first + int(np.argmin(good[first:last + 1])))
+            self._report_closed(made, first + int(np.argmin(good[first:last + 1])))
         height = [float(turn.contact.mean(axis=0) @ self.swing.direction) for turn in self.turns]
         whole = max(height[0] - height[-1], 1e-9)
         left = (height[0] - height[first]) / whole, (height[last] - height[-1]) / whole
         if sum(left) > _LEFT_OUT:
-            self._closed(made, last + 1 if left[1] > left[0] else first - 1)
+            self._report_closed(made, last + 1 if left[1] > left[0] else first - 1)
         return made[first:last + 1], slice(first, last + 1), left
 
-    def _closed(self, planes: Sequence[SThetaLayer], k: int) -> None:
+    def _report_closed(self, planes: Sequence[SThetaLayer], k: int) -> None:
         """Tell where a channel closes."""
         wide = planes[k].wide
         i = int(np.argmin(wide.high - wide.low))
@@ -328,16 +328,16 @@ def blade(job: FaceProblem, curve: str = "least") -> tuple[Orientation, ToolPath
         planes = search.planes()
         for clearance in CLEARANCES:
             schedule, path = search.made(*planes, clearance)
-            why = _refused(job, path)
+            why = _find_objection(job, path)
             if why is None:
-                return _told(search, schedule, path, refused), path
+                return _orientation_of(search, schedule, path, refused), path
             refused.append(f"refused with {degrees(clearance):.0f} deg of clearance: {why}")
     except InvalidInput as reason:
         refused.append(f"no path found: {reason}")
     return Orientation(None, search.feed, outcome="not_found", reasons=tuple(refused)), None
 
 
-def _refused(job: FaceProblem, path: ToolPath) -> str | None:
+def _find_objection(job: FaceProblem, path: ToolPath) -> str | None:
     """Why a path may not be used."""
     limits = while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():
@@ -349,7 +349,7 @@ def _refused(job: FaceProblem, path: ToolPath) -> str | None:
     return None if proof.witness is None else sentence(proof.witness, job.feasibility)
 
 
-def _told(search: BladeSearch, schedule: BladeSchedule, path: ToolPath, refused: list[str]) -> Orientation:
+def _orientation_of(search: BladeSearch, schedule: BladeSchedule, path: ToolPath, refused: list[str]) -> Orientation:
     """What a path comes to."""
     job, layers = search.job, schedule.layers
     proof = prove_moving(path, search.tool, job.groups, job.worth.allowance, progress=job.progress)

@@ -352,11 +352,11 @@ def _alongside(free: list[AngleChannel], wide: list[AngleChannel]) -> tuple[list
     moved = [(free[0], wide[0])]
     for one, other in zip(free[1:], wide[1:], strict=True):
         turn = 2 * pi * round(float(moved[-1][0].high[0] - one.high[0]) / (2 * pi))
-        moved.append((_shifted(one, turn), _shifted(other, turn)))
+        moved.append((_shift_channel(one, turn), _shift_channel(other, turn)))
     return [row[0] for row in moved], [row[1] for row in moved]
 
 
-def _shifted(one: AngleChannel, turn: float) -> AngleChannel:
+def _shift_channel(one: AngleChannel, turn: float) -> AngleChannel:
     return AngleChannel(one.lengths, one.low + turn, one.high + turn)
 
 

@@ -56,7 +56,7 @@ class Section:
         first : int
         """
         count = len(self.points) - 1
-        return _made(np.roll(self.points[:count], -(first % count), axis=0))
+        return _make_section(np.roll(self.points[:count], -(first % count), axis=0))
 
 
 def section(points: ArrayLike, place: str = "section") -> Section:
@@ -84,10 +84,10 @@ def section(points: ArrayLike, place: str = "section") -> Section:
     _check_simple(rows, place)
     x, y = rows.T
     area = float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
-    return _made(rows if area > 0 else np.concatenate([rows[:1], rows[:0:-1]]))
+    return _make_section(rows if area > 0 else np.concatenate([rows[:1], rows[:0:-1]]))
 
 
-def _made(rows: Array) -> Section:
+def _make_section(rows: Array) -> Section:
     closed = np.concatenate([rows, rows[:1]])
     step = np.diff(closed, axis=0)
     angle = np.arctan2(step[:, 1], step[:, 0])

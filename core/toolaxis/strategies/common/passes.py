@@ -132,7 +132,7 @@ def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tu
     deeper = rises(chart, cut, steps, piece, along)[:, None] * normal
     rows = contact, tip - deeper, normal, cut.axes(chart.face, chart.uv(along, steps))
     strokes = [MovingCuttingMove(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
-    return placed, join_moves(_ordered(strokes, placed, job.direction), _links(job, cut))
+    return placed, join_moves(_order_moves(strokes, placed, job.direction), _links(job, cut))
 
 
 def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
@@ -145,7 +145,7 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
     return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
 
 
-def _ordered(strokes: list[MovingCuttingMove], placed: Layout, direction: str) -> list[list[MovingCuttingMove]]:
+def _order_moves(strokes: list[MovingCuttingMove], placed: Layout, direction: str) -> list[list[MovingCuttingMove]]:
     """Strokes of each pass in the order and sense in which they are cut."""
     climb = climbing(placed.chart, placed.cut)
     passes: list[list[MovingCuttingMove]] = []

@@ -186,7 +186,7 @@ def sturz(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
     for one in search.candidates()[:_TRIED]:
         if not np.isfinite(one.length):
             continue
-        found, path, witness = _tried(search, search.cut(one.lead, one.feed))
+        found, path, witness = _try_lead(search, search.cut(one.lead, one.feed))
         if witness is None:
             return _closer(search, (found, path), blocked.get((one.feed, one.lead > 0)))
         blocked[one.feed, one.lead > 0] = one.lead
@@ -204,7 +204,7 @@ def _closer(search: ConstantLeadSearch, best: tuple[Orientation, ToolPath | None
     for _ in range(_CLOSER if blocked is not None else 0):
         assert blocked is not None and best[0].lead is not None
         middle = (blocked + best[0].lead) / 2
-        found, path, witness = _tried(search, search.cut(middle, best[0].feed))
+        found, path, witness = _try_lead(search, search.cut(middle, best[0].feed))
         shorter = found.passes < best[0].passes if by_passes else found.length < best[0].length
         if witness is None and shorter:
             best = found, path
@@ -213,8 +213,8 @@ def _closer(search: ConstantLeadSearch, best: tuple[Orientation, ToolPath | None
     return best
 
 
-def _tried(search: ConstantLeadSearch,
-           cut: MovingCut[ConstantLeadField]) -> tuple[Orientation, ToolPath | None, Violation | None]:
+def _try_lead(search: ConstantLeadSearch,
+              cut: MovingCut[ConstantLeadField]) -> tuple[Orientation, ToolPath | None, Violation | None]:
     """What one lead comes to: its passes made and judged."""
     chart = MovingChart(search.face, cut.feed)
     found = plan_passes(search.job, chart, cut)

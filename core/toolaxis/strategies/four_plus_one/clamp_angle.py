@@ -200,10 +200,10 @@ class ClampSearch:
             widths[~limits.allowed(clamp.axes(angles))] = 0.0
         known = np.zeros(widths.shape, dtype=bool)
         known[:, ~self.nodes[feed].counts] = True
-        return self._settled(clamp, feed, angles, widths, self._gates(clamp, feed), known)
+        return self._settle_angles(clamp, feed, angles, widths, self._gates(clamp, feed), known)
 
-    def _settled(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: SingularSides,
-                 known: Bools) -> ClampCandidate | None:
+    def _settle_angles(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: SingularSides,
+                       known: Bools) -> ClampCandidate | None:
         """Angles chosen anew until nothing is in the way of any; widths are set to 0 where something is."""
         axes, known = clamp.axes(angles), known.copy()
         for _ in range(_ROUNDS):
@@ -247,7 +247,7 @@ class ClampSearch:
         for di, dk in _CORNERS:
             for one_place in range(len(bad)):
                 widths[shut[:, one_place], i[one_place] + di, k[one_place] + dk] = 0.0
-        return self._settled(one.clamp, one.feed, angles, widths, one.gates, one.known)
+        return self._settle_angles(one.clamp, one.feed, angles, widths, one.gates, one.known)
 
     def _free(self, uv: Array, axes: Array) -> NDArray[np.bool_]:
         """Whether the tool keeps all distances at contacts with axes, (n,)."""

@@ -303,7 +303,7 @@ def four_plus_one(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
     fixed, _ = find_axis(job)
     best: list[tuple[Orientation, ToolPath | None]] = []
     for one in FourPlusOneSearch(search).found(fixed):
-        found = _tried(search, one, fixed, refused)
+        found = _try_clamp(search, one, fixed, refused)
         best += [] if found is None else [found]
         if len(best) == _LAID:
             break
@@ -321,8 +321,8 @@ def _price(job: FaceProblem, found: Orientation) -> float:
     return found.passes if job.worth.objective == "passes" else found.length
 
 
-def _tried(search: ClampSearch, one: ClampedPasses, fixed: Orientation,
-           refused: list[str]) -> tuple[Orientation, ToolPath | None] | None:
+def _try_clamp(search: ClampSearch, one: ClampedPasses, fixed: Orientation,
+               refused: list[str]) -> tuple[Orientation, ToolPath | None] | None:
     """A clamped angle with its passes laid and proven, by the first way that the proof accepts; None without any."""
     for share, inset in _TRIES[one.tried:]:
         cut, _ = search.cut(one.candidate, share, inset)
@@ -330,12 +330,12 @@ def _tried(search: ClampSearch, one: ClampedPasses, fixed: Orientation,
             continue
         done = plan_passes(search.job, search.nodes[cut.feed].chart, cut, partial(on_the_circle, clamp=cut.field.clamp))
         if done.witness is None:
-            return _told(search, done, cut, fixed), done.path
-        refused.append(f"refused {_named(cut)}: {sentence(done.witness, search.job.feasibility)}")
+            return _orientation_of(search, done, cut, fixed), done.path
+        refused.append(f"refused {_name_of(cut)}: {sentence(done.witness, search.job.feasibility)}")
     return None
 
 
-def _named(cut: MovingCut[ClampedAxis]) -> str:
+def _name_of(cut: MovingCut[ClampedAxis]) -> str:
     clamp = cut.field.clamp
     name = clamp.machine.rotary[clamp.which].name
     return f"{name} clamped at {degrees(clamp.angle):.3f} deg, feed along {cut.feed}"
@@ -364,7 +364,8 @@ def _ways(mounting: Mounting, which: int, path: ToolPath) -> list[tuple[str, str
             for row in rows]
 
 
-def _told(search: ClampSearch, done: MovingAxisResult, cut: MovingCut[ClampedAxis], fixed: Orientation) -> Orientation:
+def _orientation_of(search: ClampSearch, done: MovingAxisResult, cut: MovingCut[ClampedAxis],
+                    fixed: Orientation) -> Orientation:
     """What passes come to, in numbers and words."""
     assert done.path is not None
     on = done.path.kind == Motion.CUT

@@ -44,7 +44,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
     task : FaceProblem
     folder : Path
     """
-    studied = _studied(plan)
+    studied = _operation_to_study(plan)
     if op.orientation.map is not None:
         marks = {**_marks(op), **_baselines(plan, task, op is studied)}
         hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
@@ -56,7 +56,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
         _draw_study(plan, op, task, folder)
 
 
-def _studied(plan: Plan) -> Operation | None:
+def _operation_to_study(plan: Plan) -> Operation | None:
     """The operation on the largest face of a plan that was compared; none of another one."""
     copies = {} if plan.blades is None else plan.blades.copies
     done = [op for op in plan.operations if op.done and op.number not in copies]

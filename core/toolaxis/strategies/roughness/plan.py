@@ -62,7 +62,7 @@ def multiscale(job: FaceProblem, roughness: float = ROUGHNESS,
         except InvalidInput as reason:
             refused.append(f"refused feed along {feed}: {reason}")
             continue
-        made, path, why = _judged(search, one)
+        made, path, why = _judge_passes(search, one)
         if made is None:
             refused.append(f"refused feed along {feed}: {why}")
         elif best is None or _price(job, made) < _price(job, best[0]):
@@ -76,7 +76,7 @@ def _price(job: FaceProblem, found: Orientation) -> float:
     return float(found.passes) if job.worth.objective == "passes" else found.length
 
 
-def _judged(search: RoughnessSearch, one: SmoothPasses) -> tuple[Orientation | None, ToolPath | None, str]:
+def _judge_passes(search: RoughnessSearch, one: SmoothPasses) -> tuple[Orientation | None, ToolPath | None, str]:
     """What passes come to, or why they may not be used."""
     job, limit = search.job, search.roughness
     if (one.roughness > limit).any():

@@ -329,9 +329,9 @@ class RoughnessSearch:
             if lanes[k] is None:
                 lane = self.lane(piece, feed, (placed.steps, a0, a1), replace(wish, roughness=float(limits[k])))
                 one = self._smooth(lane, lanes[k - 1] if k else None, free)
-                lanes[k] = one if one.follows else self._paced(one, free)
+                lanes[k] = one if one.follows else self._keep_pace(one, free)
 
-    def _paced(self, one: SmoothedAxes, free: bool) -> SmoothedAxes:
+    def _keep_pace(self, one: SmoothedAxes, free: bool) -> SmoothedAxes:
         """Rotary axes of a pass that keep their velocities at the feed rate too, begun from those that do not; as they
         are where none are found."""
         ends = None if free else one.spline.angles(one.lane.places[[0, -1]])

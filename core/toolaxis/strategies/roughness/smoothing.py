@@ -106,7 +106,7 @@ def smooth_axes(lane: PassConstraints, start: RotarySpline, ends: Array | None =
     spline, radius, aim = start, _RADIUS, _AIM[1]
     if ends is not None:
         spline = replace(start, control=_through(lane, start.control, ends))
-    (margins, paces), rounds = _left(lane, spline.control), 0
+    (margins, paces), rounds = _rest_of_limits(lane, spline.control), 0
     cost = spline.cost(lane.places, lane.durations)
     slopes = lane.slopes(spline.control)
     while rounds < _ROUNDS and radius >= _LEAST:
@@ -115,7 +115,7 @@ def smooth_axes(lane: PassConstraints, start: RotarySpline, ends: Array | None =
         step = _step(lane, here, (radius, aim), ends)
         new = _Tried.of(lane, spline, step)
         if new.short > 0:
-            new = max(new, _Tried.of(lane, spline, _corrected(lane, here, (step, new), (radius, aim), ends)),
+            new = max(new, _Tried.of(lane, spline, _correct_step(lane, here, (step, new), (radius, aim), ends)),
                       key=lambda one: one.worth(cost))
         gain = new.worth(cost) - _Tried.worth_of(cost, cost, _missing(lane, margins, paces))
         size = float(np.abs(new.spline.control - spline.control).max())
@@ -144,7 +144,7 @@ class _Tried(NamedTuple):
     @classmethod
     def of(cls, lane: PassConstraints, spline: RotarySpline, step: Array) -> "_Tried":
         new = replace(spline, control=spline.control + step)
-        margins, paces = _left(lane, new.control)
+        margins, paces = _rest_of_limits(lane, new.control)
         return cls(new, margins, paces, _missing(lane, margins, paces), new.cost(lane.places, lane.durations))
 
     @staticmethod
@@ -155,7 +155,7 @@ class _Tried(NamedTuple):
         return self.worth_of(self.cost, last, self.short)
 
 
-def _left(lane: PassConstraints, control: Array) -> tuple[Array, Array]:
+def _rest_of_limits(lane: PassConstraints, control: Array) -> tuple[Array, Array]:
     """What is left of conditions and of velocities."""
     return lane.margins(lane.axes(control)), pace.velocity_left(lane, control)
 
@@ -173,8 +173,8 @@ def _through(lane: PassConstraints, control: Array, ends: Array) -> Array:
                             for column, end in zip(control.T, np.asarray(ends).T, strict=True)])
 
 
-def _corrected(lane: PassConstraints, here: tuple[Array, Array, Array], tried: tuple[Array, _Tried],
-               sizes: tuple[float, float], ends: Array | None) -> Array:
+def _correct_step(lane: PassConstraints, here: tuple[Array, Array, Array], tried: tuple[Array, _Tried],
+                  sizes: tuple[float, float], ends: Array | None) -> Array:
     """The step with conditions as they came out at its end in the place of what their slopes had promised there."""
     control, slopes, _ = here
     step, new = tried

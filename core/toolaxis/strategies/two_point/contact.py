@@ -202,7 +202,7 @@ def settle(setting: ContactSet, lift: ArrayLike, direction: ArrayLike = 0.0) -> 
         ring = rings(setting, stand, ring.uv)
     else:
         stand, ring = _lean(setting, stand, ring, least)
-    return _risen(setting, stand, ring)
+    return _raise_rings(setting, stand, ring)
 
 
 def gouge_free_lean(setting: ContactSet, stand: Posture) -> tuple[Posture, CornerCircles]:
@@ -214,10 +214,10 @@ def gouge_free_lean(setting: ContactSet, stand: Posture) -> tuple[Posture, Corne
     stand : Posture
         Where nothing gouges at the steepest lean either, the ring rises.
     """
-    return _risen(setting, *_lean(setting, stand, rings(setting, stand), stand.lean))
+    return _raise_rings(setting, *_lean(setting, stand, rings(setting, stand), stand.lean))
 
 
-def _risen(setting: ContactSet, stand: Posture, ring: CornerCircles) -> tuple[Posture, CornerCircles]:
+def _raise_rings(setting: ContactSet, stand: Posture, ring: CornerCircles) -> tuple[Posture, CornerCircles]:
     """Rings that gouge, higher by what they gouge until they do not."""
     for _ in range(40):
         low = ring.least

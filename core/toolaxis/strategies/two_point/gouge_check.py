@@ -66,7 +66,7 @@ def turning_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingT
     for share in SHARES:
         left = np.flatnonzero(answer)
         for some in np.array_split(left, max(1, len(left) // 256)):
-            answer[some] = _judged(split, (rows, axes), some, cells, (deep, share * room))
+            answer[some] = _check_motions(split, (rows, axes), some, cells, (deep, share * room))
     return answer
 
 
@@ -79,8 +79,8 @@ def _split(tool: Tool) -> tuple[Tool, float, float]:
             float(np.hypot(radius, top)))
 
 
-def _judged(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp], cells: BoundingTree,
-            ask: tuple[float, float]) -> Flags:
+def _check_motions(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp],
+                   cells: BoundingTree, ask: tuple[float, float]) -> Flags:
     """Whether some motions were not proven, (k,): least signed distance of the lower end, and what turning may cost."""
     (tool, near, far), (tips, axes), (deep, cost) = split, path, ask
     begin, end, before, after = tips[which], tips[which + 1], axes[which], axes[which + 1]

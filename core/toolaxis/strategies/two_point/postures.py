@@ -86,7 +86,7 @@ def postures(work: TwoPointInputs, along: Array, step: float, sense: int,
     elif near is not None:
         stand, ring = _between(setting, along, near)
     else:
-        stand, ring = _settled(work, setting, along, step)
+        stand, ring = _settle_postures(work, setting, along, step)
     return Postures(setting.uv, stand, ring, setting.frame.normal, _reasons(work, setting, stand, ring))
 
 
@@ -96,7 +96,8 @@ def _between(setting: ContactSet, along: Array, near: tuple[Array, Posture]) -> 
     return gouge_free_lean(setting, Posture(*rows))
 
 
-def _settled(work: TwoPointInputs, setting: ContactSet, along: Array, step: float) -> tuple[Posture, CornerCircles]:
+def _settle_postures(work: TwoPointInputs, setting: ContactSet, along: Array,
+                     step: float) -> tuple[Posture, CornerCircles]:
     """Gouge-free postures that follow each other without jumps; beyond the ends of the face as at them."""
     if work.posture == "two-point":
         sense = 1 if (setting.feed * work.setting(setting.uv[:1], 1).feed).sum() > 0 else -1
@@ -112,11 +113,11 @@ def _settled(work: TwoPointInputs, setting: ContactSet, along: Array, step: floa
     if inside.any():
         stand = Posture(*(np.interp(along, along[inside], rows[inside])
                           for rows in (stand.lean, stand.direction, stand.lift)))
-    stand, ring = lower_to_contact(setting, _followed(work, setting, stand))
+    stand, ring = lower_to_contact(setting, _follow_neighbours(work, setting, stand))
     return (stand, ring) if (ring.least >= -FREE).all() else gouge_free_lean(setting, stand)
 
 
-def _followed(work: TwoPointInputs, setting: ContactSet, stand: Posture) -> Posture:
+def _follow_neighbours(work: TwoPointInputs, setting: ContactSet, stand: Posture) -> Posture:
     """Postures that lean and rise as much as their neighbours ask for."""
     way = np.linalg.norm(np.diff(work.face.evaluate(setting.uv).point, axis=0), axis=1)
     place = np.concatenate([[0.0], np.cumsum(way)])

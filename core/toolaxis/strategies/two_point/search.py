@@ -91,7 +91,7 @@ def two_point(job: FaceProblem, posture: str = "two-point",
         except InvalidInput as reason:
             refused.append(f"refused {name}: {reason}")
             continue
-        found, witness = _judged(job, choice, strips, path)
+        found, witness = _judge_path(job, choice, strips, path)
         if witness is None:
             return replace(found, reasons=(*found.reasons, *refused)), path
         refused.append(f"refused {name}: {sentence(witness, job.feasibility)}")
@@ -111,14 +111,14 @@ def choices(job: FaceProblem, posture: str, lead: float = radians(20.0)) -> list
     worth, limits = job.worth, replace(job.feasibility.tolerance, chord=job.chord)
     works = [TwoPointInputs(worth.face, worth.tool, worth.scallop, feed, posture, lead, worth.allowance, limits)
              for feed in FEEDS]
-    plain = [min(_reckoned(replace(work, posture="one-point"), leaning).length for leaning in TRIED[:2])
+    plain = [min(_estimate_choice(replace(work, posture="one-point"), leaning).length for leaning in TRIED[:2])
              for work in works]
     works = [work for work, length in zip(works, plain, strict=True) if length <= WORSE * min(plain)]
     found = []
     for k, work in enumerate(works):
         for i, leaning in enumerate(TRIED):
             job.progress.report("ways to lean", len(TRIED) * k + i, len(TRIED) * len(works))
-            found.append(_reckoned(work, leaning))
+            found.append(_estimate_choice(work, leaning))
     by_passes = job.worth.objective == "passes"
 
     def _cost(one: FeedAndLean) -> float:
@@ -127,7 +127,7 @@ def choices(job: FaceProblem, posture: str, lead: float = radians(20.0)) -> list
     return sorted((one for one in found if np.isfinite(one.passes)), key=_cost)
 
 
-def _reckoned(work: TwoPointInputs, leaning: str) -> FeedAndLean:
+def _estimate_choice(work: TwoPointInputs, leaning: str) -> FeedAndLean:
     """A choice with what a few passes tell of it."""
     *_, s0, s1 = work.span
     narrow, length = [], []
@@ -192,8 +192,8 @@ def gouging(job: FaceProblem, path: ToolPath) -> NDArray[np.intp]:
     return np.concatenate(found) if found else np.empty(0, dtype=np.intp)
 
 
-def _judged(job: FaceProblem, choice: FeedAndLean, strips: tuple[Strip, ...],
-            path: ToolPath) -> tuple[Orientation, Violation | None]:
+def _judge_path(job: FaceProblem, choice: FeedAndLean, strips: tuple[Strip, ...],
+                path: ToolPath) -> tuple[Orientation, Violation | None]:
     """What a path comes to, and why it may not be used."""
     work, limits = choice.work, while_moving(job.feasibility.limits)
     if limits is not None and not limits.allowed(path.axis).all():

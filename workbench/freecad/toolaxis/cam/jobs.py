@@ -68,7 +68,7 @@ def make_jobs(document, operations, progress=None):
         groups = _by_axis(ready)
         wanted = offsets_for(document, [offsets.get(group[0].label) for group in groups])
         jobs = _on_planes(document, groups, wanted[0]) if _has_planes() else None
-        jobs = jobs or _turned(document, groups, wanted, progress)
+        jobs = jobs or _jobs_of_orientations(document, groups, wanted, progress)
         for job, one in zip(jobs, groups, strict=False):
             for name, value in kept.get(one[0].label, {}).items():
                 setattr(job, name, value)
@@ -96,7 +96,7 @@ def jobs_of(operation):
     ----------
     operation : App.DocumentObject
     """
-    return [job for job, _ in _made(operation.Document, [operation_of(operation)])]
+    return [job for job, _ in _jobs_from(operation.Document, [operation_of(operation)])]
 
 
 def count_jobs(operations):
@@ -183,7 +183,7 @@ def _on_planes(document, groups, offset):
     return [job]
 
 
-def _turned(document, groups, offsets, progress):
+def _jobs_of_orientations(document, groups, offsets, progress):
     """A job for each orientation."""
     jobs = []
     for group, offset in zip(groups, offsets, strict=True):
@@ -203,7 +203,7 @@ def _job(document, group, offset):
     return job
 
 
-def _made(document, operations):
+def _jobs_from(document, operations):
     """Jobs and their operations that were made of some of ours."""
     names = {one.Name for one in operations}
     found = []
@@ -219,7 +219,7 @@ def _take_away(document, operations):
 
     The work offsets are kept apart, only for what came first in a job: another axis must not take them too.
     """
-    found = _made(document, operations)
+    found = _jobs_from(document, operations)
     kept = {made.MadeFor: {name: getattr(job, name) for name in _KEPT} for job, made in found}
     offsets = {made.MadeFor: list(job.Fixtures) for job, made in reversed(found) if made == job.Operations.Group[0]}
     gone = {made.Name for _, made in found}

@@ -145,7 +145,7 @@ class PlanTree:
             if turn is None:
                 continue
             group = self._blade(self.plan.blades.blade_of(op.face.number))
-            link = old.pop((of[source].Name, group.Blade), None) or self._linked(of[source], group)
+            link = old.pop((of[source].Name, group.Blade), None) or self._link_operation(of[source], group)
             self._fill(link, op, turn, chain)
             self.things.append(link)
         unused = [thing for number, thing in self._groups.items() if number not in self._used]
@@ -153,7 +153,7 @@ class PlanTree:
         remove([thing for thing in unused if not thing.Group])
         self.things += [thing for number, thing in sorted(self._groups.items()) if number in self._used]
 
-    def _linked(self, operation, group):
+    def _link_operation(self, operation, group):
         link = self.document.addObject("App::Link", "Turned")
         link.LinkedObject = operation
         link.LinkTransform = True

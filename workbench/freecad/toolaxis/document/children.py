@@ -187,7 +187,7 @@ class DeletionObserver:
         try:
             turned = [thing for thing in operation.InList if thing.TypeId == "App::Link"
                       and "Turn" in thing.PropertiesList]
-            going = [*turned, *belongings(operation), *loose(operation), *self._emptied(operation)]
+            going = [*turned, *belongings(operation), *loose(operation), *self._empty_group(operation)]
             for name in [thing.Name for thing in going]:
                 if document.getObject(name) is not None:
                     document.removeObject(name)
@@ -205,7 +205,7 @@ class DeletionObserver:
         finally:
             self.going.discard(plan.Name)
 
-    def _emptied(self, operation):
+    def _empty_group(self, operation):
         """The group of planning, where this was its last operation and it is not deleted itself just now."""
         if not _deleted_alone(operation.Document):
             return []

@@ -82,14 +82,14 @@ def what_became(thing, names, then, changed):
     if _alike(then, found):
         return [] if before == now else [f"the faces were renumbered: {before} is {now} now"]
     if before != now and not changed:
-        return [f"another face was chosen: {now}, {_told(found)}, instead of {before}, {_told(then)}"]
+        return [f"another face was chosen: {now}, {_facts_text(found)}, instead of {before}, {_facts_text(then)}"]
     if before == now and then["kind"] == found["kind"] and _again(thing, then) is None:
         return []
-    return [f"the faces were renumbered: {now} is another one now, {_told(found)}; planned was {_told(then)}: "
-            f"{_remedy(thing, then)}"]
+    return [f"the faces were renumbered: {now} is another one now, {_facts_text(found)}; planned was "
+            f"{_facts_text(then)}: {_remedy(thing, then)}"]
 
 
-def _told(facts):
+def _facts_text(facts):
     area = FreeCAD.Units.Quantity(facts["area"], FreeCAD.Units.Area).UserString.replace("^2", "²")
     article = "an" if facts["kind"][0] in "aeiou" else "a"
     return f"{article} {facts['kind']} of {area}"

@@ -99,10 +99,10 @@ def _of_operations(plan):
     for one in operations_in(plan):
         if one.Stale:
             concerned.setdefault("; ".join(one.StaleReasons) or "out of date", []).append(one.Label)
-    return [f"{_listed(labels)}: {reason}" for reason, labels in list(concerned.items())[:_TOLD]]
+    return [f"{_list_labels(labels)}: {reason}" for reason, labels in list(concerned.items())[:_TOLD]]
 
 
-def _listed(labels):
+def _list_labels(labels):
     return f"{', '.join(labels[:_NAMED])}{' and more' if len(labels) > _NAMED else ''}"
 
 
@@ -132,7 +132,8 @@ def no_longer_there(plan, without=None):
         if name not in there:
             deleted = plan.Document.getObject(name) is None or (without is not None and name == without.Name)
             (gone if deleted else out).append(label)
-    return ([f"{_listed(gone)}: deleted"] if gone else []) + ([f"{_listed(out)}: taken out of the plan"] if out else [])
+    reasons = [f"{_list_labels(gone)}: deleted"] if gone else []
+    return reasons + ([f"{_list_labels(out)}: taken out of the plan"] if out else [])
 
 
 def note_deleted(plan, thing):

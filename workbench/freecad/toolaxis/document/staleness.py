@@ -154,7 +154,7 @@ def why_stale(operation):
     gone = [name for name in planned["obstacles"] if name not in now["obstacles"]]
     if gone:
         reasons.append(f"{', '.join(gone)}: no longer avoided")
-    reasons += _changed(planned, now)
+    reasons += _changes(planned, now)
     reasons += missing(operation)
     try:
         found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
@@ -187,10 +187,10 @@ def changed_inputs(planned, inputs):
         reasons.append("the faces were changed")
     if sorted(name for name in planned["obstacles"] if name not in gone) != sorted(now["obstacles"]):
         reasons.append("the bodies to avoid were changed")
-    return reasons + _changed(planned, now)
+    return reasons + _changes(planned, now)
 
 
-def _changed(planned, now):
+def _changes(planned, now):
     names = [name for name in dict.fromkeys((*planned, *now)) if name not in ("faces", "obstacles")]
     return [f"{name} was changed" for name in names if planned.get(name) != now.get(name)]
 

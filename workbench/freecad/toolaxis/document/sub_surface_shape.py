@@ -54,7 +54,7 @@ def show_surface(operation, op, chain, colour):
     """
     back = matrix_of(carried(chain).inverse())
     height = _RAISED * op.face.diagonal + bulge(op.face, chain[-1])
-    shape = _hatched(op, back, height) if op.zones else None
+    shape = _hatch_zones(op, back, height) if op.zones else None
     mesh = None if colour is None else _mesh(op.face, back, height)
     for what, made in ((SURFACE, mesh), (CLEAN_UP, shape)):
         thing = next((one for one in operation.Group if is_shown(one) and one.Shows == what), None)
@@ -63,7 +63,7 @@ def show_surface(operation, op, chain, colour):
                 operation.Document.removeObject(thing.Name)
             continue
         if thing is None:
-            thing = _added(operation, what)
+            thing = _add_shape(operation, what)
         _fill(thing, made, _HATCH if what == CLEAN_UP else colour)
         thing.setExpression("Placement", None)
         follow(thing, chain, "Frame")
@@ -71,7 +71,7 @@ def show_surface(operation, op, chain, colour):
         thing.Label = title.format(operation.Label)
 
 
-def _added(operation, what):
+def _add_shape(operation, what):
     import Mesh  # noqa: F401  makes the type known
     import Part  # noqa: F401
 
@@ -132,7 +132,7 @@ def _mesh(face, back, height):
     return Mesh.Mesh([tuple(row) for row in points[found.corners.ravel()].tolist()])
 
 
-def _hatched(op, back, height):
+def _hatch_zones(op, back, height):
     """Hatch lines over the clean-up zones of an operation, a little above its mesh, as a compound of wires."""
     import Part
 

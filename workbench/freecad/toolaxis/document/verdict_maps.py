@@ -49,7 +49,7 @@ def drawn(verdict, frame):
     matrix, made = matrix_of(frame.inverse()), []
     for _, name, _ in _MAPS:
         some = shown_of(verdict, name)
-        points, triangles = _joined(some)
+        points, triangles = _join_maps(some)
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
         mesh = Mesh.Mesh([tuple(row) for row in points[triangles.ravel()].tolist()])
         rows = _rows_of(mesh, points)
@@ -173,7 +173,7 @@ def _rows_of(mesh, points):
     return cKDTree(points).query(corners)[1]
 
 
-def _joined(maps):
+def _join_maps(maps):
     """Points a little above the faces, and triangles of all maps together."""
     import numpy as np
     from freecad.toolaxis.document.triangles import triangles_of  # the same

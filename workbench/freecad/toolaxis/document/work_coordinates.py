@@ -52,7 +52,7 @@ def place_frame(thing, placement, chain):
     """
     assign(thing, Frame=carried(chain).inverse().multiply(placement))
     thing.setExpression("Placement", None)
-    if len(chain) == 1 and chain[0].isDerivedFrom("Part::Feature") and _attached(thing, placement, chain[0]):
+    if len(chain) == 1 and chain[0].isDerivedFrom("Part::Feature") and _attach(thing, placement, chain[0]):
         return
     if thing.AttachmentSupport:
         thing.AttachmentSupport, thing.MapMode = [], "Deactivated"
@@ -60,7 +60,7 @@ def place_frame(thing, placement, chain):
     follow(thing, chain, "Frame")
 
 
-def _attached(thing, placement, part):
+def _attach(thing, placement, part):
     """Attach to a part; whether it then stands where it should."""
     thing.AttachmentSupport = [(part, "")]
     thing.AttachmentOffset = thing.Frame

@@ -25,13 +25,13 @@ _LISTS = (*_OUTLINES, "obstacles")
 _NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES)
 
 
-def _refused(text):
+def _refusal(text):
     from toolaxis.errors import InvalidInput
 
     return InvalidInput(text)
 
 
-def _shown(value):
+def _value_text(value):
     """A value as it is told in a message, not too long."""
     try:
         text = value.Label if isinstance(value, FreeCAD.DocumentObject) else repr(value)
@@ -53,13 +53,13 @@ def document_of(document):
         When it is something else, or was closed.
     """
     if not isinstance(document, FreeCAD.Document):
-        raise _refused(f"document is {_shown(document)}: give an open document, such as FreeCAD.ActiveDocument")
+        raise _refusal(f"document is {_value_text(document)}: give an open document, such as FreeCAD.ActiveDocument")
     try:
         known = FreeCAD.listDocuments().get(document.Name)
     except (ReferenceError, RuntimeError):
         known = None
     if known is None:
-        raise _refused("document was closed: open it again, and give that one")
+        raise _refusal("document was closed: open it again, and give that one")
     return document
 
 
@@ -78,10 +78,10 @@ def operation_of(operation, whole=False):
         When it is something else, or was deleted.
     """
     if not isinstance(operation, FreeCAD.DocumentObject):
-        raise _refused(f"operation is {_shown(operation)}: {_OPERATION}")
+        raise _refusal(f"operation is {_value_text(operation)}: {_OPERATION}")
     _check_there("operation", operation)
     if not is_operation(operation) and not (whole and is_plan(operation)):
-        raise _refused(f"operation is {operation.Label}, which is none of Tool Axis: {_OPERATION}")
+        raise _refusal(f"operation is {operation.Label}, which is none of Tool Axis: {_OPERATION}")
     return operation
 
 
@@ -100,7 +100,7 @@ def progress_of(progress):
     from toolaxis.progress import NO_PROGRESS, Progress
 
     if progress is not None and not isinstance(progress, Progress):
-        raise _refused(f"progress is {_shown(progress)}: give a toolaxis.progress.Progress, or leave it out")
+        raise _refusal(f"progress is {_value_text(progress)}: give a toolaxis.progress.Progress, or leave it out")
     return NO_PROGRESS if progress is None else progress
 
 
@@ -127,7 +127,7 @@ def faces_of(document, faces):
         thing, names = _pair(document, place, item)
         found += [(thing, name) for name in names or sculptured(thing)]
     if not found:
-        raise _refused("nothing is selected: select one or more faces, or a body")
+        raise _refusal("nothing is selected: select one or more faces, or a body")
     return tuple(dict.fromkeys(found))
 
 
@@ -145,11 +145,11 @@ def _pair(document, place, item):
         return _own(document, place, item), []
     if isinstance(item, str):
         thing, _, name = item.partition(".")
-        return _named(document, place, thing), [name] if name else []
+        return _find_object(document, place, thing), [name] if name else []
     if hasattr(item, "SubElementNames"):  # what Gui.Selection.getSelectionEx lists
         item = (item.Object, list(item.SubElementNames))
     if not _is_pair(item):
-        raise _refused(f"{place} is {_shown(item)}: {_FACES}")
+        raise _refusal(f"{place} is {_value_text(item)}: {_FACES}")
     names = item[1] if isinstance(item[1], list | tuple) else [item[1]]
     return _own(document, place, item[0]), [_face_name(place, name) for name in names]
 
@@ -158,14 +158,14 @@ def _face_name(place, name):
     if isinstance(name, int) and not isinstance(name, bool):
         return f"Face{name}"
     if not isinstance(name, str):
-        raise _refused(f"{place} names the face {_shown(name)}: write it as \"Face7\" or 7")
+        raise _refusal(f"{place} names the face {_value_text(name)}: write it as \"Face7\" or 7")
     return name
 
 
-def _named(document, place, name):
+def _find_object(document, place, name):
     thing = document.getObject(name) if name else None
     if thing is None:
-        raise _refused(f"{place} names {name!r}, which is no object of {document.Label}: {_FACES}")
+        raise _refusal(f"{place} names {name!r}, which is no object of {document.Label}: {_FACES}")
     return thing
 
 
@@ -173,7 +173,7 @@ def _own(document, place, thing):
     """An object, where it is one of this document and still there."""
     _check_there(place, thing)
     if thing.Document.Name != document.Name:
-        raise _refused(f"{place} is {thing.Label} of the document {thing.Document.Label}, not of {document.Label}: "
+        raise _refusal(f"{place} is {thing.Label} of the document {thing.Document.Label}, not of {document.Label}: "
                        "link it into this one, or plan in that one")
     return thing
 
@@ -184,7 +184,7 @@ def _check_there(place, thing):
     except (ReferenceError, RuntimeError):
         there = False
     if not there:
-        raise _refused(f"{place} was deleted from its document: give another object")
+        raise _refusal(f"{place} was deleted from its document: give another object")
 
 
 def fields_of(document, given):
@@ -204,7 +204,7 @@ def fields_of(document, given):
     found = {}
     for name, value in given.items():
         if name not in _NAMES:
-            raise _refused(f"{name!r} is no argument of plan: use {', '.join(sorted(_NAMES))}")
+            raise _refusal(f"{name!r} is no argument of plan: use {', '.join(sorted(_NAMES))}")
         if value is None and name not in _LISTS:
             continue
         if name in _NUMBERS:
@@ -233,7 +233,7 @@ def _number(name, value):
         try:
             number = _UNITS.Quantity(value)
         except Exception as reason:  # FreeCAD has kinds of its own for what it cannot read
-            raise _refused(f"{name} is {value!r}: give {how}") from reason
+            raise _refusal(f"{name} is {value!r}: give {how}") from reason
     if isinstance(number, _UNITS.Quantity):
         bare = number.Unit == _UNITS.Unit()
         number = number.Value * (1.0 if bare else factor) if bare or number.Unit == unit else None
@@ -242,7 +242,7 @@ def _number(name, value):
     except (TypeError, ValueError):
         number = float("nan")
     if not isfinite(number):
-        raise _refused(f"{name} is {_shown(value)}: give {how}")
+        raise _refusal(f"{name} is {_value_text(value)}: give {how}")
     return number
 
 
@@ -254,10 +254,10 @@ def _outline(name, value):
         rows = tuple((float(radius), float(z)) for radius, z in (() if value is None else value))
     except (TypeError, ValueError) as reason:
         how = "give rows of (radius, height) in mm, such as [(10, 0), (10, 30)]"
-        raise _refused(f"{name} is {_shown(value)}: {how}") from reason
+        raise _refusal(f"{name} is {_value_text(value)}: {how}") from reason
     for k, row in enumerate(rows):
         if not all(map(isfinite, row)):
-            raise _refused(f"{name}[{k}] is {row}: radius and height must be finite, in mm")
+            raise _refusal(f"{name}[{k}] is {row}: radius and height must be finite, in mm")
     return rows
 
 
@@ -270,7 +270,7 @@ def _count(name, value):
 
 def _text(name, value):
     if not isinstance(value, str):
-        raise _refused(f"{name} is {_shown(value)}: give a text, such as {_TEXTS[name]}")
+        raise _refusal(f"{name} is {_value_text(value)}: give a text, such as {_TEXTS[name]}")
     return value
 
 
@@ -283,9 +283,9 @@ def _things(document, name, value):
     for k, item in enumerate(items):
         place = f"{name}[{k}]"
         if isinstance(item, str):
-            item = _named(document, place, item)
+            item = _find_object(document, place, item)
         if not isinstance(item, FreeCAD.DocumentObject):
-            raise _refused(f"{place} is {_shown(item)}: give objects of the document")
+            raise _refusal(f"{place} is {_value_text(item)}: give objects of the document")
         found.append(_own(document, place, item))
     return tuple(dict.fromkeys(found))
 
@@ -305,6 +305,6 @@ def tool_of(tool):
     if isinstance(tool, FreeCAD.DocumentObject):
         _check_there("tool", tool)
     elif not isinstance(tool, str) and not hasattr(tool, "corner_radius"):
-        raise _refused(f"tool is {_shown(tool)}: give its short form, such as \"torus:12x1\", a toolaxis.Tool, or a "
-                       "tool controller or tool bit of a CAM job")
+        raise _refusal(f"tool is {_value_text(tool)}: give its short form, such as \"torus:12x1\", a toolaxis.Tool, or "
+                       "a tool controller or tool bit of a CAM job")
     return tool

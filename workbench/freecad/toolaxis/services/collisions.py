@@ -98,7 +98,7 @@ class CollisionModel:
 
         found = self._of_tool(row, rotary, tips)
         found = found or nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row])
-        return self._told(found, rotary)
+        return self._collision_texts(found, rotary)
 
     def at(self, row, joints):
         """What meets where a machine stands, with the tool of an operation; None where nothing does.
@@ -121,7 +121,7 @@ class CollisionModel:
         tips, _ = forward(held.machine, joints[None], held.tool_length, held.table_from_part)
         found = self._of_tool(row, joints[3:], tips)
         found = found or meeting_on(held, joints[3:], places(joints[None, :3]), self.surroundings[row], with_tool=False)
-        return self._told(found, joints[3:])
+        return self._collision_texts(found, joints[3:])
 
     def _of_tool(self, row, rotary, tips):
         """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
@@ -141,7 +141,7 @@ class CollisionModel:
         """The machine with the tool of an operation in its spindle."""
         return replace(self.mounted, tool_length=self.surroundings[row].tool.gauge_length)
 
-    def _told(self, found, rotary):
+    def _collision_texts(self, found, rotary):
         from toolaxis.collision.machine_collision import words
 
         if found is None:

@@ -33,7 +33,7 @@ def defaults(document, faces):
     """
     shapes = _faces(faces)
     beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
-    inputs = _preferred(_for_size(JobInputs(tuple(faces), obstacles=tuple(beside)), shapes))
+    inputs = _apply_preferences(_for_size(JobInputs(tuple(faces), obstacles=tuple(beside)), shapes))
     for controller in controllers(document):
         with suppress(Exception):  # a tool of another kind: the next one
             found = tool_fields(tool_from(controller))
@@ -43,7 +43,7 @@ def defaults(document, faces):
     return inputs
 
 
-def _preferred(inputs):
+def _apply_preferences(inputs):
     """What the user prefers in place of what the part suggests; a tool that is none is left out."""
     from toolaxis.errors import InvalidInput
     from toolaxis.tools.tool import Tool

@@ -10,7 +10,7 @@ from freecad.toolaxis.document.read_shapes import ShapesRead
 _POINTS = 24
 
 
-def _refused(text):
+def _refusal(text):
     from toolaxis.errors import InvalidInput
 
     return InvalidInput(text)
@@ -34,15 +34,15 @@ class DividedFace:
         from toolaxis.progress import NO_PROGRESS
 
         if not operations or not all(map(is_operation, operations)):
-            raise _refused("no sub-surface is chosen: choose operations of one face in the tree")
+            raise _refusal("no sub-surface is chosen: choose operations of one face in the tree")
         faces = {_face_of(one) for one in operations}
         if len(faces) > 1 or None in faces:
-            raise _refused("the chosen operations are of different faces, or their part was deleted: choose "
+            raise _refusal("the chosen operations are of different faces, or their part was deleted: choose "
                            "sub-surfaces of one face")
         self.chosen = list(operations)
         self.plan = plan_of(operations[0])
         if self.plan is None and len(operations) > 1:
-            raise _refused("the chosen operations belong to no plan: plan their face again, divided")
+            raise _refusal("the chosen operations belong to no plan: plan their face again, divided")
         self.owner = self.plan if self.plan is not None else operations[0]
         every = [operations[0]] if self.plan is None else operations_in(self.plan)
         self.rows = [one for one in every if _face_of(one) == _face_of(operations[0])]
@@ -199,10 +199,10 @@ def drawn(line, face):
 
     shape = Part.getShape(line)
     if shape.isNull() or not shape.Edges:
-        raise _refused(f"{line.Label} has no edges: draw a line on the face, and choose that")
+        raise _refusal(f"{line.Label} has no edges: draw a line on the face, and choose that")
     chains = Part.sortEdges(shape.Edges)
     if len(chains) > 1:
-        raise _refused(f"{line.Label} has {len(chains)} separate lines: draw one")
+        raise _refusal(f"{line.Label} has {len(chains)} separate lines: draw one")
     wire = Part.Wire(chains[0])
     place = container_placement(line)
     points = []
@@ -215,6 +215,6 @@ def drawn(line, face):
     rows = rows[keep]
     found = nearest(face, rows)
     if float(np.min(found.distance)) > face.diagonal:
-        raise _refused(f"{line.Label} lies far off the face: draw it on the face, or above it")
+        raise _refusal(f"{line.Label} lies far off the face: draw it on the face, or above it")
     uv = np.asarray(found.uv)
     return (uv[:-1] if wire.isClosed() else uv), wire.isClosed()

@@ -125,10 +125,10 @@ def plan_task(operations):
         standing = OperationRecord.of(operation) if operation.Motions else None
         details = json.loads(operation.Details)
         before = offsets[one.faces[0][0].Name]
-        rows.append((standing, operation.AxisMap, _numbered(details, before), angles_kept(operation)))
+        rows.append((standing, operation.AxisMap, _number_details(details, before), angles_kept(operation)))
         for link in turned_copies(operation) if standing is not None else ():
             copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
-            rows.append((copy, operation.AxisMap, _numbered(copy.details, before), ()))
+            rows.append((copy, operation.AxisMap, _number_details(copy.details, before), ()))
     tool, job = together.assembled(), together.job()
 
     def compute(progress):
@@ -140,7 +140,7 @@ def plan_task(operations):
         made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
         mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
-            made = _held(made, mounted, [row[3] for row in rows])
+            made = _operations_with_angles(made, mounted, [row[3] for row in rows])
         return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
 
     return compute
@@ -185,7 +185,7 @@ def _offsets(together):
     return found
 
 
-def _numbered(details, before):
+def _number_details(details, before):
     """What is kept of a sub-surface, its face counted through all parts."""
     own = str(details["face"])
     suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
@@ -207,7 +207,7 @@ def _operation(number, part, row):
     return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
 
 
-def _held(made, mounted, angles):
+def _operations_with_angles(made, mounted, angles):
     """Operations with the rotary angles at which the machine that they were planned for holds them: those that the
     document tells, else the nearest ones."""
     done = [(op, kept) for op, kept in zip(made, angles, strict=True) if op.done and op.orientation.lead is None]

@@ -80,10 +80,10 @@ def bumps(tool, path, found, progress):
     end = 0 if moves else 1  # motion k leads from point k - 1 to point k
     checked = ("cutter", *(name for name in ("shank", "holder") if name in tool.outlines))
     known = {k + end: rest for k, *rest in some}
-    return PathCollisions(_joined(known, (bad + end).tolist(), names), checked)
+    return PathCollisions(_join_motions(known, (bad + end).tolist(), names), checked)
 
 
-def _joined(at, bad, names):
+def _join_motions(at, bad, names):
     """Bumps of motions one after the other that say the same; motions that were not measured go with the one before."""
     made, known = [], None
     for motion in bad:

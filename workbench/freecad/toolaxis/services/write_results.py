@@ -64,7 +64,7 @@ def apply(document, inputs, plan, replaces=None):
         for op, owner in zip(plan.operations, owners, strict=True):
             if op.number in tree.copies:
                 continue
-            operation = standing.pop(_key(op, owner), None) or _added(document, tree.place_of(op))
+            operation = standing.pop(_key(op, owner), None) or _add_object(document, tree.place_of(op))
             made.append(operation)
             _fill(operation, _alone(inputs, owner), plan, (op, owner[2], colours.get(op.number)))
             _lock(operation, inputs, _key(op, owner))
@@ -164,7 +164,7 @@ def _colours(plan, standing):
     return {plan.operations[0].number: kept} if kept else {}
 
 
-def _added(document, group):
+def _add_object(document, group):
     operation = document.addObject("App::DocumentObjectGroupPython", "Operation")
     OperationProxy(operation)
     attach_view(operation)

@@ -113,14 +113,14 @@ class Legend(QtWidgets.QWidget):
         """Room for the scale and all entries in two columns."""
         if self.picture is None:
             return QtCore.QSize(240, 0)
-        return QtCore.QSize(240, 40 + _ROW * len(self._placed(max(self.width(), 240))[0]) + 4)
+        return QtCore.QSize(240, 40 + _ROW * len(self._place_entries(max(self.width(), 240))[0]) + 4)
 
     def resizeEvent(self, event):
         """Entries that no longer fit beside each other go below each other."""
         if self.picture is not None:
             self.setFixedHeight(self.sizeHint().height())
 
-    def _placed(self, width):
+    def _place_entries(self, width):
         """Lines of entries, two beside each other where both fit, and the width of a column."""
         metrics = self.fontMetrics()
         half = width / 2
@@ -140,7 +140,7 @@ class Legend(QtWidgets.QWidget):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         self._draw_scale(painter)
-        lines, half = self._placed(self.width())
+        lines, half = self._place_entries(self.width())
         for number, line in enumerate(lines):
             for column, entry in enumerate(line):
                 self._draw_entry(painter, entry, (column * half, 40 + number * _ROW))

@@ -12,7 +12,7 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 translate = FreeCAD.Qt.translate
 
 
-def _chosen():
+def _selection():
     """Operations that are selected, or whose objects are, and what else is selected that has edges and no faces."""
     operations, lines = [], []
     for thing in FreeCADGui.Selection.getSelection(FreeCAD.ActiveDocument.Name):
@@ -60,7 +60,7 @@ class MergeSubSurfaces(_Command):
 
     def Activated(self):
         """Open the panel with the sub-surfaces put together, or say why that cannot be."""
-        operations, _ = _chosen()
+        operations, _ = _selection()
         if len(operations) < 2:
             warn(translate("ToolAxis", "Select two or more sub-surfaces of one face in the tree first."))
             return
@@ -81,7 +81,7 @@ class SplitSubSurface(_Command):
 
     def Activated(self):
         """Open the panel with the pieces, or say why that cannot be."""
-        operations, lines = _chosen()
+        operations, lines = _selection()
         if len(operations) != 1 or len(lines) > 1:
             warn(translate("ToolAxis", "Select one sub-surface in the tree, and one line that cuts it if it shall not "
                                        "be cut in the middle."))

@@ -50,7 +50,7 @@ class MakeJobs:
                                 "work offsets, so that several jobs will have the same one. Make {0} jobs?").format(
                                     count, len(OFFSETS))):
                 return
-            made = _made(document, found)
+            made = _make_jobs(document, found)
         except Exception as reason:
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
             warn(sentence(reason))
@@ -72,7 +72,7 @@ class MakeJobs:
             warn("\n\n".join(told))
 
 
-def _made(document, found):
+def _make_jobs(document, found):
     """The jobs; none where the user stopped."""
     from toolaxis.errors import Cancelled
     from toolaxis.progress import Progress

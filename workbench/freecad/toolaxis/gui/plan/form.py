@@ -251,7 +251,7 @@ class PlanForm:
         ----------
         inputs : freecad.toolaxis.document.inputs.JobInputs
         """
-        self.unshown, inputs = _shown(inputs, self.spindle.maximum())
+        self.unshown, inputs = _inputs_to_show(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
@@ -311,7 +311,7 @@ class PlanForm:
         return ""
 
 
-def _shown(inputs, fastest):
+def _inputs_to_show(inputs, fastest):
     """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
     from toolaxis.errors import InvalidInput
     from toolaxis.partition.partition import check_count

@@ -226,7 +226,7 @@ class PlanPanel(Panel):
             self._show_state()
             return
         titles = titles_of(inputs)
-        self.work = BackgroundWork(lambda progress: _planned(task, progress), None, _growing)
+        self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
         self.work.interim.connect(lambda found: self._growing(*found, titles))
         self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
@@ -361,7 +361,7 @@ def _growing(offered):
     return None if picture is None else (picture, face)
 
 
-def _planned(task, progress):
+def _make_plan(task, progress):
     """Plan and pictures; runs off the GUI thread."""
     from toolaxis.progress import NO_PROGRESS
 

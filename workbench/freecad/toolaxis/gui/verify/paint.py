@@ -107,7 +107,7 @@ class Paint:
             return
         skin, what, limit = self._left.pop()
         aside = skin.declared if what == "remaining" else None
-        self.root.addChild(_painted(skin, judged(getattr(skin, what), limit, aside)))
+        self.root.addChild(_paint_skin(skin, judged(getattr(skin, what), limit, aside)))
 
     def point_at(self, point, size):
         """Zoom to a point and mark it.
@@ -153,7 +153,7 @@ class Paint:
         self._left = []
 
 
-def _painted(skin, rgb):
+def _paint_skin(skin, rgb):
     from pivy import coin
 
     node = coin.SoSeparator()

@@ -70,7 +70,7 @@ class VerifyPanel(Panel):
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             return
-        self.work = BackgroundWork(lambda progress: [_judged(judge, frame, progress)
+        self.work = BackgroundWork(lambda progress: [_judge_operation(judge, frame, progress)
                                                      for judge, frame in zip(judges, frames, strict=True)])
         self.work.progressed.connect(self._progressed)
         self.work.done.connect(self._done)
@@ -193,7 +193,7 @@ class VerifyPanel(Panel):
                 mesh.Visibility = True
 
 
-def _judged(judge, frame, progress):
+def _judge_operation(judge, frame, progress):
     """Verdicts of one operation with the skins to paint, and the maps to keep; runs off the GUI thread."""
     verdicts = judge(progress).operations
     skins = [{name: [skin for one in shown_of(verdict, name) for skin in skins_of(one)] for name in WHAT}
