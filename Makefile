@@ -8,6 +8,9 @@ KERNEL8 := .venv-kernel8
 PART ?= examples/freeform.step
 OUT ?= out/demo
 
+# Python's code is kept: without it each of the hundreds of processes that the tests start reads all sources anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: setup demo test tests tests-kernel8 test-all lint bench docs clean
 
 setup: $(STAMP)

@@ -40,12 +40,13 @@ class Tour:
 
     def picture(self, name):
         """Take a picture of the window as it is now."""
-        self.desk.shot("tour")
         self.folder.mkdir(parents=True, exist_ok=True)
-        source = sys.modules[type(self.desk).__module__].SHOTS / f"tour-{self.desk.theme}.png"
         target = self.folder / f"freecad-{name}.png"
-        subprocess.run(["convert", str(source), "-resize", str(WIDTH), "+dither", "-colors", str(COLOURS),
-                        "-define", "png:compression-level=9", str(target)], check=True, stdin=subprocess.DEVNULL)
+        with tempfile.TemporaryDirectory() as folder:
+            source = Path(folder) / "screen.png"
+            self.desk.capture(source)
+            subprocess.run(["convert", str(source), "-resize", str(WIDTH), "+dither", "-colors", str(COLOURS),
+                            "-define", "png:compression-level=9", str(target)], check=True, stdin=subprocess.DEVNULL)
 
     @property
     def part(self):

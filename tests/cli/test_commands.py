@@ -16,6 +16,8 @@ from toolaxis.errors import Cancelled
 
 Capture = pytest.CaptureFixture[str]
 FAST = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
+#: Few axes to choose from, where each costs a search of its own.
+UPRIGHT = "--limits=cone:0,0,1,12"
 
 
 def strict(text: str) -> dict:
@@ -218,13 +220,13 @@ def test_a_plan_survives_its_pictures(sheet: Path, tmp_path: Path, capsys: Captu
 
 def test_a_face_is_planned_in_regions_and_verified(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / "out"
-    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--faces=1", "--regions=2",
+    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", UPRIGHT, "--faces=1", "--regions=2",
                  "--no-pictures", "--out", str(out)]) == 0
     document = strict((out / "plan.json").read_text())
     assert [op["label"] for op in document["operations"]] == ["1a", "1b"]
     assert all(op["region"] for op in document["operations"])
     assert main(["verify", str(out), "--no-pictures"]) == 0
-    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", "--faces=1,2", "--orientations=1",
+    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", UPRIGHT, "--faces=1,2", "--orientations=1",
                  "--no-pictures", "--out", str(out)]) == 0
     document = strict((out / "plan.json").read_text())
     assert {op["face"] for op in document["operations"]} == {1, 2}

@@ -220,7 +220,7 @@ def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
     monkeypatch.setattr(baselines, "BY_SUB_SURFACE", ("roman", "normal"))  # sectors take half a minute
     faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
     made = ta.plan(ta.Part.from_faces(faces), ta.Tool.torus(12, 1, stickout=50, holder=[(10, 0), (10, 40)]), 0.1,
-                   compare=True, feedrate=500)
+                   machine="cone:0,0,1,12", compare=True, feedrate=500)
     rows = {one.method: one for one in made.baselines}
     assert list(rows) == ["plan", "roman", "normal", "one", "ball"]
     mine = rows["plan"]

@@ -13,7 +13,8 @@ CORE = Path(__file__).resolve().parents[2] / "core"
 
 
 def run(script: str, folder: Path, **environment: str) -> str:
-    settings = {"PYTHONPATH": os.pathsep.join([str(CORE), str(folder)]), "NUMBA_CACHE_DIR": str(folder / "kept")}
+    settings = {"PYTHONPATH": os.pathsep.join([str(CORE), str(folder)]), "NUMBA_CACHE_DIR": str(folder / "kept"),
+                "PYTHONDONTWRITEBYTECODE": "1"}  # else Python takes a file rewritten within a second for the former one
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False,
                           env={**os.environ, **settings, **environment})
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Tests of the FreeCAD add-on: plain pytest inside FreeCAD; outside, each file is started in the real FreeCAD.
+"""Tests of the FreeCAD add-on: plain pytest inside FreeCAD; outside, the files are started in the real FreeCAD.
 
 Which FreeCAD that is says the environment variable TOOLAXIS_FREECAD: the beginning of a command that runs the rest of
 it in FreeCAD's Python, with the project as an add-on.  TOOLAXIS_FREECAD_OLD names a second one, which gets all of the
@@ -21,6 +21,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+SHARED = "TOOLAXIS_TESTS_SHARED"
 INSIDE = importlib.util.find_spec("FreeCAD") is not None
 MARK, FAILED, CRASHED = "TOOLAXIS-INNER ", "TOOLAXIS-FAILED ", "Fatal Python error"
 CRASH = "FreeCAD crashed"
@@ -31,13 +32,25 @@ INSTALLED = ("freecadcmd", "FreeCADCmd", "freecadcmd-daily"), ("freecad", "FreeC
 # are CAM's jobs and tools, the kernel that parts are read with, frames in the tree, saved documents, installing, the
 # kinds of things that can be selected, and of the panel its fields with their units, the mouse, and making objects.
 # What the panel does with a plan once it has one is our own code on the same Qt: the newer FreeCAD alone runs that.
-OLDER = {"test_bad_cases.py": (), "test_cam_jobs.py": (), "test_install.py": (), "test_objects_tree.py": (),
+OLDER = {"test_bad_cases.py": ("test_what_has_no_sculptured_face", "test_edges_selected",
+                               "test_a_body_stands_for_its_sculptured_faces",
+                               "test_faces_in_containers_links_and_bodies_keep_what_places_them",
+                               "test_tools_of_a_cam_job_are_offered_and_other_bodies_can_be_avoided"),
+         "test_cam_jobs.py": (), "test_install.py": (), "test_objects_tree.py": (),
          "test_part_contract.py": (), "test_saved_before.py": (),
          "test_panel.py": ("test_the_workbench_is_there_with_its_commands",
                            "test_plan_from_selection_to_objects_and_back", "test_pointer_and_click_on_the_map",
-                           "test_impossible_values_lock_compute_with_the_reason[diameter-0 mm-diameter]",
+                           "test_impossible_values_lock_compute_with_the_reason",
                            "test_a_bare_number_is_millimetres",
                            "test_units_follow_freecads_settings[ImperialDecimal-3]")}
+# Files that run in one FreeCAD, one after another: to start it and to load the library takes longer than many of their
+# tests.  Where it crashes each of them is run by itself.  Of files that drive the window only short ones: the more
+# panels one FreeCAD has opened and closed, the sooner Qt ends in a widget that is gone.
+TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_saved_before.py"),
+            ("test_arguments.py", "test_children.py", "test_choices.py", "test_document_parts.py", "test_export.py",
+             "test_loose_faces.py", "test_machines.py", "test_objects_change.py", "test_path_collisions.py",
+             "test_renumbering.py", "test_tessellation_offset.py", "test_time_left.py", "test_translations.py"),
+            ("test_background.py", "test_fields.py", "test_settings.py", "test_views.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
 READY = {}
@@ -56,11 +69,25 @@ def pytest_configure(config):
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items):
     """FIRST, then what runs in FreeCAD: a file takes minutes, and none should begin when all else is done."""
+    _put_together(items)
+
     def place(item):
         first = [item.path.as_posix().endswith(name) for name in FIRST]
         return first.index(True) if any(first) else len(FIRST) + (not isinstance(item, InnerRun))
 
     items.sort(key=place)
+
+
+def _put_together(items):
+    """Let the first of the files that run in one FreeCAD take the others along."""
+    groups = {}
+    for item in items:
+        if isinstance(item, InnerRun):
+            group = next((group for group in TOGETHER if item.path.name in group), item.path)
+            groups.setdefault((item.variable, group), []).append(item)
+    leaders = {found[0]: found for found in groups.values()}
+    items[:] = [item.together_with(leaders[item][1:]) if item in leaders else item
+                for item in items if item in leaders or not isinstance(item, InnerRun)]
 
 
 def pytest_terminal_summary(terminalreporter):
@@ -122,28 +149,44 @@ class Crash(InnerFailure):
 
 
 class InnerRun(pytest.Item):
-    """Outside: one run of a file, as one test with the failures of all inside."""
+    """Outside: one run of a file, or of several in one FreeCAD, as one test with the failures of all inside."""
 
-    def __init__(self, variable, **rest):
+    def __init__(self, variable, others=(), **rest):
         super().__init__(**rest)
-        self.variable = variable
+        self.variable, self.paths = variable, [self.path, *others]
+
+    def together_with(self, others):
+        """A run that takes the files of other runs along in the same FreeCAD."""
+        if not others:
+            return self
+        paths = [item.path for item in others]
+        name = f"{self.name}, with {', '.join(path.name for path in paths)}"
+        return InnerRun.from_parent(self.parent, name=name, variable=self.variable, others=paths)
 
     def runtest(self):
-        long = self.config.getoption("--long")
-        file = self.path.relative_to(ROOT).as_posix()
-        some = OLDER[self.path.name] if self.variable == "TOOLAXIS_FREECAD_OLD" and not long else ()
-        arguments = ["-p", "no:cacheprovider", *(["--long"] if long else []),
-                     *([f"{file}::{name}" for name in some] or [file])]
-        prefix, rest = command_for(self.variable, arguments, window="gui" in self.path.parts)
-        folder = prepare(self.path, long)
-        known = ["TOOLAXIS_INNER=1", *([f"TOOLAXIS_PREPARED={folder}"] if folder else [])]
-        limit = LONG_TIME_LIMIT if long else TIME_LIMIT
         try:
-            judge(*ended([*prefix, "env", *known, *rest], limit))
+            self.run_inside(self.paths)
         except Crash as reason:
             # Qt now and then ends in a widget that is gone: what the add-on is to blame for ends there again.
             self.user_properties.append((CRASH, f"{self.nodeid}: {reason}"))
-            judge(*ended([*prefix, "env", *known, *rest], limit))
+            for path in self.paths:
+                self.run_inside([path])
+
+    def run_inside(self, paths):
+        """Run files in one FreeCAD; fails with what failed there."""
+        long = self.config.getoption("--long")
+        arguments = ["-p", "no:cacheprovider", *(["--long"] if long else [])]
+        for path in paths:
+            file = path.relative_to(ROOT).as_posix()
+            some = OLDER[path.name] if self.variable == "TOOLAXIS_FREECAD_OLD" and not long else ()
+            arguments += [f"{file}::{name}" for name in some] or [file]
+        prefix, rest = command_for(self.variable, arguments, window="gui" in self.path.parts)
+        folder = prepare(self.path, long)
+        known = ["TOOLAXIS_INNER=1", f"{SHARED}={Path(os.environ[SHARED]).relative_to(ROOT).as_posix()}",
+                 *([f"TOOLAXIS_PREPARED={folder}"] if folder else []),
+                 *(f"{name}={os.environ[name]}" for name in ("TOOLAXIS_SHOTS",) if name in os.environ)]
+        limit = len(paths) * (LONG_TIME_LIMIT if long else TIME_LIMIT)
+        judge(*ended([*prefix, "env", *known, *rest], limit))
 
     def repr_failure(self, excinfo):
         told = isinstance(excinfo.value, InnerFailure)

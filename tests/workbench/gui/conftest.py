@@ -1,7 +1,13 @@
-"""A desk to drive FreeCAD's window as a user does: clicks, keys, waits with a limit, and screenshots to look at."""
+"""A desk to drive FreeCAD's window as a user does: clicks, keys, waits with a limit, and screenshots to look at.
 
+Screenshots are taken where TOOLAXIS_SHOTS names a folder for them.
+"""
+
+import fcntl
 import gc
+import hashlib
 import os
+import pickle
 import subprocess
 import sys
 import time
@@ -15,7 +21,7 @@ from weakref import ref
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-SHOTS = Path(os.environ.get("TOOLAXIS_SHOTS", ROOT / "out" / "shots"))
+SHOTS = os.environ.get("TOOLAXIS_SHOTS")
 SIZE = (1400, 900)
 TURNS = 8
 PAUSE = 0.05  # between looks at what is waited for: the window takes time from what is computed beside it, s
@@ -261,10 +267,15 @@ class Desk:
         return seen[0] if seen else ""
 
     def shot(self, name):
-        """A picture of the whole screen, which has the 3D view in it."""
-        SHOTS.mkdir(parents=True, exist_ok=True)
+        """Let the window be drawn, and take a picture of it where pictures are wanted."""
+        self.pump(0.1)
+        if SHOTS:
+            self.capture(Path(SHOTS) / f"{name}-{self.theme}.png")
+
+    def capture(self, path):
+        """Take a picture of the whole screen, which has the 3D view in it."""
+        path.parent.mkdir(parents=True, exist_ok=True)
         self.pump(0.3)
-        path = SHOTS / f"{name}-{self.theme}.png"
         try:
             subprocess.run(["import", "-window", "root", str(path)], check=True, timeout=30, stdin=subprocess.DEVNULL)
         except (OSError, subprocess.SubprocessError):  # no tool for the whole screen here: the window without its view
@@ -425,18 +436,45 @@ def wavy(desk, part_file):
     return part, f"Face{kinds.index('BSplineSurface') + 1}"
 
 
+class Plans:
+    """Plans that were made already, here or in another FreeCAD of the same run of tests."""
+
+    def __init__(self, folder):
+        self.folder, self.made = folder, {}
+
+    def take(self, asked, compute, progress):
+        """The plan for what is asked, read where it was made already, else computed by one process and kept."""
+        if asked not in self.made:
+            self.made[asked] = self._shared(asked, compute, progress) if self.folder else compute(progress)
+        return self.made[asked]
+
+    def _shared(self, asked, compute, progress):
+        told = f"{sys.version} {asked}"
+        path = self.folder / hashlib.sha256(told.encode()).hexdigest()
+        with open(f"{path}.lock", "wb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if path.exists():
+                return pickle.loads(path.read_bytes())
+            plan = compute(progress)
+            path.write_bytes(pickle.dumps(plan))
+            return plan
+
+
 @pytest.fixture(scope="session")
 def _recalling(_desk):
-    """Where this is entered, the same inputs for the same shapes are computed once in a session."""
+    """Where this is entered, the same inputs for the same shapes are computed once in a run of the tests."""
     from freecad.toolaxis.services import api
 
-    plans, task = {}, api.task
+    shared = os.environ.get("TOOLAXIS_TESTS_SHARED")
+    if shared:
+        (ROOT / shared / "plans").mkdir(exist_ok=True)
+    plans, task = Plans(ROOT / shared / "plans" if shared else None), api.task
 
     def recalled(inputs):
         compute = task(inputs)
         shapes = [thing.Shape.exportBrepToString() for thing in (*inputs.things, *inputs.obstacles)]
         key = repr((replace(inputs, faces=(), obstacles=()), [name for _, name in inputs.faces], shapes))
-        return lambda progress: plans[key] if key in plans else plans.setdefault(key, compute(progress))
+        return lambda progress: plans.take(key, compute, progress)
 
     @contextmanager
     def recalling():
@@ -456,17 +494,36 @@ def remembered(_recalling):
         yield
 
 
+@pytest.fixture(scope="session")
+def _asked():
+    """What the panel asked for the first operation of a session."""
+    return []
+
+
 @pytest.fixture
-def operation(desk, wavy, _recalling):
-    """An operation in a document, as the planning panel leaves it."""
+def operation(desk, wavy, _recalling, _asked):
+    """An operation in a document, as the planning panel leaves it: by the panel once, then as its OK puts it there."""
+    from freecad.toolaxis.document.inputs import inputs_of
+    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
+
+    from toolaxis.progress import NO_PROGRESS
+
     part, face = wavy
     with _recalling():
+        if _asked:
+            inputs = replace(_asked[0], faces=((part, face),))
+            apply(part.Document, inputs, api.task(inputs)(NO_PROGRESS))
+            desk.pump(0.1)
+            return desk.operation_in(part.Document)
         form = desk.start(part, face)
         desk.type(form.scallop, "0.05 mm")
         desk.computed(form)
         desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    return desk.operation_in(part.Document)
+    made = desk.operation_in(part.Document)
+    _asked.append(inputs_of(made))
+    return made
 
 
 @pytest.fixture

@@ -138,20 +138,22 @@ def test_the_slider_moves_the_tool(desk, form, remembered):
     desk.shot("8-slider-middle")
 
 
-@pytest.mark.parametrize(("field", "text", "words"), [
-    ("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diameter"), ("scallop", "-1 mm", "scallop"),
-    ("stickout", "0.5 mm", "stick-out"), ("allowance", "-1 mm", "allowance"),
-    ("tolerance", "0 mm", "machining tolerance"), ("tolerance", "1 mm", "from 0.0005 to 0.1 mm")])
-def test_impossible_values_lock_compute_with_the_reason(desk, form, field, text, words):
-    widget = getattr(form, field)
-    form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
-    good = desk.shown(widget)
-    desk.type(widget, text)
-    assert not form.compute.isEnabled() and words in form.message.text()
-    if field == "corner":
-        desk.shot("9-refused")
-    desk.type(widget, good)
-    assert form.compute.isEnabled(), form.message.text()
+IMPOSSIBLE = (("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diameter"), ("scallop", "-1 mm", "scallop"),
+              ("stickout", "0.5 mm", "stick-out"), ("allowance", "-1 mm", "allowance"),
+              ("tolerance", "0 mm", "machining tolerance"), ("tolerance", "1 mm", "from 0.0005 to 0.1 mm"))
+
+
+def test_impossible_values_lock_compute_with_the_reason(desk, form):
+    for field, text, words in IMPOSSIBLE:
+        widget = getattr(form, field)
+        form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
+        good = desk.shown(widget)
+        desk.type(widget, text)
+        assert not form.compute.isEnabled() and words in form.message.text(), (field, text)
+        if field == "corner":
+            desk.shot("9-refused")
+        desk.type(widget, good)
+        assert form.compute.isEnabled(), form.message.text()
 
 
 def test_a_change_after_computing_locks_ok(desk, form, remembered):
@@ -181,14 +183,16 @@ def test_limits_that_leave_no_axis(desk, form):
     desk.shot("10-no-axis")
 
 
-@pytest.mark.parametrize(("typed", "shown"), [("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"),
-                                              ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"), ("0.1 kg", "0.02 mm"),
-                                              ("nonsense", "0.02 mm"), ("", "0.02 mm")])
-def test_a_bare_number_is_millimetres(desk, form, typed, shown):
+TYPED = (("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"), ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"),
+         ("0.1 kg", "0.02 mm"), ("nonsense", "0.02 mm"), ("", "0.02 mm"))
+
+
+def test_a_bare_number_is_millimetres(desk, form):
     form.tabs.setCurrentWidget(form.jobTab)
-    desk.type(form.scallop, "0.02 mm")
-    desk.type(form.scallop, typed)
-    assert desk.shown(form.scallop) == shown
+    for typed, shown in TYPED:
+        desk.type(form.scallop, "0.02 mm")
+        desk.type(form.scallop, typed)
+        assert desk.shown(form.scallop) == shown, typed
 
 
 def test_no_unit_system_shows_micrometres(desk, wavy, remembered):
