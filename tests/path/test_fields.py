@@ -14,8 +14,8 @@ from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.path.cl_points import trace
 from toolaxis.path.estimate import Estimator
 from toolaxis.path.field.direction_table import feed_frame, feeds_in, tabulate_directions
-from toolaxis.path.field.field_chart import FieldChart
 from toolaxis.path.field.ideal_lengths import DirectionForms
+from toolaxis.path.field.level_chart import LevelChart
 from toolaxis.path.field.pass_field import FieldProblem, PassField, find_field
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_layout import lay_out, pass_length
@@ -122,7 +122,7 @@ def test_a_field_is_never_shorter_than_the_ideal_and_no_longer_than_iso_parametr
 @pytest.mark.parametrize("cut_out", [False, True])
 def test_the_chart_finds_places_again_and_feeds_along_levels(feed: str, cut_out: bool) -> None:
     face = holed(wavy(3)) if cut_out else wavy(3)
-    chart = FieldChart(face, feed, field_of(face, 1 if feed == "u" else 0, bend=0.3))
+    chart = LevelChart(face, feed, field_of(face, 1 if feed == "u" else 0, bend=0.3))
     rng = np.random.default_rng(1)
     uv = rng.uniform(-0.15, 1.15, (200, 2))
     assert chart.uv(*chart.places(uv).T) == pytest.approx(uv, abs=1e-9)
@@ -141,7 +141,7 @@ def test_the_chart_finds_places_again_and_feeds_along_levels(feed: str, cut_out:
 def test_in_a_field_that_is_a_parameter_half_widths_are_those_along_it(feed: str) -> None:
     """The normal section and the line across differ to the second order."""
     face, cut = wavy(1, height=1.0), Cut(TORUS, LEAN, 0.005)
-    chart = FieldChart(face, feed, field_of(face, 1 if feed == "u" else 0, number=1.0))
+    chart = LevelChart(face, feed, field_of(face, 1 if feed == "u" else 0, number=1.0))
     along, step = (part.ravel() for part in np.meshgrid(np.linspace(0.1, 0.9, 5), np.linspace(0.1, 0.9, 5)))
     exact = IsoChart(face, feed).half_widths(cut, along, step)
     assert chart.half_widths(cut, along, step) == pytest.approx(exact, rel=0.02)
@@ -195,4 +195,4 @@ def test_faces_that_close_or_have_a_pole_are_refused_with_the_remedy() -> None:
         feed_frame(Face.from_bspline(tip, (2, 2)), np.array([[0.0, 0.5]]))
     face = wavy(0)
     with pytest.raises(UnsupportedGeometry, match="passes in a field along u turn back on face 1"):
-        FieldChart(face, "u", field_of(face, 0))
+        LevelChart(face, "u", field_of(face, 0))

@@ -40,7 +40,7 @@ def descend(function: Callable[[Array], tuple[float, Array]], start: Array, roun
     value, slope = function(place)
     known: deque[tuple[Array, Array, float]] = deque(maxlen=_MEMORY)
     for _ in range(rounds):
-        way = -_scaled(slope, known)
+        way = -_apply_inverse(slope, known)
         promised = float(slope @ way)
         if not promised < 0:  # rounding has spoilt what is known: begin anew
             known.clear()
@@ -63,7 +63,7 @@ def descend(function: Callable[[Array], tuple[float, Array]], start: Array, roun
     return value, place
 
 
-def _scaled(slope: Array, known: deque[tuple[Array, Array, float]]) -> Array:
+def _apply_inverse(slope: Array, known: deque[tuple[Array, Array, float]]) -> Array:
     """The inverse of the curvature that the steps so far have shown, times a slope."""
     rest, shares = slope.copy(), []
     for step, change, rate in reversed(known):

@@ -14,8 +14,8 @@ from toolaxis.errors import UnsupportedGeometry
 from toolaxis.machine.work_coordinates import mean_feed_across
 from toolaxis.path.estimate import Estimates, Estimator
 from toolaxis.path.field.direction_table import DirectionTable, tabulate_directions
-from toolaxis.path.field.field_chart import FieldChart
 from toolaxis.path.field.ideal_lengths import DirectionForms
+from toolaxis.path.field.level_chart import LevelChart
 from toolaxis.path.field.pass_field import find_field
 from toolaxis.path.parametrization import Chart, Cut, IsoChart
 from toolaxis.path.pass_count import Count, measure
@@ -26,7 +26,7 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 
 #: Charts of the passes that a plan can ask for.
-PassChart: TypeAlias = IsoChart | PlaneChart | FieldChart
+PassChart: TypeAlias = IsoChart | PlaneChart | LevelChart
 
 #: Places each way whose feed directions make up the mean one.
 _GRID = 16
@@ -113,7 +113,7 @@ class FieldPasses:
 
     estimator: Estimator
     name: str = FIELD
-    _kept: dict[tuple[bytes, str], FieldChart] = field(default_factory=dict)
+    _kept: dict[tuple[bytes, str], LevelChart] = field(default_factory=dict)
     _last: dict[bytes, DirectionTable] = field(default_factory=dict)
 
     @cached_property
@@ -129,7 +129,7 @@ class FieldPasses:
         """About the number and the length of the passes with one axis, from a coarse field."""
         _, count, rounds = _PRICED
         try:
-            table = self._priced(cut)
+            table = self._price_table(cut)
         except UnsupportedGeometry:
             return Count(np.inf, np.inf)
         if not table.cut_everywhere:
@@ -137,7 +137,7 @@ class FieldPasses:
         found = find_field(table, 1 - FEEDS.index(feed), count, rounds)
         return Count(found.passes, found.length)
 
-    def _priced(self, cut: Cut) -> DirectionTable:
+    def _price_table(self, cut: Cut) -> DirectionTable:
         """The table of an axis by which it is priced, the same for both feeds: the last one is kept."""
         key = cut.axis.tobytes()
         if key not in self._last:
@@ -145,13 +145,13 @@ class FieldPasses:
             self._last[key] = tabulate_directions(self.estimator.face, cut, _PRICED[0])
         return self._last[key]
 
-    def chart(self, cut: Cut, feed: str) -> FieldChart:
+    def chart(self, cut: Cut, feed: str) -> LevelChart:
         """The face in the levels of the field of least length."""
         key = cut.axis.tobytes(), feed
         if key not in self._kept:
             cells, count, rounds = _MADE
             table = tabulate_directions(self.estimator.face, cut, cells)
-            found = FieldChart(self.estimator.face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
+            found = LevelChart(self.estimator.face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
             if len(self._kept) >= _KEPT:
                 self._kept.pop(next(iter(self._kept)))
             self._kept[key] = found
@@ -181,7 +181,7 @@ def pattern_name(chart: Chart) -> str:
     ----------
     chart : Chart
     """
-    if isinstance(chart, FieldChart):
+    if isinstance(chart, LevelChart):
         return FIELD
     return PLANES if isinstance(chart, PlaneChart) else ISO
 

@@ -16,6 +16,7 @@ from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
+from toolaxis.work import OutOfWork
 
 Array = NDArray[np.float64]
 
@@ -25,8 +26,8 @@ OBJECTIVES = ("length", "passes", "time")
 #: even by that measure; with 1, a narrow strip of this tool costs no more than the clean-up tool's, which comes with a
 #: seam, so that reachable area would be left.
 CLEAN_UP = 2.0
-#: Cells each way from which the ideal length of an axis is told.
-_IDEAL = 24
+#: Places each way from which the ideal length of an axis is told.
+_IDEAL = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +100,8 @@ class MachiningCost:
         return made
 
     def ideal_length(self, axis: Array) -> float:
-        """What passes with an axis tend to as the scallop height goes to zero, mm; 0 where it is not known.
+        """What passes with an axis tend to as the scallop height goes to zero, mm; 0 where it is not known, or the work
+        that is allowed does not suffice.
 
         Parameters
         ----------
@@ -107,7 +109,7 @@ class MachiningCost:
         """
         try:
             return tabulate_directions(self.face, self.cut(axis), _IDEAL).ideal_length
-        except UnsupportedGeometry:
+        except (OutOfWork, UnsupportedGeometry):
             return 0.0
 
     @property

@@ -168,8 +168,8 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     share[[0, -1]] = 0.5
     cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
     area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
-    return DirectionTable(face, uv, count, area, frame[2], _fitted(np.maximum(width, least), angles),
-                          _fitted(_tip_ways(face, cut, uv, angles), angles),
+    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),
+                          _fit(_tip_ways(face, cut, uv, angles), angles),
                           bool((widest[inside] > _NARROWEST * cut.scallop).all()))
 
 
@@ -253,7 +253,7 @@ def _degree_two(angles: Array) -> Array:
     return np.stack([np.ones(len(angles)), np.cos(2 * angles), np.sin(2 * angles)])
 
 
-def _fitted(values: Array, angles: Array) -> DirectionFunction:
+def _fit(values: Array, angles: Array) -> DirectionFunction:
     """Positive values (n, k) at even directions over half a turn, as a function of the direction."""
     square = values**2
     terms = _degree_two(angles)

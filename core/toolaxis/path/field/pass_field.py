@@ -92,7 +92,7 @@ class _Basis(NamedTuple):
         """Its rates with u and v, (nu nv,) each."""
         return ((self.by_u @ coefficients @ self.of_v.T).ravel(), (self.of_u @ coefficients @ self.by_v.T).ravel())
 
-    def pulled(self, by_u: Array, by_v: Array) -> Array:
+    def pull_back(self, by_u: Array, by_v: Array) -> Array:
         """What rates of a number with the rates of the field, (nu nv,) each, mean for the coefficients."""
         shape = len(self.of_u), len(self.of_v)
         return np.asarray(self.by_u.T @ by_u.reshape(shape) @ self.of_v + self.of_u.T @ by_v.reshape(shape) @ self.by_v)
@@ -158,11 +158,11 @@ class FieldProblem:
         first = rate_u / size
         return first, (rate_v - shear * first) / height
 
-    def _pulled(self, first: Array, second: Array) -> Array:
+    def _pull_back(self, first: Array, second: Array) -> Array:
         """What rates of a cost with the gradient's components mean for the coefficients."""
         size, shear, height = self.table.metric.T
         by_second = second / height
-        return self.basis.pulled(first / size - by_second * shear / size, by_second)
+        return self.basis.pull_back(first / size - by_second * shear / size, by_second)
 
     def narrowness(self, first: Array, second: Array) -> tuple[Array, Array, Array]:
         """Logarithm of spacing over strip width where the field grows by one, and its rates with the gradient."""
@@ -197,7 +197,7 @@ class FieldProblem:
         mean = share.sum()
         share /= mean
         value = np.log(total) + top + np.log(mean / self.whole) / power
-        slope = self._pulled(cell_1 / total + share * narrow_1, cell_2 / total + share * narrow_2)
+        slope = self._pull_back(cell_1 / total + share * narrow_1, cell_2 / total + share * narrow_2)
         steep, by_steep = self._steepness(coefficients)
         bend, by_bend = self._bend(coefficients)
         return float(value + steep + bend), (slope + by_steep + by_bend).ravel()
@@ -213,7 +213,7 @@ class FieldProblem:
         by_along = 2 * (weight * over * np.sign(along) - value * along) / square
         by_across = -2 * (weight * over * _STEEPEST + value * across) / square
         by_first, by_second = (by_along, by_across) if self.across == 1 else (by_across, by_along)
-        return float(value.sum()), self.around.pulled(by_first / self.sizes[0], by_second / self.sizes[1])
+        return float(value.sum()), self.around.pull_back(by_first / self.sizes[0], by_second / self.sizes[1])
 
     @cached_property
     def _differences(self) -> tuple[Array, Array]:
@@ -241,7 +241,7 @@ class FieldProblem:
             value, found = descend(partial(self.cost, power=power), found, rounds)
         return value, found.reshape(self.count, self.count)
 
-    def grown(self, coefficients: Array) -> Array:
+    def mix_growing(self, coefficients: Array) -> Array:
         """Coefficients mixed with those of a straight field, as little as makes the field grow across all passes."""
         ends = [np.linspace(knots[0], knots[-1], _KEPT) for knots in self.knots]
         lattice = _Basis.at(self.knots, (ends[0], ends[1]))
@@ -255,7 +255,7 @@ class FieldProblem:
         share = float((short / np.where(short > 0, even - rate, 1.0)).max())
         return np.asarray((1 - share) * coefficients + share * straight)
 
-    def made(self, coefficients: Array) -> PassField:
+    def build(self, coefficients: Array) -> PassField:
         """The field, scaled so that it grows by one from pass to pass, with what its passes come to.
 
         A pass lies as far from the one before as its narrowest place allows: over each of a number of levels the field
@@ -297,12 +297,14 @@ def find_field(table: DirectionTable, across: int, count: int = 14, rounds: int 
     `int |grad phi| dA max(1 / (w |grad phi|))` is made least, the maximum as a mean with a growing power. It depends on
     neither the scale of phi nor, but for the bend that is charged, on how phi is counted from level to level.
 
+    **Source**: passes as levels of a function, of least length, are those of [zou2020]; the cost is our own.
+
     **Properties**: 1. never below `DirectionTable.ideal_length`, but for the resolution of the cells.
     """
     problem = FieldProblem(table, count, across)
     tried = [problem.descend(problem.straight(slope), _FIRST_POWERS, rounds // 2) for slope in _STARTS]
     best = min(tried, key=lambda one: one[0])
-    return problem.made(problem.grown(problem.descend(best[1], _LAST_POWERS, rounds)[1]))
+    return problem.build(problem.mix_growing(problem.descend(best[1], _LAST_POWERS, rounds)[1]))
 
 
 def _middles(knots: Array) -> Array:

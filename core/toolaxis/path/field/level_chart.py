@@ -32,7 +32,7 @@ _STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class FieldChart:
+class LevelChart:
     """A face in its own parameter along passes and a field across them.
 
     Attributes
@@ -56,7 +56,7 @@ class FieldChart:
     def __post_init__(self) -> None:
         ends = self.field.surface.domain
         along, across = (np.linspace(*end, _LOOKED) for end in (ends[1 - self._across], ends[self._across]))
-        if not (self._rate(self._joined(np.repeat(along, _LOOKED), np.tile(across, _LOOKED))) > 0).all():
+        if not (self._rate(self._join(np.repeat(along, _LOOKED), np.tile(across, _LOOKED))) > 0).all():
             raise UnsupportedGeometry(f"passes in a field along {self.feed} turn back on face {self.face.label}: "
                                       "use iso-parametric passes, or divide the face")
 
@@ -69,7 +69,7 @@ class FieldChart:
         found = self.field.at(uv)
         return found.by_v if self.feed == "u" else found.by_u
 
-    def _joined(self, along: Array, across: Array) -> Array:
+    def _join(self, along: Array, across: Array) -> Array:
         """Parameters (n, 2) from the one along the passes and the other."""
         return np.column_stack([along, across] if self.feed == "u" else [across, along])
 
@@ -78,7 +78,7 @@ class FieldChart:
         """Loops that bound the face, (m, 2) rows of (along, step)."""
         u0, u1, v0, v1 = self.face.bounds
         size = np.array([u1 - u0, v1 - v0]) / _EDGE
-        return tuple(self.places(_divided(loop, size)) for loop in self.face.outline)
+        return tuple(self.places(_divide(loop, size)) for loop in self.face.outline)
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -111,7 +111,7 @@ class FieldChart:
         lines = np.linspace(*along, _LINES)
         beyond = 0.5 * (across[1] - across[0])
         places = np.linspace(across[0] - beyond, across[1] + beyond, _PLACES)
-        uv = self._joined(np.repeat(lines, _PLACES), np.tile(places, _LINES))
+        uv = self._join(np.repeat(lines, _PLACES), np.tile(places, _LINES))
         return lines, places, self.field.at(uv).value.reshape(_LINES, _PLACES)
 
     def uv(self, along: Array, step: Array) -> Array:
@@ -124,7 +124,7 @@ class FieldChart:
             across[own] = np.interp(step[own], values[line], places)
         todo, far = np.arange(len(along)), places[-1] - places[0]
         for _ in range(_ITERATIONS):
-            uv = self._joined(along[todo], across[todo])
+            uv = self._join(along[todo], across[todo])
             found = self.field.at(uv)
             rate = found.by_v if self.feed == "u" else found.by_u
             least = 1e-6 * (values[0, -1] - values[0, 0]) / far
@@ -133,7 +133,7 @@ class FieldChart:
             todo = todo[np.abs(move) > _EXACT * far]
             if not len(todo):
                 break
-        return self._joined(along, across)
+        return self._join(along, across)
 
     def places(self, uv: Array) -> Array:
         """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""
@@ -150,7 +150,7 @@ class FieldChart:
 
         The strip's border is found in the section normal to the feed, and the field is asked there.
         """
-        uv, feed = self._clipped(along, step)
+        uv, feed = self._clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
         here = self.field.at(uv).value
         sides = [np.abs(self.field.at(self._aside(uv, feed, way)).value - here) for way in (-width[:, 1], width[:, 0])]
@@ -163,7 +163,7 @@ class FieldChart:
         across = d.sv if self.feed == "u" else d.su
         return np.asarray(dot(across, left) > 0)
 
-    def _clipped(self, along: Array, step: Array) -> tuple[Array, Array]:
+    def _clip(self, along: Array, step: Array) -> tuple[Array, Array]:
         """Parameters drawn back to the surface's own domain, and feeds along the levels there."""
         low, high = np.array(self.face.surface.domain).T
         uv = np.clip(self.uv(along, step), low, high)
@@ -192,7 +192,7 @@ class FieldChart:
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
-        uv, feed = self._clipped(along, step)
+        uv, feed = self._clip(along, step)
         forms = contact_forms(self.face, uv, feed, False)
         half = np.empty((1, len(forms)))
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
@@ -204,7 +204,7 @@ class FieldChart:
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
-        uv, feed = self._clipped(along, step)
+        uv, feed = self._clip(along, step)
         across = np.cross(self.face.normal(uv), feed)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, across, cut.allowance)
         return np.asarray(width / self._speed(uv)[:, None])
@@ -217,7 +217,7 @@ class FieldChart:
         return np.asarray(np.linalg.norm(way, axis=1) / np.abs(rate))
 
 
-def _divided(loop: Array, size: Array) -> Array:
+def _divide(loop: Array, size: Array) -> Array:
     """Corners of a closed loop, and even points between them, no farther apart than a size (2,) each way."""
     ahead = np.roll(loop, -1, axis=0)
     parts = np.maximum(np.ceil((np.abs(ahead - loop) / size).max(axis=1)), 1).astype(int)
