@@ -103,7 +103,9 @@ def test_on_a_plane_passes_are_straight_and_as_long_as_the_ideal() -> None:
     table = tabulate_directions(flat(60.0, 40.0), Cut(BALL, LEAN, H), 16)
     for across in (0, 1):
         found = find_field(table, across)
-        assert found.length == pytest.approx(table.ideal_length, rel=0.01)
+        width = 2 * np.sqrt(2 * BALL.radius * H - H**2)
+        # Both ends of each pass run out, by half a width at least.
+        assert table.ideal_length + 0.9 * width * found.passes < found.length < 1.1 * table.ideal_length
         gradient = FieldProblem(table, 14, across).gradient(found.surface.control[..., 2])
         assert np.ptp(np.arctan2(*gradient)) < 0.1
 

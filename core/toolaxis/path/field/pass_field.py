@@ -28,6 +28,8 @@ _LEAST_RATE, _KEPT = 0.02, 96
 _BEND = 1e-3
 #: Levels at which it is asked what the narrowest place of a pass is.
 _LEVELS = 24
+#: Least sine of the angle between a pass and the border where it ends.
+_ASLANT = 0.2
 #: As many bounds of distances as take as long as the cost of a field at a place.
 _PLACE = 3
 
@@ -49,7 +51,7 @@ class PassField:
     surface : NurbsSurface
         The field stands in z; its domain is the range of the face, beyond which it goes on straight ahead.
     length : float
-        About how long the passes are inside the face, mm of the tip's motion.
+        About how long the passes are with their run-outs, mm of the tip's motion.
     passes : float
         About how many there are.
     """
@@ -255,6 +257,32 @@ class FieldProblem:
         share = float((short / np.where(short > 0, even - rate, 1.0)).max())
         return np.asarray((1 - share) * coefficients + share * straight)
 
+    def _run_outs(self, coefficients: Array) -> Array:
+        """How far the tip goes on past the ends of passes one apart in the field, mm, at the places where they end.
+
+        A pass goes on for half the width of a strip across it, or, where it ends aslant, until its strip is cut up to
+        the border.  Ends at holes and trimmed borders are reckoned as on the border of the range.
+        """
+        count, (u0, u1, v0, v1) = self.table.count, self.table.face.bounds
+        first, second = self.gradient(coefficients)
+        square = first**2 + second**2
+        double = _double(first, second, square)
+        ahead = 0.5 * np.exp(self.table.width.at((-double[0], -double[1]))[0])
+        aside = 0.5 * np.exp(self.table.width.at(double)[0])
+        tip = np.exp(self.table.tip.at(double)[0])
+        rates = self.basis.rates(coefficients)
+        total = np.zeros((count, count))
+        along_v = self.table.metric[:, 1:] / np.hypot(*self.table.metric[:, 1:].T)[:, None]
+        along_u = np.broadcast_to(np.array([1.0, 0.0]), along_v.shape)
+        for along, rate, span, ends in ((along_u, rates[0], u1 - u0, np.s_[:, [0, -1]]),
+                                        (along_v, rates[1], v1 - v0, np.s_[[0, -1], :])):
+            across = np.abs(first * along[:, 1] - second * along[:, 0]) / np.sqrt(square)
+            sine = np.sqrt(np.maximum(1 - across**2, _ASLANT**2))
+            way = np.maximum(ahead, aside * across / sine) * tip
+            number = np.abs(rate) * span / (count - 1)
+            total[ends] += (number * way).reshape(count, count)[ends]
+        return total.ravel()
+
     def build(self, coefficients: Array) -> PassField:
         """The field, scaled so that it grows by one from pass to pass, with what its passes come to.
 
@@ -262,7 +290,7 @@ class FieldProblem:
         is what the narrowest place there says.
         """
         first, second = self.gradient(coefficients)
-        cell = self.length(first, second)[0]
+        cell = self.length(first, second)[0] + self._run_outs(coefficients)
         narrow = np.exp(self.narrowness(first, second)[0])
         value = self.basis.values(coefficients)
         inside = self.table.area > 0
