@@ -167,9 +167,8 @@ def test_passes_in_a_field_leave_nothing_and_come_to_what_the_field_says(seed: i
         assert placed.used == pytest.approx(chart.field.passes, rel=0.1)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_plans_in_a_field_pass_the_judge_and_the_shorter_is_taken(seed: int, tmp_path: Path) -> None:
-    part = ta.Part.from_faces([wavy(seed + 4, height=4.0)])
+def test_plans_in_a_field_pass_the_judge_and_the_shorter_is_taken(tmp_path: Path) -> None:
+    part = ta.Part.from_faces([wavy(5, height=4.0)])
     made = {passes: ta.plan(part, TORUS, 0.05, passes=passes) for passes in (ISO, FIELD, AUTO)}
     found = {passes: plan.operations[0].orientation for passes, plan in made.items()}
     assert all(plan.outcome == "complete" and ta.verify(plan).passed for plan in made.values())

@@ -3,6 +3,7 @@
 Each pattern prices axes, coarsely for many of them and well for one, and gives the chart by which its passes are laid.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol, TypeAlias
@@ -158,8 +159,19 @@ class FieldPasses:
         return self._kept[key]
 
 
-def patterns_of(estimator: Estimator, passes: str) -> tuple[PassPattern, ...]:
+def pattern_names(passes: str) -> tuple[str, ...]:
     """The patterns among which a plan's choice of passes leaves the shortest to be taken.
+
+    Parameters
+    ----------
+    passes : str
+        One of `toolaxis.plan.choices.PASSES`.
+    """
+    return (ISO, FIELD) if passes == AUTO else (passes,)
+
+
+def patterns_of(estimator: Estimator, passes: str) -> tuple[PassPattern, ...]:
+    """The same made ready for a face.
 
     Parameters
     ----------
@@ -168,10 +180,8 @@ def patterns_of(estimator: Estimator, passes: str) -> tuple[PassPattern, ...]:
     passes : str
         One of `toolaxis.plan.choices.PASSES`.
     """
-    known: dict[str, tuple[PassPattern, ...]] = {
-        ISO: (IsoPasses(estimator),), PLANES: (PlanePasses(estimator),), FIELD: (FieldPasses(estimator),),
-        AUTO: (IsoPasses(estimator), FieldPasses(estimator))}
-    return known[passes]
+    known: dict[str, Callable[[Estimator], PassPattern]] = {ISO: IsoPasses, PLANES: PlanePasses, FIELD: FieldPasses}
+    return tuple(known[name](estimator) for name in pattern_names(passes))
 
 
 def pattern_name(chart: Chart) -> str:

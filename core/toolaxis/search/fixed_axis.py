@@ -22,7 +22,7 @@ from toolaxis.path.cl_points import trace
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout, lay_out, pass_length
-from toolaxis.path.pass_pattern import pattern_name
+from toolaxis.path.pass_pattern import pattern_name, pattern_names
 from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import left_over, may_stay
 from toolaxis.plan.choices import FEEDS, ISO
@@ -347,7 +347,7 @@ def find_axis(job: FaceProblem, method: str = "sphere",
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others.
     """
-    names = [pattern.name for pattern in job.worth.patterns]
+    names = pattern_names(job.worth.passes)
     found = _find_axis(replace(job, worth=replace(job.worth, passes=names[0])), method, starts)
     for name in names[1:]:
         if found[0].outcome == "cancelled":

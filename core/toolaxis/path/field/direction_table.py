@@ -167,7 +167,10 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     share = np.ones(count)
     share[[0, -1]] = 0.5
     cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
+    if not inside.any():  # a sliver between the places
+        inside[:] = True
     area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
+    area *= face.area / area.sum()
     return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),
                           _fit(_tip_ways(face, cut, uv, angles), angles),
                           bool((widest[inside] > _NARROWEST * cut.scallop).all()))
