@@ -31,9 +31,12 @@ def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: boo
     """
     if len(end) == 0:
         return np.zeros(0)
-    a0, a1, _, _ = chart.bounds
-    over = chart.strip_places(cut, end, step, np.linspace(-1.0, 1.0, _ACROSS))
-    target = _targets(chart, cut, over.reshape(-1, 2)).reshape(len(end), _ACROSS, 1, 3)
+    a0, a1, s0, s1 = chart.bounds
+    halves = chart.half_widths(cut, end, step)
+    share = np.linspace(-1.0, 1.0, _ACROSS)
+    wide = np.where(share < 0, halves[:, :1], halves[:, 1:])
+    places = np.clip(step[:, None] + np.nan_to_num(wide, posinf=0.0) * share, s0, s1)
+    target = _targets(chart, cut, np.repeat(end, _ACROSS), places.ravel()).reshape(len(end), _ACROSS, 1, 3)
     span = _span(chart, cut, end, step, a1 - a0) * (1.0 if forward else -1.0)
     tried = end[:, None] + span[:, None] * np.linspace(-1.0, 1.0, _TRIED)
     steps = np.repeat(step, _TRIED)
@@ -43,8 +46,9 @@ def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: boo
     return _first_cut(off, cut.scallop) * np.abs(span)
 
 
-def _targets(chart: Chart, cut: Cut, uv: Array) -> Array:
+def _targets(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
     """Points at scallop height over the face, (n, 3)."""
+    uv = chart.uv(along, step)
     return np.asarray(chart.face.evaluate(uv).point + (cut.scallop + cut.allowance) * chart.face.normal(uv))
 
 

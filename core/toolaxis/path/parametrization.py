@@ -137,9 +137,6 @@ class Chart(Protocol):
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
 
-    def strip_places(self, cut: Cut, along: Array, step: Array, share: Array) -> Array:
-        """Parameters (n, k, 2) of the face at shares (k,) of strips of contacts, from -1 at the lower border to 1."""
-
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
 
@@ -250,10 +247,6 @@ class IsoChart:
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
         return np.asarray(2 * half[0] * lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis))
 
-    def strip_places(self, cut: Cut, along: Array, step: Array, share: Array) -> Array:
-        """Parameters (n, k, 2) of the face at shares (k,) of strips of contacts, from -1 at the lower border to 1."""
-        return places_across(self, cut, along, step, share)
-
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2).
 
@@ -262,24 +255,6 @@ class IsoChart:
         across = "v" if self.feed == "u" else "u"
         return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, across,
                                       cut.allowance))
-
-
-def places_across(chart: Chart, cut: Cut, along: Array, step: Array, share: Array) -> Array:
-    """Parameters (n, k, 2) of the face at shares of strips along lines across the passes, within the range of the face.
-
-    Parameters
-    ----------
-    chart : Chart
-    cut : Cut
-    along, step : (n,) array
-    share : (k,) array
-        From -1 at the lower border of a strip to 1.
-    """
-    _, _, s0, s1 = chart.bounds
-    halves = chart.half_widths(cut, along, step)
-    wide = np.where(share < 0, halves[:, :1], halves[:, 1:])
-    places = np.clip(step[:, None] + np.nan_to_num(wide, posinf=0.0) * share, s0, s1)
-    return chart.uv(np.repeat(along, len(share)), places.ravel()).reshape(len(along), len(share), 2)
 
 
 def extents(chart: Chart) -> tuple[float, float]:

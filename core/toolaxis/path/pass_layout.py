@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.path.field.level_chart import LevelChart
 from toolaxis.path.overrun import overrun_length
 from toolaxis.path.parametrization import Chart, Cut, columns, extents, tip_points
 from toolaxis.path.step_over import PITCH, Spacing, lines, space
@@ -24,8 +23,6 @@ _RUN_OUT = 1.05
 #: where that makes fewer; how exactly the ends are found, in radii of the cutter, and as a share of the range.
 _REACH_SAMPLES = 192
 _ENDS, _LEAST_ENDS = 2e-4, 2e-7
-#: Places across a strip and along a pass at which it is asked whether the face is there, and halvings between them.
-_ABEAM, _DRAWN, _HALVED = 9, 97, 8
 #: Points of a pass from which its length is told.
 _ALONG = 65
 
@@ -85,10 +82,7 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
         column = _reachable(chart, cut, across.along, column, reach)
     material = table(column, len(across.along))
     spacing = space(chart, cut, across, material, progress)
-    found = _stretches_on_material(chart, spacing, material)
-    if isinstance(chart, LevelChart):
-        found = _draw_back(chart, cut, spacing.steps, found)
-    found = _extend_pieces(chart, cut, spacing.steps, found)
+    found = _extend_pieces(chart, cut, spacing.steps, _stretches_on_material(chart, spacing, material))
     if reach is not None:
         found = _cut_out(chart, cut, spacing.steps, found, reach)
     pieces = np.column_stack([found.low, found.high, spacing.steps[found.line]])
@@ -120,37 +114,6 @@ def _stretches_on_material(chart: Chart, spacing: Spacing, material: Array) -> I
                            np.column_stack([last, np.full(len(last), along[-1])])])
     ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
     return Intervals(ends[::2, 0].astype(np.intp), ends[::2, 1], ends[1::2, 1])
-
-
-def _draw_back(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
-    """Stretches of passes aslant to the lines across them, drawn back until strips abeam of their ends hold the face.
-
-    On a line across, what lies at the level of a strip is cut where it is abeam of the pass, not where the pass crosses
-    that line.
-    """
-    if not len(found.line):
-        return found
-    share = np.linspace(-1.0, 1.0, _ABEAM)
-
-    def holds(line: NDArray[np.intp], along: Array) -> Bools:
-        places = chart.strip_places(cut, along, steps[line], share).reshape(-1, 2)
-        return np.asarray(chart.face.contains(places).reshape(-1, _ABEAM).any(axis=1))
-
-    count = len(found.line)
-    along = np.linspace(found.low, found.high, _DRAWN, axis=1)
-    held = holds(np.repeat(found.line, _DRAWN), along.ravel()).reshape(count, _DRAWN)
-    some = held.any(axis=1)
-    line, along, held = found.line[some], along[some], held[some]
-    rows = np.arange(len(line))
-    ends = []
-    for first, away in ((held.argmax(axis=1), -1), (_DRAWN - 1 - held[:, ::-1].argmax(axis=1), 1)):
-        good, bad = along[rows, first], along[rows, np.clip(first + away, 0, _DRAWN - 1)]
-        for _ in range(_HALVED):
-            middle = (good + bad) / 2
-            still = holds(line, middle)
-            good, bad = np.where(still, middle, good), np.where(still, bad, middle)
-        ends.append(good)
-    return Intervals(line, ends[0], ends[1])
 
 
 def _extend_pieces(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:

@@ -14,7 +14,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.links import Linking
-from toolaxis.path.parametrization import Cut, places_across
+from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure
 from toolaxis.path.pass_layout import Layout, Reach, lay_out
 from toolaxis.path.width_correction import lean_ratios
@@ -233,10 +233,6 @@ class PlaneChart:
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
         ratio = lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis)
         return np.asarray(2 * half[0] * ratio * (forms[:, 3:6] @ self.frame[1]))
-
-    def strip_places(self, cut: Cut, along: Array, step: Array, share: Array) -> Array:
-        """Parameters (n, k, 2) of the face at shares (k,) of strips of contacts, from -1 at the lower border to 1."""
-        return places_across(self, cut, along, step, share)
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""

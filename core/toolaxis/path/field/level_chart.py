@@ -157,22 +157,6 @@ class LevelChart:
         left_is_higher = self._left_is_higher(uv, feed)
         return np.where(left_is_higher[:, None], np.column_stack(sides), np.column_stack(sides[::-1]))
 
-    def strip_places(self, cut: Cut, along: Array, step: Array, share: Array) -> Array:
-        """Parameters (n, k, 2) at shares (k,) of the strips of contacts, from -1 at the lower border to 1.
-
-        They lie abeam of the contacts, in the sections normal to the feed.  A place off the face need not be cut: the
-        contact stands for it.
-        """
-        uv, feed = self._clip(along, step)
-        width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
-        side = np.where(self._left_is_higher(uv, feed)[:, None], share, -share)  # the left of the feed above zero
-        way = np.where(side > 0, width[:, :1], width[:, 1:]) * side
-        k = len(share)
-        found = self._aside(np.repeat(uv, k, axis=0), np.repeat(feed, k, axis=0), way.ravel())
-        off = ~self.face.contains(found)
-        found[off] = np.repeat(self.uv(along, step), k, axis=0)[off]
-        return found.reshape(len(uv), k, 2)
-
     def _left_is_higher(self, uv: Array, feed: Array) -> Bools:
         """Whether the field grows to the left of the feed."""
         d, left = self.face.evaluate(uv), np.cross(self.face.normal(uv), feed)
