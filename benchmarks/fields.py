@@ -115,6 +115,8 @@ def compare(jobs: Sequence[FaceJob]) -> None:
               f"{'pass' if iso.passed else 'FAIL'} {'pass' if field.passed else 'FAIL'} | "
               f"{iso.taken:5.1f} {field.taken:6.1f}", flush=True)
     both = np.array([[iso.inside, field.inside, iso.seconds, field.seconds] for iso, field in found])
+    best = np.minimum(both[:, 0], both[:, 1])
+    print(f"the shorter of both over iso: geometric mean {_mean(best / both[:, 0]):.3f}")
     gaps = [field.inside / field.ideal - 1 for _, field in found if field.ideal and field.strips >= _STRIPS]
     print(f"{len(found)} faces: geometric mean of field over iso, length {_mean(both[:, 1] / both[:, 0]):.3f}, time "
           f"{_mean(both[:, 3] / both[:, 2]):.3f}; longer than iso: {int((both[:, 1] > both[:, 0]).sum())}, slower: "

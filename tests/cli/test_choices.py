@@ -9,7 +9,7 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.cli.main import main
-from toolaxis.job.files.contacts_from_cl import with_contacts
+from toolaxis.job.files.contacts_from_cl import widths_along, with_contacts
 from toolaxis.job.files.plan_folder import read_plan
 
 Capture = pytest.CaptureFixture[str]
@@ -51,8 +51,27 @@ def test_passes_along_planes_are_planned_and_pass(sheet: Path, tmp_path: Path, c
     assert len(sheets) == 1 and "| passes | along parallel planes that contain the tool axis |" in sheets[0]
 
 
+def test_passes_in_a_field_are_planned_and_pass(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
+    """Tables tell how far the cuts are from the ideal length, and widths are found again from the CL file alone."""
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--passes=field", "--out", str(out)]) == 0
+    told = capsys.readouterr().out
+    found = _document(out)["operations"][0]["orientation"]
+    assert "in a field" in told and f"ideal: {found['ideal']:.1f} mm with these axes" in told
+    assert found["pattern"] == "field" and 0 < found["ideal"] < found["length"]
+    plan = read_plan(out)
+    widths = np.concatenate([width for _, width in widths_along(plan, plan.operations[0])])
+    assert (widths > 0).all()
+    assert main(["verify", str(out), "--no-pictures"]) == 0
+    assert "in a field" in capsys.readouterr().out
+    assert main(["post", str(out), "--dialect=haas-g254", MACHINE]) == 0
+    sheets = [path.read_text() for path in out.rglob("*.md")]
+    assert "| passes | along the levels of a field, as far apart as their strips are wide |" in sheets[0]
+
+
 @pytest.mark.parametrize(("words", "said"), [
     (("--passes=planes", "--strategy=sturz", MACHINE), "passes 'planes' need a fixed axis and strategy 'sturz' moves"),
+    (("--passes=auto", "--strategy=sturz", MACHINE), "passes 'auto' need a fixed axis and strategy 'sturz' moves"),
     (("--passes=spiral",), "invalid choice: 'spiral'"),
     (("--method=jerk",), "needs a machine, because it turns the part"),
     (("--method=jerk", MACHINE, "--orientations=2"), "leave out one of the two"),

@@ -348,6 +348,8 @@ def find_axis(job: FaceProblem, method: str = "sphere",
         Axes that are worth a look before others.
     """
     names = pattern_names(job.worth.passes)
+    if len(names) == 1:
+        return _find_axis(job, method, starts)
     found = _find_axis(replace(job, worth=replace(job.worth, passes=names[0])), method, starts)
     for name in names[1:]:
         if found[0].outcome == "cancelled":
