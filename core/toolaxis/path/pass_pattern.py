@@ -32,7 +32,7 @@ PassChart: TypeAlias = IsoChart | PlaneChart | LevelChart
 #: Places each way whose feed directions make up the mean one.
 _GRID = 16
 #: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
-_PRICED, _MADE = (16, 8, 25), (28, 14, 60)
+_PRICED, _MADE = (13, 8, 25), (26, 14, 60)
 #: Fields that are remembered.
 _KEPT = 64
 

@@ -19,7 +19,7 @@ Bools = NDArray[np.bool_]
 
 #: Directions in half a turn at which widths are taken, and the highest harmonic of twice the angle that is kept of what
 #: the form of second degree does not tell.
-_DIRECTIONS, _HARMONICS = 16, 4
+_DIRECTIONS, _HARMONICS = 12, 4
 #: The least value of a form, as a share of the square of the least width that was found.
 _POSITIVE = 0.5
 #: Strips narrower than this share of the widest at a place, or of the scallop height, count as so wide: series of
