@@ -13,6 +13,7 @@ from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
+from toolaxis.path.free_chart import FreeChart
 from toolaxis.path.links import Linking
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure
@@ -27,7 +28,6 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 _GRID = 64
-_EDGE = 256
 _ITERATIONS = 25
 #: Places each way that are found again along the axis, between those of the grid; from what distance on another place
 #: was found, as a share of the face's diagonal.
@@ -41,7 +41,7 @@ _RULE = ("parallel planes need a face that is seen along the axis everywhere: us
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneChart:
+class PlaneChart(FreeChart):
     """A face seen along the tool axis: along = S . l, step = S . m, both mm, with l, m, T right-handed.
 
     Attributes
@@ -60,7 +60,6 @@ class PlaneChart:
         When the face is not seen from its outer side everywhere along the axis.
     """
 
-    face: Face
     axis: Array
     direction: Array
 
@@ -98,39 +97,10 @@ class PlaneChart:
         """Rows l, m: the directions of along and step."""
         return np.stack([self.direction, np.cross(self.axis, self.direction)])
 
-    @cached_property
-    def loops(self) -> tuple[Array, ...]:
-        """Loops that bound the face, (m, 2) rows of (along, step)."""
-        u0, u1, v0, v1 = self.face.bounds
-        size = np.array([u1 - u0, v1 - v0]) / _EDGE
-        found = []
-        for loop in self.face.outline:
-            parts = np.maximum(np.ceil((np.abs(np.roll(loop, -1, axis=0) - loop) / size).max(axis=1)), 1).astype(int)
-            source = np.repeat(np.arange(len(loop)), parts)
-            share = (np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[source]
-            uv = loop[source] + share[:, None] * (np.roll(loop, -1, axis=0) - loop)[source]
-            found.append(self.face.evaluate(uv).point @ self.frame.T)
-        return tuple(found)
-
-    @cached_property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Range of the face: along0, along1, step0, step1, mm."""
-        low, high = self.loops[0].min(axis=0), self.loops[0].max(axis=0)
-        return float(low[0]), float(high[0]), float(low[1]), float(high[1])
-
     @property
     def breaks(self) -> tuple[Array, Array]:
         """None: knots do not run along the planes."""
         return np.empty(0), np.empty(0)
-
-    @property
-    def rectangular(self) -> bool:
-        """Whether the face fills its bounds."""
-        return False
-
-    def closed(self, step: Array) -> Bools:
-        """Whether passes end where they began: never."""
-        return np.zeros(len(step), dtype=bool)
 
     @cached_property
     def _grid(self) -> tuple[Array, cKDTree]:
@@ -205,20 +175,13 @@ class PlaneChart:
         """Unit feed directions of passes at parameters, (n, 3): along the planes, in the face."""
         return np.asarray(unit(np.cross(self.frame[1], self.face.normal(uv))))
 
-    def _clipped(self, along: Array, step: Array) -> tuple[Array, Array]:
-        """Parameters drawn back to the surface's own domain, and feeds along the planes there."""
-        uv = self.uv(along, step)
-        low, high = np.array(self.face.surface.domain).T
-        uv = np.clip(uv, low, high)
-        return np.asarray(uv), self.feed_at(uv)
-
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end.
 
         The strip's border is found in the section normal to the feed and then seen along the axis, with the bend of
         the section to the second order.
         """
-        uv, feed = self._clipped(along, step)
+        uv, feed = self.clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
         forms = contact_forms(self.face, uv, feed, False)
         lean, bend = forms[:, 3:6] @ self.frame[1], 0.5 * forms[:, 11] * (forms[:, 6:9] @ self.frame[1])
@@ -227,7 +190,7 @@ class PlaneChart:
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
-        uv, feed = self._clipped(along, step)
+        uv, feed = self.clip(along, step)
         forms = contact_forms(self.face, uv, feed, False)
         half = np.empty((1, len(forms)))
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
@@ -236,7 +199,7 @@ class PlaneChart:
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
-        uv, feed = self._clipped(along, step)
+        uv, feed = self.clip(along, step)
         across = np.cross(self.face.normal(uv), feed)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, across, cut.allowance)
         return np.asarray(width * (feed @ self.frame[0])[:, None])

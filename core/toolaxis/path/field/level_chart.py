@@ -11,15 +11,13 @@ from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.vectors import dot, unit
 from toolaxis.path.field.pass_field import PassField
+from toolaxis.path.free_chart import FreeChart
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.width_correction import lean_ratios
-from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: Parts into which the longest side of a loop would be divided, were it as long as the range.
-_EDGE = 256
 #: Lines and places on each from which levels are looked for; Newton steps, and what is exact enough, as a share of the
 #: range.
 _LINES, _PLACES, _ITERATIONS, _EXACT = 65, 65, 40, 1e-13
@@ -32,7 +30,7 @@ _STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class LevelChart:
+class LevelChart(FreeChart):
     """A face in its own parameter along passes and a field across them.
 
     Attributes
@@ -49,7 +47,6 @@ class LevelChart:
         When it does not.
     """
 
-    face: Face
     feed: str
     field: PassField
 
@@ -73,34 +70,12 @@ class LevelChart:
         """Parameters (n, 2) from the one along the passes and the other."""
         return np.column_stack([along, across] if self.feed == "u" else [across, along])
 
-    @cached_property
-    def loops(self) -> tuple[Array, ...]:
-        """Loops that bound the face, (m, 2) rows of (along, step)."""
-        u0, u1, v0, v1 = self.face.bounds
-        size = np.array([u1 - u0, v1 - v0]) / _EDGE
-        return tuple(self.places(_divide(loop, size)) for loop in self.face.outline)
-
-    @cached_property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Range of the face: along0, along1, step0, step1."""
-        low, high = self.loops[0].min(axis=0), self.loops[0].max(axis=0)
-        return float(low[0]), float(high[0]), float(low[1]), float(high[1])
-
     @property
     def breaks(self) -> tuple[Array, Array]:
         """Inner knots along the passes; those across do not run along them."""
         a0, a1, _, _ = self.bounds
         knots = np.unique(self.face.surface.knots_u if self.feed == "u" else self.face.surface.knots_v)
         return knots[(knots > a0) & (knots < a1)], np.empty(0)
-
-    @property
-    def rectangular(self) -> bool:
-        """Whether the face fills its bounds."""
-        return False
-
-    def closed(self, step: Array) -> Bools:
-        """Whether passes end where they began: never."""
-        return np.zeros(len(step), dtype=bool)
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
@@ -150,7 +125,7 @@ class LevelChart:
 
         The strip's border is found in the section normal to the feed, and the field is asked there.
         """
-        uv, feed = self._clip(along, step)
+        uv, feed = self.clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
         here = self.field.at(uv).value
         sides = [np.abs(self.field.at(self._aside(uv, feed, way)).value - here) for way in (-width[:, 1], width[:, 0])]
@@ -162,12 +137,6 @@ class LevelChart:
         d, left = self.face.evaluate(uv), np.cross(self.face.normal(uv), feed)
         across = d.sv if self.feed == "u" else d.su
         return np.asarray(dot(across, left) > 0)
-
-    def _clip(self, along: Array, step: Array) -> tuple[Array, Array]:
-        """Parameters drawn back to the surface's own domain, and feeds along the levels there."""
-        low, high = np.array(self.face.surface.domain).T
-        uv = np.clip(self.uv(along, step), low, high)
-        return np.asarray(uv), self.feed_at(uv)
 
     def _aside(self, uv: Array, feed: Array, way: Array) -> Array:
         """Parameters at arc lengths (n,) to the left of contacts in the section normal to the feed, by Newton's method.
@@ -192,7 +161,7 @@ class LevelChart:
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
-        uv, feed = self._clip(along, step)
+        uv, feed = self.clip(along, step)
         forms = contact_forms(self.face, uv, feed, False)
         half = np.empty((1, len(forms)))
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
@@ -204,7 +173,7 @@ class LevelChart:
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""
-        uv, feed = self._clip(along, step)
+        uv, feed = self.clip(along, step)
         across = np.cross(self.face.normal(uv), feed)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, across, cut.allowance)
         return np.asarray(width / self._speed(uv)[:, None])
@@ -212,15 +181,5 @@ class LevelChart:
     def _speed(self, uv: Array) -> Array:
         """mm along a pass per unit of the along parameter, (n,)."""
         d, found = self.face.evaluate(uv), self.field.at(uv)
-        rate = found.by_v if self.feed == "u" else found.by_u
         way = d.su * found.by_v[:, None] - d.sv * found.by_u[:, None]
-        return np.asarray(np.linalg.norm(way, axis=1) / np.abs(rate))
-
-
-def _divide(loop: Array, size: Array) -> Array:
-    """Corners of a closed loop, and even points between them, no farther apart than a size (2,) each way."""
-    ahead = np.roll(loop, -1, axis=0)
-    parts = np.maximum(np.ceil((np.abs(ahead - loop) / size).max(axis=1)), 1).astype(int)
-    source = np.repeat(np.arange(len(loop)), parts)
-    share = (np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[source]
-    return np.asarray(loop[source] + share[:, None] * (ahead - loop)[source])
+        return np.asarray(np.linalg.norm(way, axis=1) / np.abs(self._rate(uv)))
