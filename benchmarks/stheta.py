@@ -23,7 +23,7 @@ from toolaxis.feed.moving_axis_time import five_axis_time
 from toolaxis.machine.library import load_machine
 from toolaxis.numeric.corner_rounding import corner
 from toolaxis.search.fixed_axis import task
-from toolaxis.shape.joining.smooth_skins import join
+from toolaxis.skin.join import join
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.layers import along_blade
 from toolaxis.strategies.blade.plan import blade

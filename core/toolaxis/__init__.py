@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from toolaxis.plan.sub_surface import SubSurface as SubSurface
     from toolaxis.search.fixed_axis import best_axis as best_axis
     from toolaxis.shape.face import Face as Face
-    from toolaxis.shape.joining.smooth_skins import join as join
     from toolaxis.shape.part import Part as Part
+    from toolaxis.skin.join import join as join
     from toolaxis.tolerances import Tolerance as Tolerance
     from toolaxis.tools.tool import Tool as Tool
 
@@ -52,7 +52,7 @@ _HOME = {
     "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.partition",
     "plan": "job.planning.pipeline", "verify": "job.output.verify", "ToolAxisError": "errors", "InvalidInput": "errors",
     "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
-    "load_machine": "cad.machines", "Mounting": "machine.setup", "join": "shape.joining.smooth_skins",
+    "load_machine": "cad.machines", "Mounting": "machine.setup", "join": "skin.join",
     "batch": "batch.run", "read_cl": "job.files.read_cl", "SubSurface": "plan.sub_surface",
     "export": "job.output.export", "to_trimesh": "job.output.export",
 }

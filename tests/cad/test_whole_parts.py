@@ -12,8 +12,9 @@ import pytest
 from toolaxis.cad import load
 from toolaxis.cad.step.worker import read_shape
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.smooth_skins import join, skins
 from toolaxis.shape.nearest import nearest
+from toolaxis.skin.find import find_skins
+from toolaxis.skin.join import join
 from toolaxis.tools.tool import Tool
 
 pytest.importorskip("OCP")
@@ -113,7 +114,7 @@ def test_the_waves_are_as_large_and_steep_as_the_original(parts):
 
 def test_the_patches_of_the_skin_join_to_the_surface_that_they_were_cut_from(parts):
     part, known = parts["skin"], facts("skin")
-    (numbers,) = skins(part).joined
+    (numbers,) = find_skins(part).joined
     assert len(numbers) == len(part.sculptured) == 6
     face = join(part, numbers).face(numbers[0])
     assert face.tolerance < 1e-6 and len(face.trims) == 2 and face.kinks == ((), ())

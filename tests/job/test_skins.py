@@ -135,8 +135,9 @@ def test_lists_with_joined_faces() -> None:
     for wrong in ("3+", "3+4-5", "1-2+3", "+", "3++4"):
         with pytest.raises(InvalidInput, match="is not understood at"):
             parse_faces(wrong)
-    with pytest.raises(UnsupportedGeometry, match="3 patches do not lie in full rows"):
-        ta.plan(part, TOOL, 0.1, faces=[(1, 2, 3)])
+    apart = ta.load([sheet(), sheet(away=40.0)])
+    with pytest.raises(UnsupportedGeometry, match="face 2 does not continue any of the others smoothly"):
+        ta.plan(apart, TOOL, 0.1, faces=[(1, 2)])
     with pytest.raises(InvalidInput, match=r"face 2 is joined to face 1\+2"):
         ta.plan(part, TOOL, 0.1, faces="1+2,2")
 

@@ -8,7 +8,7 @@ from scipy.ndimage import label
 
 import toolaxis as ta
 from toolaxis.search.fixed_axis import task
-from toolaxis.shape.joining.smooth_skins import join
+from toolaxis.skin.join import join
 from toolaxis.strategies.blade.plan import BladeSearch, blade
 
 #: Half a step of angle, rad, and what points may lie inside the tool, mm.

@@ -7,7 +7,8 @@ import pytest
 
 from toolaxis.feasibility import normal_cells
 from toolaxis.feasibility.normal_cells import NormalCells
-from toolaxis.feasibility.normal_cone import NormalField, smallest_cap
+from toolaxis.feasibility.normal_cone import NormalField
+from toolaxis.numeric.smallest_cap import smallest_cap
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.shape.analytic import SphericalSurface
 from toolaxis.shape.face import Face

@@ -15,10 +15,12 @@ from toolaxis.shape.analytic import CylindricalSurface, SphericalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import join_patches, joins
 from toolaxis.shape.joining.shared_boundary import meetings
-from toolaxis.shape.joining.smooth_skins import join, own_pieces, skins
 from toolaxis.shape.kinks import kinks_of, split_at_kinks, with_kinks
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
+from toolaxis.skin.find import find_skins
+from toolaxis.skin.join import join
+from toolaxis.skin.pieces import own_pieces
 
 PARTS = Path(__file__).parents[3] / "shared" / "parts"
 SHARES = np.random.default_rng(7).random((400, 2))
@@ -130,7 +132,7 @@ def test_joined_borders_that_differ_move_by_no_more_than_is_told() -> None:
     whole = join(part, (1, 2)).faces[0]
     assert on_members(whole) <= whole.tolerance <= 1e-4 and on_members(whole) > 2e-5
     with pytest.raises(UnsupportedGeometry, match=r"faces 1 and 2 .* only within 0\.000\d+ mm, 0\.0001 mm are needed"):
-        join(part, (1, 2), tolerance=1e-4)
+        join_patches(part.faces, meetings(part, (1, 2)), tolerance=1e-4)
 
 
 def test_the_bound_is_that_of_the_surface_not_of_its_control_points() -> None:
@@ -190,7 +192,7 @@ def test_kinks_of_members_go_on_and_joins_are_none() -> None:
 def test_many_patches_have_a_short_name() -> None:
     patches = cut(wave(), list(np.linspace(0, 1, 4)), list(np.linspace(0, 1, 4)))
     part = together(*patches)
-    assert skins(part).joined == (tuple(range(1, 10)),)
+    assert find_skins(part).joined == (tuple(range(1, 10)),)
     whole = join(part, range(1, 10)).faces[0]
     assert whole.label == "1+2+3+6more" and whole.numbers == tuple(range(1, 10))
     piece = whole.trimmed((np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 1 / 3], [0.0, 1 / 3]]),), whole.label + "a")
@@ -321,17 +323,37 @@ def test_what_cannot_be_joined_is_told(faces: list[Face], what: str) -> None:
     part = Part.from_faces(faces)
     if "smoothly" not in what:
         part = replace(part, edges=tuple(replace(edge, kind="tangent") for edge in part.edges))
+    numbers = [face.number for face in part.faces]
     with pytest.raises(UnsupportedGeometry, match=what):
-        join(part, [face.number for face in part.faces])
-    found = skins(part)
-    assert sorted([*found.single, *(n for group in found.joined for n in group)]) == [f.number for f in part.faces]
-    if len(faces) == 2:
-        assert found.joined == ()
+        join_patches(part.faces, meetings(part, numbers))
+    found = find_skins(part)
+    assert sorted([*found.single, *(n for group in found.joined for n in group)]) == numbers
+
+
+@pytest.mark.parametrize(("faces", "what"), [
+    (turned_over(), "normals turn by up to 90 degrees"),
+    (bent(0.5), "face 2 does not continue any of the others smoothly"),
+])
+def test_what_is_no_skin_is_told(faces: list[Face], what: str) -> None:
+    part = Part.from_faces(faces)
+    if "smoothly" not in what:
+        part = replace(part, edges=tuple(replace(edge, kind="tangent") for edge in part.edges))
+    with pytest.raises(UnsupportedGeometry, match=what):
+        join(part, (1, 2))
+    assert find_skins(part).joined == ()
+
+
+@pytest.mark.parametrize("faces", [sheared(), unlike(), shape_of_an_l(), bent(0.012), offset()])
+def test_skins_need_no_parameters_that_go_together(faces: list[Face]) -> None:
+    part = Part.from_faces(faces)
+    part = replace(part, edges=tuple(replace(edge, kind="tangent") for edge in part.edges))
+    whole = join(part, [face.number for face in part.faces]).faces[0]
+    assert whole.members[0].matrix is None and whole.area == pytest.approx(sum(face.area for face in faces), rel=1e-5)
 
 
 def test_an_edge_that_is_a_point_joins_nothing() -> None:
     part = Part.from_faces(bent(0.0))
-    with pytest.raises(UnsupportedGeometry, match=r"their common edge is no longer than 0\.0005 mm"):
+    with pytest.raises(UnsupportedGeometry, match="face 2 does not continue any of the others"):
         join(replace(part, edges=(Edge((1, 2), "tangent", np.zeros((5, 3))),)), (1, 2))
 
 
@@ -342,19 +364,18 @@ def test_wrong_lists_of_faces_are_told(numbers: tuple[int, ...], what: str) -> N
         ta.join(Part.from_faces(bent(0.0)), numbers)
 
 
-def test_skins_are_the_largest_rectangles() -> None:
+def test_a_skin_holds_all_patches_that_continue_it() -> None:
     patches = cut(wave(), [0.0, 0.3, 0.6, 1.0], [0.0, 0.5, 1.0])
     far = wave().transformed(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 90.0], [0, 0, 0, 1]]))
-    found = skins(Part.from_faces([*patches[:5], far]))
-    assert found.joined == ((1, 2, 3, 4),) and found.single == (5, 6)
-    assert found.reasons == ("faces 3 and 5 are neighbours in no full rows and columns",)
+    found = find_skins(Part.from_faces([*patches[:5], far]))
+    assert found.joined == ((1, 2, 3, 4, 5),) and found.single == (6,) and found.reasons == ()
 
 
 def test_patches_of_a_real_nacelle_join_to_a_ring() -> None:
     if not (PARTS / "nacelle.stp").exists():
         pytest.skip("the parts by others are not here")
     part = ta.load(PARTS / "nacelle.stp")
-    assert skins(part).joined == ((1, 2), (3, 4, 5, 6))
+    assert find_skins(part).joined == ((1, 2), (3, 4, 5, 6))
     whole = join_patches([part.face(n) for n in (3, 4, 5, 6)], meetings(part, (3, 4, 5, 6)))
     assert on_members(whole) <= max(whole.tolerance, 1e-9) and whole.tolerance < 1e-8
     assert whole.area == pytest.approx(sum(part.face(n).area for n in (3, 4, 5, 6)), rel=1e-6)

@@ -143,11 +143,11 @@ class Feasibility:
     def neighbours(self) -> tuple[Face, ...]:
         """Faces that continue this one: smooth to touch, but too narrow for the cutter where they are hollow."""
         return tuple(face for face in self.groups[0].faces
-                     if self.groups[0].role == SKIN and face.number != self.face.number)
+                     if self.groups[0].role == SKIN and face.number not in self.face.numbers)
 
     @cached_property
     def _scene(self) -> InterferenceScene:
-        return InterferenceScene(self.face.number, self.tool, self.groups, self.neighbours)
+        return InterferenceScene(self.face.numbers, self.tool, self.groups, self.neighbours)
 
     @property
     def walls(self) -> tuple[Face, ...]:
@@ -189,7 +189,7 @@ class Feasibility:
     def cloud(self) -> Array:
         """Points of the face that surely gouging axes run into, (m, 3); those of its neighbours can be kept off."""
         return np.concatenate([self._points(face) for face in self.groups[0].faces
-                               if face.number == self.face.number] or [np.empty((0, 3))])
+                               if face.number in self.face.numbers] or [np.empty((0, 3))])
 
     def _points(self, face: Face) -> Array:
         count = max(6, 24 // len(self.groups[0].faces))
@@ -344,13 +344,16 @@ class Feasibility:
             return 0.0
         return self.stand(unit(as_rows(axis, 3, "axis")[0]), self.dense)[2]
 
-    def reach(self, uv: ArrayLike, axis: ArrayLike) -> Bools:
+    def reach(self, uv: ArrayLike, axis: ArrayLike, itself: bool = False) -> Bools:
         """Whether the tool may stand at contacts, on the face or beyond its border.
 
         Parameters
         ----------
         uv : (n, 2) array_like
         axis : (3,) array_like
+        itself : bool
+            Whether contacts on the face are held against the face itself and everything else too, as it is right where
+            it is not known that the axis is free there.
 
         Returns
         -------
@@ -367,7 +370,8 @@ class Feasibility:
         good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
         inside = self.face.contains(rows)
         within = ROLES if self.neighbours else (OTHER,)
-        for part, asked in ((good & inside, (False, within)), (good & ~inside, (True, ROLES))):
+        on_the_face = (True, ROLES) if itself else (False, within)
+        for part, asked in ((good & inside, on_the_face), (good & ~inside, (True, ROLES))):
             if part.any() and any(group.role in asked[1] for group in self.groups):
                 good[part] = stands_free(self._scene, tips(point[part], normal[part], t, self.tool, self.allowance),
                                          t, asked)

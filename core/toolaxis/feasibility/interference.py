@@ -26,9 +26,9 @@ _DEPTH_SHARE = 0.06
 
 
 class InterferenceScene(NamedTuple):
-    """A tool at a face: the face's number, the tool, the groups around, and the faces that continue the face."""
+    """A tool at a face: the face's numbers, the tool, the groups around, and the faces that continue the face."""
 
-    number: int
+    numbers: tuple[int, ...]
     tool: Tool
     groups: tuple[CheckSurfaces, ...]
     neighbours: tuple[Face, ...]
@@ -91,7 +91,7 @@ def stands_free(scene: InterferenceScene, places: Array, axis: Array, asked: tup
             tool = _extend_tool(scene.tool, places, axis, group) if group.role == OTHER else scene.tool
             required = np.tile(group.required, (len(group.faces), 1))
             if not itself and group.role == SKIN:  # obstacles have numbers of their own
-                required[[face.number == scene.number for face in group.faces]] = -np.inf
+                required[[face.number in scene.numbers for face in group.faces]] = -np.inf
             free[some] = _keeps_distances(group, tool, places[some], axis, required)
     return free
 
@@ -152,7 +152,7 @@ def _into_neighbours(scene: InterferenceScene, group: CheckSurfaces, moves: Arra
     into, rows = hit.copy(), np.flatnonzero(hit)
     if len(rows):
         only = np.full((len(group.faces), 3), -np.inf)
-        own = [face.number == scene.number for face in group.faces]
+        own = [face.number in scene.numbers for face in group.faces]
         only[own] = 0.0 if left_out is None else left_out[own]
         found = lower_bounds(group.cells, scene.tool, moves[rows], group.required + 2 * FINE, FINE, only)
         into[rows] = (found.lower >= group.required).all(axis=1)

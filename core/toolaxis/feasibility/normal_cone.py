@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
 from math import pi
 from typing import NamedTuple
 
@@ -11,8 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.normal_cells import NormalCells
+from toolaxis.numeric.smallest_cap import Cap, smallest_cap
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
+from toolaxis.skin.pieces import own_pieces
+from toolaxis.skin.view_surface import ViewSurface
 
 Array = NDArray[np.float64]
 
@@ -21,60 +23,6 @@ _ROUNDS = 13
 _FINE = 1e-4
 #: More cells than this are not divided further: at a pole, where the normal has no bound, they would only multiply.
 _MOST = 100_000
-
-
-class Cap(NamedTuple):
-    """The smallest cap of the unit sphere around unit vectors: centre (3,), radius in rad, and the vectors on its rim.
-
-    A radius of pi / 2 with a centre of zeros means that no open hemisphere holds them.
-    """
-
-    centre: Array
-    radius: float
-    rim: NDArray[np.intp]
-
-
-def smallest_cap(vectors: Array) -> Cap:
-    """The smallest cap around unit vectors.
-
-    Parameters
-    ----------
-    vectors : (n, 3) array
-
-    Notes
-    -----
-    It is where their smallest enclosing ball meets the sphere; the ball's centre is 0 when no hemisphere holds them.
-
-    **Properties**: 1. every vector is inside, to 1e-9; 2. at least two are on the rim unless all are equal.
-    """
-    support = np.array([0], dtype=np.intp)
-    centre, square = vectors[0], 0.0
-    for _ in range(200):
-        away = np.sum((vectors - centre) ** 2, axis=1)
-        far = int(np.argmax(away))
-        if away[far] <= square * (1 + 1e-12) + 1e-18:
-            break
-        support, centre, square = _ball(vectors, np.append(support, far))
-    size = float(np.linalg.norm(centre))
-    if size <= 1e-7:
-        return Cap(np.zeros(3), pi / 2, support)
-    middle = centre / size
-    return Cap(middle, float(angle_between(vectors[support], middle).max()), support)
-
-
-def _ball(vectors: Array, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array, float]:
-    """Smallest ball around at most five points: the smallest circumscribed ball of a subset that holds them all."""
-    best: tuple[NDArray[np.intp], Array, float] = (rows, np.zeros(3), np.inf)
-    for count in range(1, min(len(rows), 4) + 1):
-        for chosen in combinations(range(len(rows)), count):
-            some = vectors[rows[list(chosen)]]
-            edges = some[1:] - some[0]
-            offset = np.linalg.lstsq(2 * edges, np.sum(edges**2, axis=1), rcond=None)[0] if count > 1 else np.zeros(3)
-            square = float(offset @ offset)
-            inside = np.sum((vectors[rows] - some[0] - offset) ** 2, axis=1) <= square * (1 + 1e-10) + 1e-18
-            if square < best[2] and inside.all():
-                best = rows[list(chosen)], some[0] + offset, square
-    return best
 
 
 class Range(NamedTuple):
@@ -147,6 +95,13 @@ class NormalField:
     def _cells(self) -> NormalCells:
         return NormalCells(self.face)
 
+    @cached_property
+    def _members(self) -> tuple["NormalField", ...]:
+        """Of the faces that a skin is made of; none where the face has a surface of its own."""
+        if not isinstance(self.face.surface, ViewSurface):
+            return ()
+        return tuple(NormalField(own) for own in own_pieces(self.face))
+
     def range_of_angles(self, axis: ArrayLike, least: float, greatest: float) -> Range:
         """Range of the angle between an axis and all normals of the face, proven between the samples too.
 
@@ -172,6 +127,8 @@ class NormalField:
         decide against the limits.
         """
         t = np.asarray(axis, dtype=float)
+        if self._members:
+            return self._range_over_members(t, least, greatest)
         kept, cells = self._cells.roots
         low, high = np.inf, -np.inf
         seen = [np.inf, -np.inf]
@@ -196,6 +153,15 @@ class NormalField:
             if not len(cells.rect):
                 break
         return Range(max(low, 0.0), min(high, pi), where[0], where[1])
+
+    def _range_over_members(self, axis: Array, least: float, greatest: float) -> Range:
+        surface = self.face.surface
+        assert isinstance(surface, ViewSurface)
+        found = [one.range_of_angles(axis, least, greatest) for one in self._members]
+        first, last = (int(np.argmin([one.low for one in found])), int(np.argmax([one.high for one in found])))
+        where = [surface.seen[0].project(self._members[k].face.evaluate(uv[None]).point)[0]
+                 for k, uv in ((first, found[first].least), (last, found[last].greatest))]
+        return Range(found[first].low, found[last].high, where[0], where[1])
 
 
 def _along(loop: Array, count: int) -> Array:

@@ -85,7 +85,7 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
         When obstacles are not faces.
     """
     touching: tuple[Face, ...] = ()
-    others = [*surroundings, *faces_of(obstacles)]
+    others: Sequence[Face] = [*surroundings, *faces_of(obstacles)]
     own = (face, *(f for f in skin if f is not face))
     if part is not None:
         own = (*part.skin(face.number), *own[1:])
@@ -93,12 +93,15 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
         around = part.surroundings(face.number)
         touching = tuple(f for f in around if f.number in numbers)
         others = [*(f for f in around if f.number not in numbers), *others]
+    own, touching, others = (tuple(one for whole in some for one in whole.own_faces)
+                             for some in (own, touching, others))
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
-    edges, touched = () if part is None else part.edges, {one.number for one in own}
+    edges = () if part is None else (part.original or part).edges
+    touched = {one.number for one in own}
     skin_off, touching_off = mismatch_of(own, edges, touched, allowance), mismatch_of(touching, edges, touched)
     groups = (CheckSurfaces(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
               CheckSurfaces(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
-              CheckSurfaces(OTHER, tuple(others), np.array([tolerance.cutter_clearance, *far])))
+              CheckSurfaces(OTHER, others, np.array([tolerance.cutter_clearance, *far])))
     return tuple(group for group in groups if group.faces)
 
 

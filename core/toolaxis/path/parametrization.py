@@ -196,9 +196,9 @@ class IsoChart:
     @cached_property
     def breaks(self) -> tuple[Array, Array]:
         """Inner knots along and across."""
-        surface, (a0, a1, s0, s1) = self.face.surface, self.bounds
-        knots = [np.unique(surface.knots_u), np.unique(surface.knots_v)]
-        along, step = (knots[i] for i in self._order)
+        a0, a1, s0, s1 = self.bounds
+        breaks = self.face.surface.breaks
+        along, step = (breaks[i] for i in self._order)
         return along[(along > a0) & (along < a1)], step[(step > s0) & (step < s1)]
 
     @property

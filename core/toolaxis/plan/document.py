@@ -22,9 +22,9 @@ from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.plan.timing import MachiningTime, Order
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.smooth_skins import join
 from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
+from toolaxis.skin.join import join
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 

@@ -183,8 +183,8 @@ class FaceProblem:
         """
         axis = placed.cut.axis
         height = self.top(axis)
-        own = self.worth.face
-        walls = any(group.role == OTHER or (group.role == SKIN and any(one is not own for one in group.faces))
+        own = self.worth.face.own_faces
+        walls = any(group.role == OTHER or (group.role == SKIN and any(one not in own for one in group.faces))
                     for group in self.groups)
         over = height_over(self.worth.scallop)
         crossing = LinkClearance(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)

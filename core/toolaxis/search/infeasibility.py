@@ -3,6 +3,7 @@
 from math import degrees
 
 import numpy as np
+from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.branch_and_bound import BUDGET
 from toolaxis.contact.clearance.queries import lower_bounds, motions
@@ -12,6 +13,8 @@ from toolaxis.feasibility.surroundings import SKIN
 from toolaxis.search.messages import format_apart, place
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
+
+Array = NDArray[np.float64]
 
 #: Share of a face that must be tighter than the cutter for all of it to be called so.
 _TIGHT = 0.9
@@ -59,6 +62,28 @@ def tight_fillet(face: Face, tool: Tool) -> str:
     return f"a hollow fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {tool.radius:g} mm"
 
 
+def corner_depths(feasibility: Feasibility, points: Array, normals: Array) -> Array:
+    """How deep the corner's ball goes into the face at contacts at least, whatever the axis, (n,) mm; 0 or less if not.
+
+    Parameters
+    ----------
+    feasibility : Feasibility
+    points, normals : (n, 3) array
+        Contacts on the face.
+    """
+    tool, skin = feasibility.tool, feasibility.groups[0]
+    radius = tool.corner_radius
+    if radius <= 0 or skin.role != SKIN or tool.flute_length < 2 * radius:
+        return np.zeros(len(points))
+    centre = points + (radius + feasibility.allowance) * normals
+    ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
+    slack = max(face.tolerance for face in skin.faces) + 2 * FINE
+    only = np.full((len(skin.faces), 3), -np.inf)
+    only[[face.number in feasibility.face.numbers for face in skin.faces]] = 0.0
+    found = lower_bounds(skin.cells, ball, motions(centre - radius * normals, normals), 0.0, FINE, only)
+    return np.asarray(np.where(found.looked > BUDGET, 0.0, -found.lower[:, 0] - slack))
+
+
 def corner_too_large(feasibility: Feasibility) -> str:
     """Whether the corner's ball alone, which every cutter holds at its contact, gouges; the sentence, or "".
 
@@ -72,23 +97,14 @@ def corner_too_large(feasibility: Feasibility) -> str:
     the search for the depth was given up, its bound says nothing and no proof is drawn from it.  Faces that continue
     this one are left out: contacts beside them can be left to a clean-up tool.
     """
-    tool, skin = feasibility.tool, feasibility.groups[0]
-    radius, limit = tool.corner_radius, feasibility.tolerance.gouge
-    if radius <= 0 or skin.role != SKIN or tool.flute_length < 2 * radius:
-        return ""
-    some = feasibility.dense
+    some, limit = feasibility.dense, feasibility.tolerance.gouge
     if not len(some.uv):
         return ""
-    centre = some.point + (radius + feasibility.allowance) * some.normal
-    ball = Tool.ball(2 * radius, flute_length=1.0001 * radius)
-    slack = max(face.tolerance for face in skin.faces) + 2 * FINE
-    only = np.full((len(skin.faces), 3), -np.inf)
-    only[[face.number == feasibility.face.number for face in skin.faces]] = 0.0
-    found = lower_bounds(skin.cells, ball, motions(centre - radius * some.normal, some.normal), 0.0, FINE, only)
-    depth = np.where(found.looked > BUDGET, 0.0, -found.lower[:, 0] - slack)
+    depth = corner_depths(feasibility, some.point, some.normal)
     i = int(np.argmax(depth))
     if depth[i] <= limit:
         return ""
     deep, allowed = format_apart(float(depth[i]), limit, 3)
-    return (f"the corner radius {radius:g} mm gouges face {feasibility.face.label} by {deep} mm at "
-            f"{place(some.point[i])} with every axis; {allowed} mm is allowed: use a smaller corner radius")
+    radius, where = feasibility.tool.corner_radius, place(some.point[i])
+    return (f"the corner radius {radius:g} mm gouges face {feasibility.face.label} by {deep} mm at {where} "
+            f"with every axis; {allowed} mm is allowed: use a smaller corner radius")

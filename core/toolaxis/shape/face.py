@@ -27,15 +27,15 @@ class Member:
     ----------
     face : Face
         As it was.
-    matrix : (2, 3) array
-        Its own parameters from those of the joined face: own = matrix @ (u, v, 1).
-    box : (2, 2) array
-        Lower and upper corner of its place in the joined face's parameters.
+    matrix : (2, 3) array or None
+        Its own parameters from those of the joined face: own = matrix @ (u, v, 1); None where that is no such map.
+    box : (2, 2) array or None
+        Lower and upper corner of its place in the joined face's parameters, where there is a matrix.
     """
 
     face: "Face"
-    matrix: Array
-    box: Array
+    matrix: Array | None = None
+    box: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,8 @@ class Face:
     ----------
     surface : NurbsSurface
     trims : tuple of (m, 2) arrays
-        Closed loops in (u, v), the outer one first, then the holes; empty for the whole domain.
+        Closed loops in (u, v), the outer one first, then the holes, and the same of further parts where the face falls
+        apart; empty for the whole domain.
     flip : bool
         The normal out of the material is Su x Sv, or its opposite with flip.
     number : int
@@ -60,7 +61,7 @@ class Face:
     kinks : pair of tuples of float
         Parameters u and v along which the surface is only C0.
     members : tuple of Member
-        The faces that were joined into this one, see `toolaxis.shape.joining.smooth_skins`; empty for a face of a file.
+        The faces that were joined into this one, see `toolaxis.skin.join`; empty for a face of a file.
 
     Raises
     ------
@@ -97,6 +98,13 @@ class Face:
     def numbers(self) -> tuple[int, ...]:
         """Numbers of the faces that it was joined from; its own where it is one face."""
         return tuple(member.face.number for member in self.members) or (self.number,)
+
+    @property
+    def own_faces(self) -> tuple["Face", ...]:
+        """Faces that have the surfaces on which every point of this one lies: itself, unless it is seen in a plane."""
+        if self.members and self.members[0].matrix is None:
+            return tuple(member.face for member in self.members)
+        return (self,)
 
     @classmethod
     def from_bspline(cls, points: ArrayLike, degree: tuple[int, int] = (3, 3),
@@ -187,7 +195,8 @@ class Face:
         if not self.trims:
             (u0, u1), (v0, v1) = self.surface.domain
             return u0, u1, v0, v1
-        low, high = self.trims[0].min(axis=0), self.trims[0].max(axis=0)
+        ends = [(loop.min(axis=0), loop.max(axis=0)) for loop in self.trims]
+        low, high = np.min([end[0] for end in ends], axis=0), np.max([end[1] for end in ends], axis=0)
         return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
     def grid(self, nu: int, nv: int) -> Array:
@@ -209,6 +218,9 @@ class Face:
     @cached_property
     def area(self) -> float:
         """Area of the face, mm^2, to 1e-5 of itself."""
+        own = self.own_faces
+        if len(own) > 1 and self._is_whole:
+            return sum(face.area for face in own)
         return measure.area(self)
 
     @cached_property
@@ -220,6 +232,12 @@ class Face:
     def diagonal(self) -> float:
         """Length of the diagonal of `box`, mm."""
         return float(np.linalg.norm(self.box[1] - self.box[0]))
+
+    @property
+    def _is_whole(self) -> bool:
+        """Whether the loops are those of the surface's own outline."""
+        outline = getattr(self.surface, "outline", ())
+        return len(outline) == len(self.trims) and all(map(np.array_equal, outline, self.trims))
 
     def trimmed(self, trims: tuple[ArrayLike, ...], label: str | None = None) -> "Face":
         """The same surface with other loops.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.golden_section import least_between
 from toolaxis.numeric.polygons import stations, walk
 
@@ -32,10 +33,13 @@ def area(face: "Face") -> float:
     face : Face
     """
     u0, u1, v0, v1 = face.bounds
-    cuts = (_cuts(face.surface.knots_u, np.linspace(u0, u1, PIECES + 1)),
-            _breaks(v0, v1, face.surface.knots_v, face.outline[:1]))
-    sizes = [abs(_area_inside(face, loop, cuts)) for loop in face.outline]
-    return float(sizes[0] - sum(sizes[1:]))
+    breaks = face.surface.breaks
+    cuts = _cuts(breaks[0], np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks[1], face.outline[:1])
+    total = 0.0
+    for loops in outer_with_holes(face.outline) if len(face.outline) > 1 else [face.outline]:
+        sizes = [abs(_area_inside(face, loop, cuts)) for loop in loops]
+        total += float(sizes[0] - sum(sizes[1:]))
+    return total
 
 
 def _area_inside(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:

@@ -139,6 +139,13 @@ class NurbsSurface:
         (pu, pv), ku, kv = self.degree, self.knots_u, self.knots_v
         return (float(ku[pu]), float(ku[-pu - 1])), (float(kv[pv]), float(kv[-pv - 1]))
 
+    @property
+    def breaks(self) -> tuple[Array, Array]:
+        """Inner values of u and of v at which a higher derivative may jump."""
+        (u0, u1), (v0, v1) = self.domain
+        u, v = np.unique(self.knots_u), np.unique(self.knots_v)
+        return u[(u > u0) & (u < u1)], v[(v > v0) & (v < v1)]
+
     @cached_property
     def data(self) -> SurfaceData:
         """The tuple that kernels take."""

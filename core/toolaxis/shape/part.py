@@ -60,7 +60,7 @@ class Part:
     selected : tuple of int
         Numbers of the faces that the caller picked; empty where nothing was picked.
     original : Part or None
-        The part as it came, where faces of it were joined, see `toolaxis.shape.joining.smooth_skins.join`.
+        The part as it came, where faces of it were joined, see `toolaxis.skin.join.join`.
 
     Raises
     ------

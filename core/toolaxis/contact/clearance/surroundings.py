@@ -67,6 +67,7 @@ class Surroundings:
             reach below them as deep as a gouge may be.
         """
         limit = Tolerance() if tolerance is None else tolerance
+        faces, skin, touching = ([own for face in some for own in face.own_faces] for some in (faces, skin, touching))
         table = np.tile([limit.cutter_clearance, limit.shank_clearance, limit.holder_clearance], (len(faces), 1))
         for row, face in enumerate(faces):
             if any(face.surface is other.surface for other in skin):

@@ -15,8 +15,9 @@ from toolaxis.plan.plan import PlanInputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
-from toolaxis.shape.joining.smooth_skins import join, skins
 from toolaxis.shape.part import Part
+from toolaxis.skin.find import find_skins
+from toolaxis.skin.join import join
 from toolaxis.tools.tool import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
@@ -183,7 +184,7 @@ def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
 
 
 def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None,
-                corner: float = GREATEST_CORNER) -> tuple[Part, Any]:
+                corner: float = GREATEST_CORNER, width: float = 0.0) -> tuple[Part, Any]:
     """The part with the faces joined that are asked for as one, and the list of faces that is left for `choose_faces`.
 
     Parameters
@@ -193,6 +194,8 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
         "skins" joins all that can be joined of the sculptured faces, and warns of what cannot.
     corner : float
         Greatest angle by which iso-parametric lines may turn across joins that are asked for, rad.
+    width : float
+        Planes, cylinders and cones narrower than that belong to the skins that they continue, mm.
 
     Raises
     ------
@@ -202,7 +205,7 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
     if isinstance(faces, str):
         faces = parse_faces(faces)
     if faces == "skins":
-        found = skins(part)
+        found = find_skins(part, width)
         for numbers in found.joined:
             part = join(part, numbers)
         alone = () if found.joined else (f"--faces skins joins nothing: each of the {len(found.single)} sculptured "

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toolaxis.feasibility.normal_cone import smallest_cap
+from toolaxis.numeric.smallest_cap import smallest_cap
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import PLAIN_KINDS, Part
 

@@ -16,7 +16,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.smooth_skins import own_pieces
+from toolaxis.skin.pieces import own_pieces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.maps import MapPoint, MapZone
 from toolaxis.verify.task import VerificationTask
@@ -115,14 +115,18 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
     around = group_surroundings(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
                                 obstacles=[face for body in plan.obstacles for face in body.faces])
 
+    targets = own_pieces(op.face)
+
     def _of(*roles: str) -> tuple[Face, ...]:
         return tuple(own for group in around if group.role in roles for face in group.faces
-                     if (face.number, face.label) != (op.face.number, op.face.label) for own in own_pieces(face))
+                     if (face.number, face.label) != (op.face.number, op.face.label) and face not in targets
+                     for own in own_pieces(face))
 
-    left = tuple(own for zone in op.zones if zone.at_wall for own in own_pieces(op.face.trimmed(zone.loops)))
+    left = tuple(own for zone in op.zones if zone.at_wall
+                 for own in own_pieces(op.face.trimmed(zone.loops), only_exact=True))
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
-    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, own_pieces(op.face),
+    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, targets,
                             plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER),
                             plan.tool.outlines,
                             plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,

@@ -42,6 +42,9 @@ from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
 
+#: Planes, cylinders and cones narrower than this many radii of the cutter belong to the skin that they continue.
+WIDE = 4.0
+
 
 def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
@@ -159,7 +162,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
     # Layers are plane sections, to which iso-parametric lines do not matter.
-    loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER)
+    loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER,
+                                 WIDE * cutter.radius)
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
@@ -241,7 +245,7 @@ def _order_operations(plan: Plan, progress: Progress) -> Plan:
 
 def _in_cells(job: PlanningJob, progress: Progress) -> None:
     """Make the cells of all faces before processes are forked, which then share them."""
-    every = [face for part in (job.part, *job.bodies) for face in part.faces]
+    every = [own for part in (job.part, *job.bodies) for face in part.faces for own in face.own_faces]
     for k, face in enumerate(every):
         progress.report("surroundings", k, len(every))
         with suppress(Exception):  # it is told of the faces to which it matters

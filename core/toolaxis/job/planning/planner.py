@@ -20,6 +20,7 @@ from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.sub_surfaces import (
     Target,
     by_axis,
+    by_reach,
     lost_face,
     plan_locked,
     smooth_pieces,
@@ -30,6 +31,7 @@ from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances
+from toolaxis.partition.by_reach import ReachDivision, divide_by_reach
 from toolaxis.partition.face_division import MOST, Divider, Regions
 from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
@@ -54,6 +56,8 @@ from toolaxis.work import MOVING, Budget, OutOfWork, limit_work
 
 Array = NDArray[np.float64]
 
+#: Ways to find axes that divide faces which none reaches whole.
+DIVIDED = ("sphere", "sectors")
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
 
@@ -212,12 +216,49 @@ class PlanningJob:
 
     def _plan_targets(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
         """The plan for sub-surfaces as they are."""
+        made, cancelled = self._operations_of(targets, progress)
+        if not cancelled and self._may_divide:
+            made, cancelled = self._divided_by_reach(targets, made, progress)
+        complete = "complete" if all(op.done for op in made) else "incomplete"
+        return self._plan(made, "cancelled" if cancelled else complete, options)
+
+    def _operations_of(self, targets: list[Target], progress: Progress) -> tuple[tuple[Operation, ...], bool]:
+        """The operations of sub-surfaces as far as they were made, and whether the user stopped that."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
         made = {**done.results, **{k: fail_face(k + 1, targets[k].face, why) for k, why in done.faults.items()}}
-        operations = tuple(replace(made[k], face=targets[k].face) for k in sorted(made))
-        complete = "complete" if all(op.done for op in operations) else "incomplete"
-        return self._plan(operations, "cancelled" if done.cancelled else complete, options)
+        return tuple(replace(made[k], face=targets[k].face) for k in sorted(made)), done.cancelled
+
+    @property
+    def _may_divide(self) -> bool:
+        """Whether faces that no axis reaches whole are divided: where nobody said how, and the search is free."""
+        return self.inputs.method in DIVIDED and self.regions is None and self.orientations is None
+
+    def _divided_by_reach(self, targets: list[Target], made: tuple[Operation, ...],
+                          progress: Progress) -> tuple[tuple[Operation, ...], bool]:
+        """The operations with those of sub-surfaces in the place of faces that no axis reaches whole."""
+        lost = [k for k, op in enumerate(made) if not op.done and not op.failed and targets[k].ended is None
+                and targets[k].given is None]
+        stage = progress.within("division by reach")
+        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, inner), len(lost), self.workers, stage)
+        if found.cancelled:
+            return made, True
+        divided = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
+        if not divided:
+            return made, False
+        rows: list[Target] = []
+        for k, target in enumerate(targets):
+            rows += by_reach(target.face, made[k], divided[k]) if k in divided else [target._replace(ended=made[k])]
+        again, cancelled = self._operations_of(rows, stage)
+        return (made, True) if cancelled else (again, False)
+
+    def _reached(self, face: Face, progress: Progress) -> ReachDivision | None:
+        """How a face is divided by what axes reach; None where that takes more work than is allowed."""
+        with limit_work(Budget(self.inputs.limit)):
+            try:
+                return divide_by_reach(self._task(face, progress), progress.within(f"face {face.label}"))
+            except OutOfWork:
+                return None
 
     def _alike(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
@@ -338,7 +379,7 @@ class PlanningJob:
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
         times = MOVING if self._strategy.moves else 1.0
-        with limit_work(Budget(self.inputs.limit, times)):
+        with limit_work(Budget(self.inputs.limit, times * len(target.face.numbers))):
             return self._with_axis(target, place, progress)
 
     def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:

@@ -14,6 +14,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
 from toolaxis.job.planning.edit_axis import evaluate_given_axis
 from toolaxis.job.planning.failures import fail_face
+from toolaxis.partition.by_reach import ReachDivision
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
@@ -56,6 +57,29 @@ def by_axis(targets: list[Target]) -> list[Target]:
     """
     names = [(np.round(np.asarray(target.axis), 9) + 0.0).tobytes() for target in targets]
     return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
+
+
+def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Target]:
+    """Sub-surfaces of a face, each with an axis that reaches it, and what none reaches, which has ended.
+
+    Parameters
+    ----------
+    face : Face
+    whole : Operation
+        Of the face as a whole, without an axis.
+    division : ReachDivision
+        With a sub-surface at least.
+    """
+    targets = [Target(face.trimmed(loops, face.label + letters(k)), axis)
+               for k, (loops, axis) in enumerate(division.pieces)]
+    if division.rest:
+        every = tuple(loop for loops in division.rest for loop in loops)
+        part = face.trimmed(every, face.label + letters(len(targets)))
+        pieces = f" in {len(division.rest)} places" if len(division.rest) > 1 else ""
+        words = f"none of the {division.tried} axes tried reaches {part.area:.1f} mm2{pieces} of face {face.label}"
+        none = Orientation(None, outcome="not_found", reasons=(words, *whole.orientation.reasons))
+        targets.append(Target(part, ended=Operation(1, part, none)))
+    return targets
 
 
 def read_division(path: str | Path) -> tuple[SubSurface, ...]:

@@ -74,8 +74,8 @@ class LevelChart(FreeChart):
     def breaks(self) -> tuple[Array, Array]:
         """Inner knots along the passes; those across do not run along them."""
         a0, a1, _, _ = self.bounds
-        knots = np.unique(self.face.surface.knots_u if self.feed == "u" else self.face.surface.knots_v)
-        return knots[(knots > a0) & (knots < a1)], np.empty(0)
+        along = self.face.surface.breaks[1 - self._across]
+        return along[(along > a0) & (along < a1)], np.empty(0)
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:

@@ -124,6 +124,7 @@ def cells(face: Face, fineness: float = FINENESS) -> BoundingTree:
     InvalidInput
         When the loops enclose nothing of the surface.
     """
+    assert len(face.own_faces) == 1, "a skin has no cells of its own: those of its faces stand for it"
     found = _known.setdefault(face, {})
     if fineness not in found:
         tree = build_tree(face, fineness)
@@ -175,7 +176,7 @@ def forest(faces: Sequence[Face], fineness: float = FINENESS) -> BoundingTree:
     InvalidInput
         When there is no face, or the loops of one enclose nothing of its surface.
     """
-    return _grown(tuple(faces), fineness)
+    return _grown(tuple(own for face in faces for own in face.own_faces), fineness)
 
 
 @lru_cache(maxsize=3)

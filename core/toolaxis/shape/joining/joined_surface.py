@@ -246,6 +246,7 @@ def _member(patch: JoinedPatch, box: tuple[Pair, Pair], place: tuple[Pair, Pair]
 
 def _into(member: Member, uv: Array) -> Array:
     """Joined parameters from a member's own, (n, 2)."""
+    assert member.matrix is not None
     return np.asarray(np.linalg.solve(member.matrix[:, :2], (uv - member.matrix[:, 2]).T).T)
 
 
@@ -253,6 +254,7 @@ def _kinks(members: dict[Cell, Member], lines: tuple[Array, ...]) -> tuple[tuple
     """Kinks of the members in the joined parameters."""
     found: tuple[list[float], list[float]] = ([], [])
     for member in members.values():
+        assert member.matrix is not None
         for own, values in enumerate(member.face.kinks):
             axis = int(np.abs(member.matrix[own, :2]).argmax())
             for t in values:
@@ -284,7 +286,8 @@ def joins(face: Face) -> list[tuple[int, float]]:
     ----------
     face : Face
     """
-    return [(axis, t) for axis in (0, 1) for t in sorted({float(member.box[0, axis]) for member in face.members})[1:]]
+    boxes = [member.box for member in face.members if member.box is not None]
+    return [(axis, t) for axis in (0, 1) for t in sorted({float(box[0, axis]) for box in boxes})[1:]]
 
 
 def corner_at(face: Face, axis: int, t: float) -> float:
@@ -326,6 +329,7 @@ def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
 
 def _whole(member: Member) -> bool:
     """Whether a member's place holds all of its surface."""
+    assert member.box is not None and member.matrix is not None
     domain = np.array(member.face.surface.domain)
     corners = np.sort(member.box @ member.matrix[:, :2].T + member.matrix[:, 2], axis=0).T
     return bool((np.abs(corners - domain) <= SAME * np.ptp(domain, axis=1)[:, None]).all())

@@ -136,8 +136,8 @@ def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tu
 
 
 def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
-    face = job.worth.face
-    walls = any(group.role == OTHER or (group.role == SKIN and any(one is not face for one in group.faces))
+    own = job.worth.face.own_faces
+    walls = any(group.role == OTHER or (group.role == SKIN and any(one not in own for one in group.faces))
                 for group in job.groups)
     over = height_over(job.worth.scallop)
     crossing = MovingLinkClearance(cut.tool, job.groups, cut.allowance, over)

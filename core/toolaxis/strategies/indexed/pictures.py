@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput
-from toolaxis.feasibility.normal_cone import smallest_cap
+from toolaxis.numeric.smallest_cap import smallest_cap
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.estimate import estimate
 from toolaxis.path.iso_parametric import layout

@@ -106,7 +106,7 @@ class OperationRecord:
         ----------
         part : toolaxis.shape.part.Part
         """
-        from toolaxis.shape.joining.smooth_skins import join
+        from toolaxis.skin.join import join
 
         members = self.details.get("members")
         return join(part, members, corner=pi) if members and not part.face(members[0]).members else part

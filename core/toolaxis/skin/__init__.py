@@ -1,0 +1,1 @@
+"""Skins: faces that continue each other smoothly, machined as one."""

@@ -1,0 +1,72 @@
+"""Faces side by side in a plane: which of them lies at a place."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from toolaxis.numeric.polygons import EdgeIndex, inside, slabs
+from toolaxis.skin.seen_face import SeenFace
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class FacesInView:
+    """Faces in one plane, and the line around all of them.
+
+    Attributes
+    ----------
+    seen : tuple of SeenFace
+    outline : tuple of (m, 2) arrays
+        Loops in the plane.
+    """
+
+    seen: tuple[SeenFace, ...]
+    outline: tuple[Array, ...]
+
+    def owners(self, places: Array) -> Index:
+        """Which of the faces lies at places of the plane, (n,); -1 beyond the outline.
+
+        Between two faces that do not quite meet, the nearer one goes on.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        owner = np.full(len(places), -1, dtype=np.intp)
+        for k, one in enumerate(self.seen):
+            left = np.flatnonzero(owner < 0)
+            if not len(left):
+                return owner
+            owner[left[one.contains(places[left])]] = k
+        gap = np.flatnonzero(owner < 0)
+        gap = gap[inside(self._around, places[gap])] if len(gap) else gap
+        if len(gap):
+            owner[gap] = self.nearest(places[gap])
+        return owner
+
+    def nearest(self, places: Array) -> Index:
+        """The face whose border is nearest to each place, (n,).
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        return np.asarray(self._which[self._borders.query(places)[1]], dtype=np.intp)
+
+    @cached_property
+    def _around(self) -> EdgeIndex:
+        return slabs(self.outline)
+
+    @cached_property
+    def _borders(self) -> cKDTree:
+        return cKDTree(np.concatenate([loop for one in self.seen for loop in one.outline]))
+
+    @cached_property
+    def _which(self) -> Index:
+        """The face of each point of the borders."""
+        return np.repeat(np.arange(len(self.seen)), [sum(map(len, one.outline)) for one in self.seen])

@@ -1,0 +1,131 @@
+"""The part's own faces under a skin, or under a piece of one."""
+
+from contextlib import suppress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
+from toolaxis.numeric.polygon_boolean import divide_polygon
+from toolaxis.numeric.polygons import inside, signed_area, slabs, stations, walk
+from toolaxis.shape.face import Face, Member
+from toolaxis.shape.joining.joined_surface import name_of
+from toolaxis.skin.seen_face import SeenFace
+from toolaxis.skin.view_surface import ViewSurface
+
+Array = NDArray[np.float64]
+Loops = tuple[Array, ...]
+
+#: Share of a member's area in its parameters that may be missing of the whole.
+_WHOLE = 1e-6
+#: Loops of a piece are moved by this share of the skin's size, so that no corner lies on the border of a member, and
+#: how often that is tried.
+_SHIFT, _TRIED = 2e-8, 6
+#: Pieces of the longest side of a loop that is carried over to a member's own parameters.
+_DIVIDED = 128
+
+
+def own_pieces(face: Face, only_exact: bool = False) -> tuple[Face, ...]:
+    """The part's own faces under a joined face, or under a piece of one, each with its own surface and loops.
+
+    Parameters
+    ----------
+    face : Face
+    only_exact : bool
+        Leave out what of a face that is closed in itself cannot be told apart; else all of that face is given.
+
+    Returns
+    -------
+    tuple of Face
+        The face itself where it was not joined; else its members, those of which it has only a part as pieces, labelled
+        with its own letters.
+
+    **Properties**: 1. areas add up.
+    """
+    if not face.members:
+        return (face,)
+    letters = face.label.removeprefix(name_of([member.face for member in face.members]))
+    if isinstance(face.surface, ViewSurface):
+        return _in_view(face, face.surface, letters, only_exact)
+    pieces: list[Face] = []
+    for member in face.members:
+        pieces += _in_box(face, member, letters)
+    return tuple(pieces)
+
+
+def _in_box(face: Face, member: Member, letters: str) -> list[Face]:
+    """Pieces of one member of a face whose parameters are those of its members, mapped linearly."""
+    assert member.box is not None
+    loops = face.outline
+    for axis, (low, high) in enumerate(member.box.T):
+        loops = clip_half_plane(clip_half_plane(loops, axis, float(low), True), axis, float(high), False)
+    own = [tuple(_own(member, loop) for loop in piece) for piece in outer_with_holes(loops)]
+    if abs(sum(map(_area, own)) - _area(member.face.outline)) <= _WHOLE * _area(member.face.outline):
+        return [member.face]
+    return [member.face.trimmed(piece, member.face.label + letters) for piece in own]
+
+
+def _area(loops: Loops) -> float:
+    """Area of a polygon with holes in the parameters."""
+    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
+
+
+def _own(member: Member, uv: Array) -> Array:
+    """A member's own parameters, kept in its range, from the joined ones."""
+    assert member.matrix is not None
+    u0, u1, v0, v1 = member.face.bounds
+    return np.clip(uv @ member.matrix[:, :2].T + member.matrix[:, 2], [u0, v0], [u1, v1])
+
+
+def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -> tuple[Face, ...]:
+    """Pieces of the members of a face whose parameters are places in a plane."""
+    loops = face.outline
+    if len(loops) == len(surface.outline) and all(map(np.array_equal, loops, surface.outline)):
+        return surface.members
+    pieces: list[Face] = []
+    for seen in surface.seen:
+        for part in _common(seen.outline, loops):
+            if part is None:
+                pieces.append(seen.face)
+                continue
+            own = tuple(_carry_over(seen, loop) for loop in part)
+            if any(one is None for one in own):
+                pieces += [] if only_exact else [seen.face]
+            else:
+                pieces.append(seen.face.trimmed(tuple(one for one in own if one is not None),
+                                                seen.face.label + letters))
+    return tuple(dict.fromkeys(pieces))
+
+
+def _common(member: Loops, piece: Loops) -> list[Loops | None]:
+    """What two polygons with holes have in common; None for all of the first."""
+    box, other = (np.stack([loops[0].min(axis=0), loops[0].max(axis=0)]) for loops in (member, piece))
+    if (box[0] > other[1]).any() or (other[0] > box[1]).any():
+        return []
+    size = float(np.ptp(other, axis=0).max())
+    for k in range(_TRIED):
+        turn = np.exp(1j * (0.7 + 2.1 * k))
+        shift = (k + 1) * _SHIFT * size * np.array([turn.real, turn.imag])
+        with suppress(InvalidInput):
+            both, apart = divide_polygon(member, tuple(loop + shift for loop in piece))
+            if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * _area(member)]:
+                return [None]
+            least = _WHOLE * min(_area(member), _area(piece))
+            return [part for part in outer_with_holes(both) if _area(part) > least]
+    within = inside(slabs(piece), np.concatenate(member))
+    return [None] if within.all() else []
+
+
+def _carry_over(seen: SeenFace, loop: Array) -> Array | None:
+    """A loop of the plane in a face's own parameters; None where the face is closed and the loop goes through its seam.
+    """
+    size = np.ptp(loop, axis=0) / _DIVIDED
+    fine = walk(loop, stations(loop, (float(size[0]), float(size[1]))))
+    uv = seen.find(fine)
+    u0, u1, v0, v1 = seen.face.bounds
+    uv = np.clip(uv, [u0, v0], [u1, v1])
+    step = np.abs(np.roll(uv, -1, axis=0) - uv).max(axis=0)
+    if (step > 0.5 * np.array([u1 - u0, v1 - v0])).any() and np.isfinite(seen.periods).any():
+        return None
+    return uv if len(uv) > 2 and signed_area(uv) != 0 else None

@@ -1,0 +1,145 @@
+"""A face as it is seen along a direction: which of its places lies at a point of the plane across that."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from toolaxis.numeric.polygons import EdgeIndex, inside, slabs, stations, walk
+from toolaxis.shape.face import Face
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Places along each parameter, and pieces of the longest loop, from which a point is looked for.
+_GRID, _PIECES = 24, 192
+#: Newton steps, what is exact enough and the longest step, as shares of the parameter range.
+_ITERATIONS, _EXACT, _FAR = 30, 1e-13, 0.25
+#: Ends of a parameter range that lie nearer to each other than this share of the face's diagonal are the same.
+_SAME = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class SeenFace:
+    """A face in a plane.
+
+    Attributes
+    ----------
+    face : Face
+    rows : (2, 3) array
+        Coordinates in the plane are rows @ (p - origin).
+    origin : (3,) array
+        mm
+    """
+
+    face: Face
+    rows: Array
+    origin: Array
+
+    def project(self, points: Array) -> Array:
+        """Places of points in the plane, (n, 2).
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            mm
+        """
+        return np.asarray((points - self.origin) @ self.rows.T)
+
+    @cached_property
+    def outline_uv(self) -> tuple[Array, ...]:
+        """The face's loops with further points on them, in its own parameters."""
+        u0, u1, v0, v1 = self.face.bounds
+        step = ((u1 - u0) / _PIECES, (v1 - v0) / _PIECES)
+        return tuple(walk(loop, stations(loop, step)) for loop in self.face.outline)
+
+    @cached_property
+    def outline(self) -> tuple[Array, ...]:
+        """The same loops in the plane."""
+        return tuple(self.project(self.face.evaluate(loop).point) for loop in self.outline_uv)
+
+    @cached_property
+    def box(self) -> Array:
+        """Lower and upper corner of the outline, (2, 2)."""
+        points = np.concatenate(self.outline)
+        return np.stack([points.min(axis=0), points.max(axis=0)])
+
+    @cached_property
+    def _index(self) -> EdgeIndex:
+        return slabs(self.outline)
+
+    def contains(self, places: Array) -> Bools:
+        """Whether places of the plane lie within the outline, (n,).
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        near = ((places >= self.box[0]) & (places <= self.box[1])).all(axis=1)
+        if near.any():
+            near[near] = inside(self._index, places[near])
+        return np.asarray(near)
+
+    @cached_property
+    def samples(self) -> Array:
+        """Parameters of places inside and along the border, (n, 2)."""
+        return np.concatenate([self.face.grid(_GRID, _GRID), *self.outline_uv])
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.project(self.face.evaluate(self.samples).point))
+
+    @cached_property
+    def periods(self) -> Array:
+        """Range of each parameter in which the face is closed, (2,); infinite where it is open."""
+        (u0, u1), (v0, v1) = self.face.surface.domain
+        share = np.linspace(0.0, 1.0, 5)
+        u, v = u0 + (u1 - u0) * share, v0 + (v1 - v0) * share
+        found = []
+        for low, high, span in ((np.column_stack([np.full(5, u0), v]), np.column_stack([np.full(5, u1), v]), u1 - u0),
+                                (np.column_stack([u, np.full(5, v0)]), np.column_stack([u, np.full(5, v1)]), v1 - v0)):
+            apart = np.linalg.norm(self.face.evaluate(low).point - self.face.evaluate(high).point, axis=1)
+            found.append(span if (apart <= _SAME * self.face.diagonal).all() else np.inf)
+        return np.array(found)
+
+    def find(self, places: Array) -> Array:
+        """Parameters (n, 2) of the face at places of the plane, by Newton's method; beyond its border too.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        (u0, u1), (v0, v1) = self.face.surface.domain
+        low, span = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
+        uv = self.samples[self._tree.query(places)[1]].copy()
+        todo = np.arange(len(uv))
+        for _ in range(_ITERATIONS):
+            d = self.face.evaluate(uv[todo])
+            miss = places[todo] - self.project(d.point)
+            move = _solve(d.su @ self.rows.T, d.sv @ self.rows.T, miss)
+            size = (np.abs(move) / span).max(axis=1)
+            move *= np.minimum(1.0, _FAR / np.maximum(size, np.finfo(float).tiny))[:, None]
+            uv[todo] = self._wrap(uv[todo] + move, low)
+            todo = todo[size > _EXACT]
+            if not len(todo):
+                break
+        return uv
+
+    def _wrap(self, uv: Array, low: Array) -> Array:
+        """Parameters taken once round where the face is closed."""
+        for k in (0, 1):
+            if np.isfinite(self.periods[k]):
+                uv[:, k] = low[k] + np.mod(uv[:, k] - low[k], self.periods[k])
+        return uv
+
+
+def _solve(a: Array, b: Array, right: Array) -> Array:
+    """Solutions (n, 2) of a x + b y = right, all (n, 2); none moves where a and b have one direction."""
+    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    size = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
+    good = np.abs(det) > 1e-14 * size
+    found = np.column_stack([right[:, 0] * b[:, 1] - right[:, 1] * b[:, 0],
+                             a[:, 0] * right[:, 1] - a[:, 1] * right[:, 0]])
+    return np.asarray(np.where(good[:, None], found / np.where(good, det, 1.0)[:, None], 0.0))

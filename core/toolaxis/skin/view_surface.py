@@ -1,0 +1,214 @@
+"""Several faces as one surface: the parameters are the place in a plane across a direction from which all are seen."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import make_interp_spline
+
+from toolaxis.numeric.polygons import stations, walk
+from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.shape.surface import Derivatives
+from toolaxis.skin.faces_in_view import FacesInView
+from toolaxis.skin.seen_face import SeenFace
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+#: Points of the grid along the longer side at first and at most, and how exact the spline through them is to be on the
+#: mean of the worst tenth, mm.
+_COARSE, _FINE, _EXACT = 49, 193, 1e-3
+#: Points along the size of the outline, and in all, from which heights beyond it are told; places taken at once.
+_ALONG, _BORDER, _AT_ONCE = 200, 800, 4000
+#: How far tangent planes rise or fall beyond the outline at most, as a share of the size: steep ones level off.
+_RISE = 0.04
+#: Parts of the range at whose ends nothing about the surface is smooth.
+_PARTS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class ViewSurface(NurbsSurface):
+    """Faces seen along a direction: S(x, y) is the point of them that lies there in the plane across it.
+
+    Within the outline of the faces every point, normal and second derivative is that of the face which lies there,
+    exact to rounding.  The control points are those of a smooth spline through such points; it stands for the faces
+    where kernels take a surface's numbers to tell strip widths, and it carries on beyond their outline and over holes.
+
+    Attributes
+    ----------
+    members : tuple of Face
+    frame : (3, 3) array
+        Coordinates x, y and height along the direction are frame @ (p - origin).
+    origin : (3,) array
+        mm
+    outline : tuple of (m, 2) arrays
+        Loops around the members in x and y, the outer one first.
+    """
+
+    members: tuple[Face, ...]
+    frame: Array
+    origin: Array
+    outline: tuple[Array, ...]
+
+    @cached_property
+    def seen(self) -> tuple[SeenFace, ...]:
+        """The members in the plane."""
+        return tuple(SeenFace(face, self.frame[:2], self.origin) for face in self.members)
+
+    @cached_property
+    def _view(self) -> FacesInView:
+        return FacesInView(self.seen, self.outline)
+
+    @cached_property
+    def breaks(self) -> tuple[Array, Array]:
+        """Inner values of u and of v between which to look for what is not smooth: edges of members run anywhere."""
+        return tuple(np.linspace(*ends, _PARTS + 1)[1:-1] for ends in self.domain)  # type: ignore[return-value]
+
+    def evaluate(self, uv: Array) -> Derivatives:
+        """Position and derivatives up to the second order.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+            Places x, y in the plane; beyond the outline the spline goes on.
+        """
+        places = np.asarray(uv, dtype=float).reshape(-1, 2)
+        found = super().evaluate(places)
+        owner = self._view.owners(places)
+        for k in np.unique(owner[owner >= 0]):
+            rows = np.flatnonzero(owner == k)
+            exact = _over_plane(self.seen[k], self.frame, places[rows])
+            for mine, own in zip(found, exact, strict=True):
+                mine[rows] = own
+        return found
+
+    def transformed(self, matrix: ArrayLike) -> "ViewSurface":
+        """The surface moved by an affine map, its members with it.
+
+        Parameters
+        ----------
+        matrix : (4, 4) array_like
+            Maps column vectors (x, y, z, 1).
+        """
+        spline = super().transformed(matrix)
+        m = np.asarray(matrix, dtype=float)
+        return ViewSurface(spline.knots_u, spline.knots_v, spline.control, spline.degree,
+                           tuple(face.transformed(m) for face in self.members), self.frame @ np.linalg.inv(m[:3, :3]),
+                           m[:3, :3] @ self.origin + m[:3, 3], self.outline)
+
+
+def _over_plane(seen: SeenFace, frame: Array, places: Array) -> Derivatives:
+    """A face's points and their derivatives with the place in the plane."""
+    d = seen.face.evaluate(seen.find(places))
+    a, b = d.su @ frame[:2].T, d.sv @ frame[:2].T
+    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
+    # rates of the face's own parameters (u, v) with x and with y
+    ux, uy, vx, vy = b[:, 1] / det, -b[:, 0] / det, -a[:, 1] / det, a[:, 0] / det
+    sx = d.su * ux[:, None] + d.sv * vx[:, None]
+    sy = d.su * uy[:, None] + d.sv * vy[:, None]
+    second = []
+    for (u1, v1), (u2, v2) in (((ux, vx), (ux, vx)), ((ux, vx), (uy, vy)), ((uy, vy), (uy, vy))):
+        bend = (d.suu * (u1 * u2)[:, None] + d.suv * (u1 * v2 + v1 * u2)[:, None] + d.svv * (v1 * v2)[:, None])
+        aside = bend @ frame[:2].T  # places in the plane move evenly: what the bend moves aside, u and v take back
+        second.append(bend - sx * aside[:, :1] - sy * aside[:, 1:])
+    return Derivatives(d.point, sx, sy, *second)
+
+
+def view_surface(members: Sequence[Face], frame: Array, origin: Array, outline: tuple[Array, ...]) -> ViewSurface:
+    """Faces as one surface, with a spline through as many of its points as it takes.
+
+    Parameters
+    ----------
+    members, frame, origin, outline
+        As the attributes of `ViewSurface`.
+    """
+    seen = tuple(SeenFace(face, frame[:2], origin) for face in members)
+    view = FacesInView(seen, outline)
+    low, high = np.concatenate(outline).min(axis=0), np.concatenate(outline).max(axis=0)
+    size, count = high - low, _COARSE
+    while True:
+        step = size.max() / (count - 1)
+        counts = np.maximum(np.ceil(size / step).astype(int) + 1, 5)
+        lines = [np.linspace(low[k], high[k], counts[k]) for k in (0, 1)]
+        heights = _heights(view, frame, origin, lines)
+        spline = _spline_through(lines, heights, frame, origin)
+        if count >= _FINE or _worst(spline, view, frame, origin, lines) <= _EXACT:
+            break
+        count = 2 * count - 1
+    return ViewSurface(spline.knots_u, spline.knots_v, spline.control, spline.degree, tuple(members), frame, origin,
+                       outline)
+
+
+def _points(seen: Sequence[SeenFace], places: Array, owner: Index) -> tuple[Array, Array, Array]:
+    """Points of the owners at places (n, 3), and their derivatives with x and y."""
+    point, sx, sy = (np.zeros((len(places), 3)) for _ in range(3))
+    for k in np.unique(owner[owner >= 0]):
+        rows, one = np.flatnonzero(owner == k), seen[k]
+        d = one.face.evaluate(one.find(places[rows]))
+        a, b = d.su @ one.rows.T, d.sv @ one.rows.T
+        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)[:, None]
+        point[rows] = d.point
+        sx[rows] = (d.su * b[:, 1:] - d.sv * a[:, 1:]) / det
+        sy[rows] = (d.sv * a[:, :1] - d.su * b[:, :1]) / det
+    return point, sx, sy
+
+
+def _heights(view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> Array:
+    """Heights on a grid; beyond the outline those of the tangent planes of the nearest points of the faces."""
+    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    owner = view.owners(places)
+    point, _, _ = _points(view.seen, places, owner)
+    found = (point - origin) @ frame[2]
+    beyond = np.flatnonzero(owner < 0)
+    if len(beyond):
+        found[beyond] = _heights_beyond(view, frame, origin, places[beyond])
+    return np.asarray(found.reshape(len(lines[0]), len(lines[1])))
+
+
+def _heights_beyond(view: FacesInView, frame: Array, origin: Array, places: Array) -> Array:
+    """Heights beyond the outline and over holes: the mean of the tangent planes along it, near ones counting most."""
+    size = float(np.ptp(view.outline[0], axis=0).max())
+    step = size / _ALONG
+    border = np.concatenate([walk(loop, stations(loop, (step, step))) for loop in view.outline])
+    border = border[:: max(1, len(border) // _BORDER)]
+    point, sx, sy = _points(view.seen, border, view.nearest(border))
+    height = (point - origin) @ frame[2]
+    slope = np.column_stack([sx @ frame[2], sy @ frame[2]])
+    found = np.empty(len(places))
+    for first in range(0, len(places), _AT_ONCE):
+        way = places[first:first + _AT_ONCE, None] - border
+        weight = 1.0 / np.maximum((way**2).sum(axis=2), (1e-3 * step) ** 2) ** 2
+        rise = (way * slope).sum(axis=2)
+        plane = height + rise / (1 + np.abs(rise) / (_RISE * size))
+        found[first:first + _AT_ONCE] = (plane * weight).sum(axis=1) / weight.sum(axis=1)
+    return found
+
+
+def _spline_through(lines: list[Array], heights: Array, frame: Array, origin: Array) -> NurbsSurface:
+    """A bicubic spline over the plane through heights on a grid."""
+    along = make_interp_spline(lines[0], heights, k=3)
+    across = make_interp_spline(lines[1], along.c.T, k=3)
+    knots = along.t, across.t
+    greville = [(t[1:-3] + t[2:-2] + t[3:-1]) / 3 for t in knots]
+    local = np.empty((*across.c.T.shape, 3))
+    local[..., 0], local[..., 1] = np.meshgrid(*greville, indexing="ij")
+    local[..., 2] = across.c.T
+    return NurbsSurface.from_points(local @ np.linalg.inv(frame).T + origin, (3, 3), knots)
+
+
+def _worst(spline: NurbsSurface, view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> float:
+    """How far a spline lies beside the faces between the points of its grid: the mean of the worst tenth, mm."""
+    middle = [(line[1:] + line[:-1]) / 2 for line in lines]
+    places = np.stack(np.meshgrid(*middle, indexing="ij"), axis=-1).reshape(-1, 2)
+    owner = view.owners(places)
+    within = owner >= 0
+    if not within.any():
+        return 0.0
+    point, _, _ = _points(view.seen, places[within], owner[within])
+    off = np.sort(np.abs((spline.evaluate(places[within]).point - point) @ frame[2]))
+    return float(off[-max(len(off) // 10, 1):].mean())

@@ -1,0 +1,148 @@
+"""Faces seen along a direction as one: every point is one of theirs, with its derivatives, area and outline."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.errors import UnsupportedGeometry
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
+from toolaxis.shape.part import Part
+from toolaxis.skin.find import find_skins
+from toolaxis.skin.join import join
+from toolaxis.skin.pieces import own_pieces
+from toolaxis.skin.unite import unite
+from toolaxis.skin.view_surface import ViewSurface
+
+PLACES = np.random.default_rng(3).random((500, 2))
+
+
+@pytest.fixture(scope="module")
+def united(quilt: Part) -> Face:
+    return join(quilt, (1, 2, 3)).faces[0]
+
+
+def inner(face: Face) -> np.ndarray:
+    u0, u1, v0, v1 = face.bounds
+    uv = np.array([u0, v0]) + PLACES * np.array([u1 - u0, v1 - v0])
+    return uv[face.contains(uv)]
+
+
+def test_points_normals_and_curvatures_are_those_of_the_members(united: Face, whole: Face) -> None:
+    assert isinstance(united.surface, ViewSurface) and united.label == "1+2+3"
+    uv = inner(united)
+    assert len(uv) > 300
+    found = nearest(whole, united.evaluate(uv).point)
+    assert found.distance.max() < 1e-9
+    assert (united.normal(uv) * whole.normal(found.uv)).sum(axis=1).min() > 1 - 1e-12
+    mine, theirs = united.curvature(uv), whole.curvature(found.uv)
+    assert np.abs(mine.k1 - theirs.k1).max() < 1e-9 and np.abs(mine.k2 - theirs.k2).max() < 1e-9
+
+
+def test_derivatives_are_those_of_the_points(united: Face) -> None:
+    uv, step = inner(united), 1e-4
+    d = united.evaluate(uv)
+    for axis, first, second in ((0, d.su, d.suu), (1, d.sv, d.svv)):
+        shift = step * np.eye(2)[axis]
+        ahead, back = united.evaluate(uv + shift), united.evaluate(uv - shift)
+        smooth = united.contains(uv + shift) & united.contains(uv - shift)
+        rate = (ahead.point - back.point) / (2 * step)
+        bend = (ahead.point - 2 * d.point + back.point) / step**2
+        assert np.abs(rate - first)[smooth].max() < 1e-6 and np.abs(bend - second)[smooth].max() < 1e-4
+        mixed = ((ahead.sv - back.sv) if axis == 0 else (ahead.su - back.su)) / (2 * step)
+        assert np.abs(mixed - d.suv)[smooth].max() < 1e-6
+
+
+def test_areas_add_up_and_the_outline_is_that_of_the_whole(united: Face, whole: Face, quilt: Part) -> None:
+    assert united.area == pytest.approx(sum(face.area for face in quilt.faces), rel=1e-12)
+    assert united.trimmed(tuple(loop.copy() for loop in united.trims)[:1]).area == pytest.approx(whole.area, rel=1e-5)
+    half = united.trims[0] * [1, 0.5]
+    assert ta.Face.area.func(replace(united, trims=(half,))) < united.area  # a piece is measured
+    border = united.evaluate(united.trims[0]).point
+    u0, u1, v0, v1 = whole.bounds
+    uv = nearest(whole, border).uv
+    edge = np.minimum(np.minimum(uv[:, 0] - u0, u1 - uv[:, 0]), np.minimum(uv[:, 1] - v0, v1 - uv[:, 1]))
+    assert edge.max() < 1e-3 and len(united.trims) == 1
+
+
+def test_moving_the_faces_moves_the_surface(united: Face) -> None:
+    turn = ta.Face.transformed
+    for mirror in (1.0, -1.0):
+        m = np.array([[0, -1, 0, 5.0], [1, 0, 0, -3.0], [0, 0, mirror, 2.0], [0, 0, 0, 1]])
+        moved, uv = turn(united, m), inner(united)
+        expected = united.evaluate(uv).point @ m[:3, :3].T + m[:3, 3]
+        assert np.abs(moved.evaluate(uv).point - expected).max() < 1e-9
+        assert np.abs(moved.normal(uv) - united.normal(uv) @ m[:3, :3].T).max() < 1e-9
+
+
+def test_pieces_of_it_are_pieces_of_the_members(united: Face) -> None:
+    u0, u1, v0, v1 = united.bounds
+    middle = 0.3 * u0 + 0.7 * u1
+    loops = np.array([[u0 + 10, v0 + 10], [middle, v0 + 10], [middle, v1 - 10], [u0 + 10, v1 - 10]])
+    piece = united.trimmed((loops,), united.label + "b")
+    own = own_pieces(piece)
+    assert {one.number for one in own} == {1, 2, 3} and all(one.label.endswith("b") for one in own)
+    assert sum(one.area for one in own) == pytest.approx(piece.area, rel=1e-4)
+    surface = united.surface
+    assert isinstance(surface, ViewSurface)
+    for one in own:
+        points = surface.seen[0].project(one.evaluate(one.grid(9, 9)).point)
+        assert inside(slabs((loops,)), points).all()
+    assert own_pieces(united) == surface.members
+
+
+def test_holes_stay_holes_and_gaps_close(whole: Face) -> None:
+    """A hole across two patches, the second of which lies 8 um higher."""
+    cut = 0.5
+    u, v = whole.surface.domain
+    way = np.linspace(0, np.pi, 40)
+    arc = np.column_stack([0.12 * np.sin(way), -0.12 * np.cos(way)])
+    left = np.vstack([[u[0], v[0]], [cut, v[0]], *[[cut - x, 0.5 + y] for x, y in arc], [cut, v[1]], [u[0], v[1]]])
+    right = np.vstack([[cut, v[0]], [u[1], v[0]], [u[1], v[1]], [cut, v[1]],
+                       *[[cut + x, 0.5 + y] for x, y in arc[::-1]]])
+    faces = [whole.trimmed((left,)), replace(whole.trimmed((right,)), number=2, label="2")]
+    faces[1] = faces[1].transformed(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0.008], [0, 0, 0, 1.0]]))
+    made = unite(faces)
+    hole = whole.area - sum(face.area for face in faces)
+    assert len(made.trims) == 2 and abs(signed_area(made.trims[1])) == pytest.approx(hole, rel=0.1)
+    assert made.area == pytest.approx(sum(face.area for face in faces), rel=1e-9)
+
+
+def test_what_is_covered_or_turns_too_far_is_refused(whole: Face) -> None:
+    above = whole.transformed(np.array([[1, 0, 0, 20], [0, 1, 0, 0], [0, 0, 1, 15], [0, 0, 0, 1.0]]))
+    with pytest.raises(UnsupportedGeometry, match="mm above or below face"):
+        unite([whole, replace(above, number=2, label="2")])
+    with pytest.raises(UnsupportedGeometry, match="turn by up to 90 degrees from the best view of them"):
+        unite([whole, replace(whole, flip=True, number=2, label="2")])
+
+
+def test_skins_are_found_and_planes_belong_to_them_where_they_are_narrow(quilt: Part) -> None:
+    assert find_skins(quilt).joined == ((1, 2, 3),)
+    plain = replace(quilt, faces=(quilt.faces[0], replace(quilt.faces[1], kind="plane"), quilt.faces[2]))
+    assert find_skins(plain).joined == ((1, 3),) and find_skins(plain, 100.0).joined == ((1, 2, 3),)
+
+
+def test_a_skin_is_planned_as_one_face_judged_and_read_again(quilt: Part, whole: Face, tmp_path: Path) -> None:
+    made = ta.plan(quilt, "ball:16", 0.4, faces="skins", method="normal", workers=1)
+    (op,) = made.operations
+    assert made.outcome == "complete" and op.name == "op01-face1+2+3" and op.orientation.ideal > 0
+    verdict = ta.verify(made)
+    assert verdict.passed and verdict.operations[0].faces == ("1", "2", "3")
+    single = ta.plan(ta.Part.from_faces([whole]), "ball:16", 0.4, method="normal", passes="planes", workers=1)
+    assert op.orientation.length == pytest.approx(single.length, rel=0.1)
+    with stage_folder(tmp_path / "plan") as stage:
+        write_plan(made, stage.folder)
+        stage.publish()
+    document = json.loads((tmp_path / "plan" / "plan.json").read_text())
+    assert document["part"]["joined"] == [[1, 2, 3]]
+    again = read_plan(tmp_path / "plan").operations[0]
+    assert np.array_equal(again.face.surface.control, op.face.surface.control)
+    assert all(map(np.array_equal, again.face.trims, op.face.trims))
+    deep = replace(op.path, cl=op.path.cl - 0.05 * op.path.axis) if op.path else None
+    assert not ta.verify(replace(made, operations=(replace(op, path=deep),))).passed
