@@ -13,6 +13,7 @@ from toolaxis.numeric.bezier import bezier_nets
 from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.differential import degenerate, normals
+from toolaxis.shape.surface import Derivatives
 from toolaxis.tolerances import LEAST
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ _AGREE, _AGAINST = float(np.cos(np.radians(20.0))), float(np.cos(np.radians(30.0
 #: Greatest distance of the place beside, and of all places on the way, in `REACH`; where the border of the surface is
 #: nearer than that on one side, a second place is looked for on the other side, so many times as far away.
 _MOST, _AWAY, _SECOND = 1.5, 4.0, 2.5
+#: Share of the greatest area per parameter below which the least one tells of places that may be next to a fold.
+_EVEN = 0.9
 #: Steps of the search for a place beside, and places on the way at which it is looked whether the surface is flat.
 _STEPS, _ON_THE_WAY = 60, 17
 #: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
@@ -60,7 +63,7 @@ class TurningCells(NamedTuple):
 
 
 class Folds(NamedTuple):
-    """Places that lie in folds.
+    """Places that lie in or next to folds.
 
     rows (k,): their numbers;  normal (k, 3): unit normals of the surface around each fold, in the sense of Su x Sv;
     beside (k, 2): parameters of a place beside each fold.
@@ -140,11 +143,11 @@ def _short(points: Array) -> Bools:
 
 
 def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
-    """Which places lie in folds, and what surrounds them.
+    """Which places lie in or next to folds, and what surrounds them.
 
-    A place lies in a fold where the normals on both sides of it along a parameter agree, its own contradicts them, and
-    the surface in between leaves their planes by next to nothing.  An edge, a wall or a groove, however thin, does not:
-    its sides do not agree, or are not flat.
+    A place does where the normals on both sides of it along a parameter agree, one in between contradicts them, and
+    the surface in between leaves their planes by next to nothing.  An edge, a wall or a groove, however thin, is no
+    fold: its sides do not agree, or are not flat.
 
     Parameters
     ----------
@@ -168,30 +171,61 @@ def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
 
 
 def _folds_along(surface: "NurbsSurface", axis: int, uv: Array, normal: Array) -> Folds:
-    """Places whose surroundings along one parameter contradict them."""
-    point = surface.evaluate(uv).point
+    """Places whose surroundings along one parameter agree, and contradict what is between them."""
+    d = surface.evaluate(uv)
     first, second, sound = _places_beside(surface, axis, uv)
-    far, inner = [], []
+    far, inner, areas = [], [], [_area(d)]
     for place in (first, second):
-        d = surface.evaluate(place)
-        far.append(np.linalg.norm(d.point - point, axis=1)[:, None])
-        inner.append(normals(d, inward=surface.inward(place)))
-        sound &= ~degenerate(d)
+        beside = surface.evaluate(place)
+        far.append(np.linalg.norm(beside.point - d.point, axis=1)[:, None])
+        inner.append(normals(beside, inward=surface.inward(place)))
+        areas.append(_area(beside))
+        sound &= ~degenerate(beside)
     # On one side of a place the nearer normal stands for all; between two places the normal turns evenly.
     between = (first[:, axis] < uv[:, axis]) != (second[:, axis] < uv[:, axis])
     around = np.where(between[:, None], far[1] * inner[0] + far[0] * inner[1], inner[0])
     size = np.linalg.norm(around, axis=1)
     around /= np.where(size > 0, size, 1.0)[:, None]
-    rows = np.flatnonzero(sound & (dot(*inner) > _AGREE) & (dot(normal, around) < _AGAINST))
-    share = np.linspace(0.0, 1.0, _ON_THE_WAY)[:, None, None]
-    flat = np.ones(len(rows), dtype=bool)
+    against = dot(normal, around) < _AGAINST
+    rows = np.flatnonzero(sound & (dot(*inner) > _AGREE) & (against | (np.min(areas, 0) < _EVEN * np.max(areas, 0))))
+    against, flat = against[rows], np.ones(len(rows), dtype=bool)
     ends = np.where(between[:, None], second, _end_opposite(surface, axis, uv, first))
     for place, plane in ((first, inner[0]), (second, inner[1]), (ends, np.where(between[:, None], inner[1], inner[0]))):
-        way = uv[rows] + share * (place[rows] - uv[rows])
-        off = surface.evaluate(way.reshape(-1, 2)).point.reshape(len(way), len(rows), 3) - point[rows]
-        flat &= np.abs(dot(off, plane[rows])).max(axis=0) <= FLAT
-        flat &= np.linalg.norm(off, axis=-1).max(axis=0) <= _AWAY * REACH
-    return Folds(rows[flat], around[rows[flat]], first[rows[flat]])
+        contradicts, level = _look_on_the_way(surface, (uv[rows], place[rows]), (around[rows], plane[rows]))
+        against |= contradicts
+        flat &= level
+    rows = rows[against & flat]
+    return Folds(rows, around[rows], first[rows])
+
+
+def _area(d: Derivatives) -> Array:
+    return np.asarray(np.linalg.norm(np.cross(d.su, d.sv), axis=1))
+
+
+def _look_on_the_way(surface: "NurbsSurface", ways: tuple[Array, Array], planes: tuple[Array, Array],
+                     ) -> tuple[Bools, Bools]:
+    """Whether a normal on the way from places to others contradicts that of the surroundings, and whether the surface
+    stays near the planes through the places.
+
+    Parameters
+    ----------
+    surface : NurbsSurface
+    ways : (k, 2), (k, 2) array
+        Parameters of the places, and of those to which the ways lead.
+    planes : (k, 3), (k, 3) array
+        Normals of the surroundings, and of the planes.
+    """
+    share = np.linspace(0.0, 1.0, _ON_THE_WAY)[:, None, None]
+    uv = (ways[0] + share * (ways[1] - ways[0])).reshape(-1, 2)
+    d = surface.evaluate(uv)
+    shape = (_ON_THE_WAY, len(ways[0]), 3)
+    turn = dot(normals(d, inward=surface.inward(uv)).reshape(shape), planes[0])
+    off = d.point.reshape(shape)
+    off = off - off[0]
+    level = np.abs(dot(off, planes[1])).max(axis=0) <= FLAT
+    level &= np.linalg.norm(off, axis=-1).max(axis=0) <= _AWAY * REACH
+    contradicts = ((turn < _AGAINST) & ~degenerate(d).reshape(shape[:2])).any(axis=0)
+    return np.asarray(contradicts), np.asarray(level)
 
 
 def _end_opposite(surface: "NurbsSurface", axis: int, uv: Array, place: Array) -> Array:
