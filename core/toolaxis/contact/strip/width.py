@@ -90,7 +90,8 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     Notes
     -----
     Upright on a flat bottom (T = n) the tip stands on the contact, as in `placing.tips`.  A contact that gouges by
-    curvature has a swept width too, which is given: judge gouging elsewhere.
+    curvature has a swept width too, which is given: judge gouging elsewhere.  A contact in a fold of the surface stands
+    for the place beside it; a strip that ends behind a fold may come out too narrow or too wide.
 
     **Source**: swept envelope of [zhu2016] Eq. (1); the paper takes the section of the stationary cutter.
 
