@@ -150,7 +150,7 @@ class NormalCells:
         # In a fold a narrow cell has no normals but those of the cells beside it.
         folded = np.zeros(len(middle), dtype=bool)
         folded[self._face.folds(middle).rows] = True
-        spread[folded & (np.minimum(across_u, across_v) < _SPECK)] = 0.0
+        spread[folded & (share >= 1) & (np.minimum(across_u, across_v) < _SPECK)] = 0.0
         return normal, spread
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:
