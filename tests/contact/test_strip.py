@@ -299,3 +299,24 @@ def test_nonsense_is_refused(change, words):
 def test_no_contact_no_width():
     assert strip_width(plane(), Tool.ball(8), np.empty((0, 2)), [0, 0, 1], 0.02).shape == (0, 2)
     assert step_widths(plane(), Tool.ball(8), np.empty((0, 2)), [0, 0, 1], 0.02).shape == (0, 2)
+
+
+@pytest.mark.parametrize("feed", ["u", "v"])
+def test_a_contact_in_a_fold_stands_for_the_place_beside(feed):
+    """The face runs back on itself by 0.0003 mm at x = 30; the derivatives alone put the cutter below it there."""
+    line = np.concatenate([np.linspace(0.0, 30.0, 7), 30.0 - 5e-5 * np.arange(1, 6), np.linspace(35.0, 60.0, 6)])
+    low = np.column_stack([line, 0.0 * line, 0.0 * line])
+    face = Face.from_bspline(np.stack([low, low + np.array([0.0, 20.0, 0.0])], axis=1), (3, 1))
+    uv = np.column_stack([np.linspace(0.42, 0.58, 9), np.full(9, 0.5)])
+    beside = face.outside_folds(uv)
+    assert (beside != uv).any(axis=1).all()
+    tool, axis = Tool.torus(10, 1), [0.1, 0.1, 1.0]
+    found, wanted = (strip_width(face, tool, rows, axis, 0.05, feed) for rows in (uv, beside))
+    assert found == pytest.approx(wanted, rel=1e-9)
+    assert found.min() > 0.2
+    found, wanted = (step_widths(face, tool, rows, axis, 0.05, feed) for rows in (uv, beside))
+    step = 1 if feed == "u" else 0
+    upper = wanted[:, 1] + beside[:, step] > uv[:, step]
+    assert uv[:, step] - found[:, 0] == pytest.approx(beside[:, step] - wanted[:, 0], abs=1e-12)
+    assert (uv[:, step] + found[:, 1])[upper] == pytest.approx((beside[:, step] + wanted[:, 1])[upper], abs=1e-12)
+    assert found[:, 0].min() > 0.02

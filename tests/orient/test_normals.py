@@ -127,3 +127,13 @@ def test_what_was_divided_for_one_axis_is_there_for_the_next(monkeypatch):
         assert all(np.array_equal(a, b) for a, b in zip(alone, kept, strict=True))
     for same in (one, again[0]):
         assert all(np.array_equal(a, b) for a, b in zip(same, every[0], strict=True))
+
+
+def test_a_fold_of_vanishing_size_adds_no_normals() -> None:
+    """A plane face that runs back on itself by 0.0003 mm: the derivatives alone turn by half a turn there."""
+    line = np.concatenate([np.linspace(0.0, 30.0, 7), 30.0 - 5e-5 * np.arange(1, 6), np.linspace(35.0, 60.0, 6)])
+    low = np.column_stack([line, 0.0 * line, 0.0 * line])
+    field = NormalField(Face.from_bspline(np.stack([low, low + np.array([0.0, 0.1, 0.0])], axis=1), (3, 1)))
+    found = field.range_of_angles([0.6, 0.0, 0.8], 0.4, 0.9)
+    assert 0.4 <= found.low <= np.arccos(0.8) <= found.high <= 0.9
+    assert field.cap.radius < 1e-6

@@ -136,7 +136,8 @@ class NormalCells:
 
     def _normals(self, middle: Array, half: Array, bounds: Array) -> tuple[Array, Array]:
         """Normals in the middles of cells, and how far others of the cell are from them at most."""
-        d, normal = self._face.evaluate(middle), self._face.normal(middle)
+        d = self._face.evaluate(middle)
+        normal = self._face.normal(middle, d)
         hu, hv = half.T
         off_u = bounds[:, 0] * hu + bounds[:, 1] * hv
         off_v = bounds[:, 1] * hu + bounds[:, 2] * hv
@@ -144,8 +145,12 @@ class NormalCells:
         size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), np.pi)
-        across = 2 * (su * hu + sv * hv) + off_u * hu + off_v * hv
-        spread[(share >= 1) & (across < _SPECK) & (np.linalg.norm(normal, axis=1) > 0.5)] = 0.0
+        across_u, across_v = 2 * su * hu + off_u * hu, 2 * sv * hv + off_v * hv
+        spread[(share >= 1) & (across_u + across_v < _SPECK) & (np.linalg.norm(normal, axis=1) > 0.5)] = 0.0
+        # In a fold a narrow cell has no normals but those of the cells beside it.
+        folded = np.zeros(len(middle), dtype=bool)
+        folded[self._face.folds(middle).rows] = True
+        spread[folded & (share >= 1) & (np.minimum(across_u, across_v) < _SPECK)] = 0.0
         return normal, spread
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:

@@ -122,9 +122,9 @@ class NormalField:
 
         Notes
         -----
-        **Properties**: 1. no normal of the face has an angle outside, but within 0.01 mm of a pole, where the normals
-        in the middles of cells stand for all; 2. low and high are met to 1e-4 rad by a normal of the face where they
-        decide against the limits.
+        **Properties**: 1. no normal of the face has an angle outside, but within 0.01 mm of a pole or a fold, where
+        the normals in the middles of cells stand for all; 2. low and high are met to 1e-4 rad by a normal of the face
+        where they decide against the limits.
         """
         t = np.asarray(axis, dtype=float)
         if self._members:

@@ -17,7 +17,6 @@ from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters, cutt
 from toolaxis.contact.strip.swept_volume_moving_axis import least_distance_to_positions
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.path.parametrization import Cut, IsoChart
-from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
 from toolaxis.shape.surface import Derivatives
 
@@ -173,6 +172,5 @@ class MovingChart(IsoChart):
 
     def _evaluate_at(self, uv: Array) -> tuple[Derivatives, Array]:
         """Derivatives and normals at parameters."""
-        (u0, u1), (v0, v1) = self.face.surface.domain
         d = self.face.evaluate(uv)
-        return d, normals(d, self.face.flip, np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - uv)
+        return d, self.face.normal(uv, d)

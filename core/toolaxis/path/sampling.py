@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.feature_partition import partition
-from toolaxis.shape.differential import curvatures, normals
+from toolaxis.shape.differential import curvatures
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -97,7 +97,7 @@ def sample_points(face: Face, tool: Tool, tolerance: float = 0.1,
         raise InvalidInput(f"weights are {weights}: three numbers of zero or more, not all zero, are needed")
     uv, cell = _grid(face)
     d = face.evaluate(uv)
-    n = normals(d, face.flip)
+    n = face.normal(uv, d)
     k = curvatures(d, n)
     groups = (weights[0] * d.point / face.diagonal, weights[1] * n,
               weights[2] * tool.radius * np.column_stack([k.k1, k.k2]))

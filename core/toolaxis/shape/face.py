@@ -10,6 +10,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.polygons import EdgeIndex, inside, signed_area, slabs
 from toolaxis.shape import measure
 from toolaxis.shape.differential import Curvature, curvatures, degenerate, normals
+from toolaxis.shape.folds import NO_FOLDS, Folds, find_folds
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
 
@@ -152,29 +153,59 @@ class Face:
         """Position and derivatives at (n, 2) parameters."""
         return self.surface.evaluate(np.asarray(uv, dtype=float))
 
-    def _inward(self, uv: Array) -> Array:
-        """Direction in (u, v) from parameters to the middle of the domain."""
-        (u0, u1), (v0, v1) = self.surface.domain
-        return np.asarray(np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - uv)
+    def normal(self, uv: ArrayLike, at: Derivatives | None = None) -> Array:
+        """Unit normals out of the material, (n, 3); at poles the limit from inside, in folds the normal around them.
 
-    def normal(self, uv: ArrayLike) -> Array:
-        """Unit normals out of the material, (n, 3), at (n, 2) parameters; at poles the limit from inside."""
+        Parameters
+        ----------
+        uv : (n, 2) array_like
+        at : Derivatives, optional
+            Position and derivatives at the same parameters, where they are known.
+        """
         rows = np.asarray(uv, dtype=float).reshape(-1, 2)
-        return normals(self.evaluate(rows), self.flip, self._inward(rows))
+        found = normals(self.evaluate(rows) if at is None else at, inward=self.surface.inward(rows))
+        folds = find_folds(self.surface, rows, found)
+        found[folds.rows] = folds.normal
+        return -found if self.flip else found
+
+    def folds(self, uv: ArrayLike) -> Folds:
+        """Which of (n, 2) parameters lie in folds, and what surrounds them.
+
+        Parameters
+        ----------
+        uv : (n, 2) array_like
+        """
+        rows = np.asarray(uv, dtype=float).reshape(-1, 2)
+        if not self.surface.turning_cells.turning.any():
+            return NO_FOLDS
+        return find_folds(self.surface, rows, normals(self.evaluate(rows), inward=self.surface.inward(rows)))
+
+    def outside_folds(self, uv: ArrayLike) -> Array:
+        """Parameters (n, 2), where they lie in folds those of a place beside, up to 0.015 mm away.
+
+        Parameters
+        ----------
+        uv : (n, 2) array_like
+        """
+        rows = np.array(uv, dtype=float).reshape(-1, 2)
+        folds = self.folds(rows)
+        rows[folds.rows] = folds.beside
+        return rows
 
     def curvature(self, uv: ArrayLike) -> Curvature:
         """Principal curvatures (positive where the face bends towards its normal) at (n, 2) parameters.
 
-        At poles they are those of a point beside, `POLE_STEP` of the way to the middle of the domain: within that
-        share of their change over the face, and without bound at the apex of a cone.
+        In folds they are those of the surface beside.  At poles they are those of a point beside, `POLE_STEP` of the
+        way to the middle of the domain: within that share of their change over the face, and without bound at the apex
+        of a cone.
         """
-        rows = np.array(uv, dtype=float).reshape(-1, 2)
+        rows = self.outside_folds(uv)
         d = self.evaluate(rows)
         poor = degenerate(d)
         if poor.any():
-            rows[poor] += POLE_STEP * self._inward(rows[poor])
+            rows[poor] += POLE_STEP * self.surface.inward(rows[poor])
             d = self.evaluate(rows)
-        return curvatures(d, normals(d, self.flip, self._inward(rows)))
+        return curvatures(d, normals(d, self.flip, self.surface.inward(rows)))
 
     @cached_property
     def _slabs(self) -> EdgeIndex:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.bspline import MAX_DEGREE, SurfaceData, surface_derivatives_many
 from toolaxis.progress import breathe
+from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.surface import Derivatives, Domain
 
 Array = NDArray[np.float64]
@@ -151,6 +152,21 @@ class NurbsSurface:
         """The tuple that kernels take."""
         rational = bool(np.ptp(self.control[..., 3]) > 0 or self.control[0, 0, 3] != 1.0)
         return self.knots_u, self.knots_v, self.control, self.degree[0], self.degree[1], rational
+
+    @cached_property
+    def turning_cells(self) -> TurningCells:
+        """Where Su x Sv may turn over."""
+        return find_turning_cells(self.data)
+
+    def inward(self, uv: Array) -> Array:
+        """Direction in (u, v) from parameters to the middle of the domain.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        """
+        (u0, u1), (v0, v1) = self.domain
+        return np.asarray(np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - uv)
 
     def evaluate(self, uv: Array) -> Derivatives:
         """Position and derivatives up to the second order.

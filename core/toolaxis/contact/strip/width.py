@@ -90,7 +90,8 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     Notes
     -----
     Upright on a flat bottom (T = n) the tip stands on the contact, as in `placing.tips`.  A contact that gouges by
-    curvature has a swept width too, which is given: judge gouging elsewhere.
+    curvature has a swept width too, which is given: judge gouging elsewhere.  A contact in a fold of the surface stands
+    for the place beside it; a strip that ends behind a fold may come out too narrow or too wide.
 
     **Source**: swept envelope of [zhu2016] Eq. (1); the paper takes the section of the stationary cutter.
 
@@ -98,7 +99,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     h -> 0 the sum tends to `second_order_width`.
     """
     inputs = kernel_inputs(face, tool, scallop, allowance)
-    contacts, along = kernel_contacts(uv, feed, scallop)
+    contacts, along = kernel_contacts(face.outside_folds(as_rows(uv, 2, "uv")), feed, scallop)
     axes = axis_rows(axis, len(contacts.uv))[None]
     return take_half_widths(*inputs, contacts, axes, StripOptions(along, True))[0, :, ::-1].copy()
 
@@ -161,5 +162,8 @@ def _take_step_widths(face: Face, tool: Tool, uv: ArrayLike, axes: Array, feed: 
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
     inputs = kernel_inputs(face, tool, *heights)
-    contacts, along = kernel_contacts(uv, feed, heights[0])
-    return take_half_widths(*inputs, contacts, axes, StripOptions(along, False))
+    asked = as_rows(uv, 2, "uv")
+    contacts, along = kernel_contacts(face.outside_folds(asked), feed, heights[0])
+    widths = take_half_widths(*inputs, contacts, axes, StripOptions(along, False))
+    aside = (asked - contacts.uv)[:, 1 - along, None] * np.array([1.0, -1.0])
+    return np.where(widths > 0.0, np.maximum(widths + aside, 0.0), 0.0)

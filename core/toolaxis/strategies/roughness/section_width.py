@@ -16,7 +16,6 @@ from toolaxis.contact.strip.scallop import effective_radius
 from toolaxis.contact.strip.swept_volume_moving_axis import cutter_distances
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import axis_rows, dot
-from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
 from toolaxis.tools.tool import Tool
@@ -153,10 +152,9 @@ def section_points(face: Face, parameters: Array) -> tuple[Array, Array]:
     parameters : (n, k, 2) array
         As `section_parameters` gives.
     """
-    (u0, u1), (v0, v1) = face.surface.domain
     at = parameters.reshape(-1, 2)
     d = face.evaluate(at)
-    normal = normals(d, face.flip, np.array([0.5 * (u0 + u1), 0.5 * (v0 + v1)]) - at)
+    normal = face.normal(at, d)
     shape = (*parameters.shape[:2], 3)
     return d.point.reshape(shape), normal.reshape(shape)
 

@@ -15,7 +15,7 @@ from toolaxis.contact.frame import Frame, axis_from_lean, contact_frame
 from toolaxis.contact.placement import tips
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, dot
-from toolaxis.shape.differential import curvature_form, normals
+from toolaxis.shape.differential import curvature_form
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -289,4 +289,4 @@ def _feet(face: Face, points: Array, uv: Array, rounds: int) -> tuple[Array, Arr
         step = np.stack([b * fv - c * fu, b * fu - a * fv], axis=1) / turn[:, None]
         uv = uv + np.clip(step, -most, most)
     d = face.evaluate(uv)
-    return uv, dot(points - d.point, normals(d, face.flip))
+    return uv, dot(points - d.point, face.normal(uv, d))

@@ -1,0 +1,271 @@
+"""Folds: places where a surface runs back on itself by next to nothing, as splines of CAD systems now and then do.
+
+There Su x Sv turns over, and points into the material for a few thousandths of a millimetre.  The surface itself goes
+straight on: seen from as far away as a machining tolerance it has one normal, that of the surface beside the fold.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.bezier import bezier_nets
+from toolaxis.numeric.bspline import SurfaceData
+from toolaxis.numeric.vectors import dot
+from toolaxis.shape.differential import degenerate, normals
+from toolaxis.shape.surface import Derivatives
+from toolaxis.tolerances import LEAST
+
+if TYPE_CHECKING:
+    from toolaxis.shape.nurbs import NurbsSurface
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Index = NDArray[np.intp]
+
+#: How far beside a place it is looked for what surrounds it, mm: folds of real parts run back by up to 0.004 mm.
+REACH = 0.01
+#: How far a fold may leave the planes of its surroundings, mm: no tolerance of a cut is less.
+FLAT = LEAST
+#: Cosines of the angle within which the normals beside a fold agree, and from which on one between contradicts them.
+_AGREE, _AGAINST = float(np.cos(np.radians(20.0))), float(np.cos(np.radians(30.0)))
+#: Greatest distance of the place beside, and of all places on the way, in `REACH`; where the border of the surface is
+#: nearer than that on one side, a second place is looked for on the other side, so many times as far away.
+_MOST, _AWAY, _SECOND = 1.5, 4.0, 2.5
+#: Share of the greatest area per parameter below which the least one tells of places that may be next to a fold.
+_EVEN = 0.9
+#: Steps of the search for a place beside, and places on the way at which it is looked whether the surface is flat.
+_STEPS, _ON_THE_WAY = 60, 17
+#: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
+_PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
+
+
+class TurningCells(NamedTuple):
+    """Cells of a surface's parameters, and in which of them Su x Sv may turn over.
+
+    lines_u (nu + 1,), lines_v (nv + 1,): borders of the cells;  turning (nu, nv): False where it surely does not, and
+    the cell is no piece of a fold itself.
+    """
+
+    lines_u: Array
+    lines_v: Array
+    turning: Bools
+
+    def rows_in(self, uv: Array) -> Index:
+        """Numbers of the parameters (n, 2) that lie in cells that may turn over."""
+        if not self.turning.any():
+            return np.empty(0, dtype=np.intp)
+        u, v = uv.T
+        within = (u >= self.lines_u[0]) & (u <= self.lines_u[-1]) & (v >= self.lines_v[0]) & (v <= self.lines_v[-1])
+        i = np.clip(np.searchsorted(self.lines_u, u, side="right") - 1, 0, len(self.lines_u) - 2)
+        j = np.clip(np.searchsorted(self.lines_v, v, side="right") - 1, 0, len(self.lines_v) - 2)
+        return np.flatnonzero(within & self.turning[i, j])
+
+
+class Folds(NamedTuple):
+    """Places that lie in or next to folds.
+
+    rows (k,): their numbers;  normal (k, 3): unit normals of the surface around each fold, in the sense of Su x Sv;
+    beside (k, 2): parameters of a place beside each fold.
+    """
+
+    rows: Index
+    normal: Array
+    beside: Array
+
+
+NO_FOLDS = Folds(np.empty(0, dtype=np.intp), np.empty((0, 3)), np.empty((0, 2)))
+
+
+def find_turning_cells(data: SurfaceData) -> TurningCells:
+    """Where Su x Sv of a surface may turn over, by the control points of its pieces.
+
+    Parameters
+    ----------
+    data : tuple
+        The surface.
+
+    Notes
+    -----
+    Su of a piece lies in the cone of the legs of its control net along u, Sv in that of the legs along v.  Where the
+    two cones share no line, Su and Sv are nowhere parallel.  A cell shorter than a fold may lie within one.
+    """
+    knots_u, knots_v, _, pu, pv, _ = data
+    lines_u, lines_v = _cell_lines(knots_u, pu), _cell_lines(knots_v, pv)
+    step = max(1, _AT_ONCE // ((len(lines_v) - 1) * (pu + 1) * (pv + 1)))
+    turning = [_turning(bezier_nets(data, lines_u[first:first + step + 1], lines_v))
+               for first in range(0, len(lines_u) - 1, step)]
+    return TurningCells(lines_u, lines_v, np.concatenate(turning))
+
+
+def _cell_lines(knots: Array, degree: int) -> Array:
+    """The knots of the domain and lines that cut the spans between them evenly."""
+    ends = np.unique(knots[degree:len(knots) - degree])
+    parts = max(_PARTS, -(-_CELLS // (len(ends) - 1)))
+    between = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(parts) / parts)
+    return np.append(between.ravel(), ends[-1])
+
+
+def _turning(nets: Array) -> Bools:
+    """Which homogeneous Bezier nets (nu, nv, pu + 1, pv + 1, 4) do not prove that Su x Sv keeps its side."""
+    weight = nets[..., 3:]
+    points = nets[..., :3] / weight
+    centre = points.mean(axis=(2, 3), keepdims=True)
+    # w Su is the derivative of w (S - centre), less (S - centre) times that of w.
+    moments = weight * (points - centre)
+    radius = np.linalg.norm(points - centre, axis=-1).max(axis=(2, 3))[:, :, None, None]
+    axes, widths = [], []
+    for along in (2, 3):
+        slack = radius * np.abs(np.diff(weight[..., 0], axis=along))
+        axis, width = _cone(np.diff(moments, axis=along), slack)
+        axes.append(axis)
+        widths.append(width)
+    apart = np.arccos(np.clip(np.abs(dot(*axes)), 0.0, 1.0))
+    return np.asarray((sum(widths) >= apart) | _short(points))
+
+
+def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
+    """Axis (nu, nv, 3) and half angle (nu, nv), rad, of a cone around legs (nu, nv, a, b, 3), each off by its slack."""
+    size = np.linalg.norm(legs, axis=-1)
+    ways = legs / np.where(size > 0, size, 1.0)[..., None]
+    total = ways.sum(axis=(2, 3))
+    length = np.linalg.norm(total, axis=-1, keepdims=True)
+    axis = total / np.where(length > 0, length, 1.0)
+    angle = np.arccos(np.clip(dot(ways, axis[:, :, None, None]), -1.0, 1.0))
+    angle += np.arcsin(np.minimum(slack / np.where(size > 0, size, np.finfo(float).tiny), 1.0))
+    return axis, np.where((size > 0) | (slack > 0), angle, 0.0).max(axis=(2, 3))
+
+
+def _short(points: Array) -> Bools:
+    """Which Bezier nets (nu, nv, pu + 1, pv + 1, 3) have a side no longer than a fold."""
+    sides = [points[:, :, -1, [0, -1]] - points[:, :, 0, [0, -1]], points[:, :, [0, -1], -1] - points[:, :, [0, -1], 0]]
+    return np.asarray((np.linalg.norm(sides, axis=-1) < 2 * REACH).any(axis=(0, 3)))
+
+
+def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
+    """Which places lie in or next to folds, and what surrounds them.
+
+    A place does where the normals on both sides of it along a parameter agree, one in between contradicts them, and
+    the surface in between leaves their planes by next to nothing.  An edge, a wall or a groove, however thin, is no
+    fold: its sides do not agree, or are not flat.
+
+    Parameters
+    ----------
+    surface : NurbsSurface
+    uv : (n, 2) array
+    normal : (n, 3) array
+        Unit normals there as the derivatives give them, in the sense of Su x Sv.
+
+    Notes
+    -----
+    **Properties**: 1. places farther than 0.015 mm from every place where Su x Sv turns over keep their normals;
+    2. a surface that leaves its own plane by more than 0.0005 mm there keeps its normals.
+    """
+    rest, found = surface.turning_cells.rows_in(uv), [NO_FOLDS]
+    for axis in (0, 1):
+        if len(rest):
+            one = _folds_along(surface, axis, uv[rest], normal[rest])
+            found.append(Folds(rest[one.rows], one.normal, one.beside))
+            rest = np.delete(rest, one.rows)
+    return Folds(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+
+
+def _folds_along(surface: "NurbsSurface", axis: int, uv: Array, normal: Array) -> Folds:
+    """Places whose surroundings along one parameter agree, and contradict what is between them."""
+    d = surface.evaluate(uv)
+    first, second, sound = _places_beside(surface, axis, uv)
+    far, inner, areas = [], [], [_area(d)]
+    for place in (first, second):
+        beside = surface.evaluate(place)
+        far.append(np.linalg.norm(beside.point - d.point, axis=1)[:, None])
+        inner.append(normals(beside, inward=surface.inward(place)))
+        areas.append(_area(beside))
+        sound &= ~degenerate(beside)
+    # On one side of a place the nearer normal stands for all; between two places the normal turns evenly.
+    between = (first[:, axis] < uv[:, axis]) != (second[:, axis] < uv[:, axis])
+    around = np.where(between[:, None], far[1] * inner[0] + far[0] * inner[1], inner[0])
+    size = np.linalg.norm(around, axis=1)
+    around /= np.where(size > 0, size, 1.0)[:, None]
+    against = dot(normal, around) < _AGAINST
+    rows = np.flatnonzero(sound & (dot(*inner) > _AGREE) & (against | (np.min(areas, 0) < _EVEN * np.max(areas, 0))))
+    against, flat = against[rows], np.ones(len(rows), dtype=bool)
+    ends = np.where(between[:, None], second, _end_opposite(surface, axis, uv, first))
+    for place, plane in ((first, inner[0]), (second, inner[1]), (ends, np.where(between[:, None], inner[1], inner[0]))):
+        contradicts, level = _look_on_the_way(surface, (uv[rows], place[rows]), (around[rows], plane[rows]))
+        against |= contradicts
+        flat &= level
+    rows = rows[against & flat]
+    return Folds(rows, around[rows], first[rows])
+
+
+def _area(d: Derivatives) -> Array:
+    return np.asarray(np.linalg.norm(np.cross(d.su, d.sv), axis=1))
+
+
+def _look_on_the_way(surface: "NurbsSurface", ways: tuple[Array, Array], planes: tuple[Array, Array],
+                     ) -> tuple[Bools, Bools]:
+    """Whether a normal on the way from places to others contradicts that of the surroundings, and whether the surface
+    stays near the planes through the places.
+
+    Parameters
+    ----------
+    surface : NurbsSurface
+    ways : (k, 2), (k, 2) array
+        Parameters of the places, and of those to which the ways lead.
+    planes : (k, 3), (k, 3) array
+        Normals of the surroundings, and of the planes.
+    """
+    share = np.linspace(0.0, 1.0, _ON_THE_WAY)[:, None, None]
+    uv = (ways[0] + share * (ways[1] - ways[0])).reshape(-1, 2)
+    d = surface.evaluate(uv)
+    shape = (_ON_THE_WAY, len(ways[0]), 3)
+    turn = dot(normals(d, inward=surface.inward(uv)).reshape(shape), planes[0])
+    off = d.point.reshape(shape)
+    off = off - off[0]
+    level = np.abs(dot(off, planes[1])).max(axis=0) <= FLAT
+    level &= np.linalg.norm(off, axis=-1).max(axis=0) <= _AWAY * REACH
+    contradicts = ((turn < _AGAINST) & ~degenerate(d).reshape(shape[:2])).any(axis=0)
+    return np.asarray(contradicts), np.asarray(level)
+
+
+def _end_opposite(surface: "NurbsSurface", axis: int, uv: Array, place: Array) -> Array:
+    """Parameters of the borders of the surface opposite to places beside, along a parameter."""
+    low, high = surface.domain[axis]
+    ends = uv.copy()
+    ends[:, axis] = np.where(place[:, axis] > uv[:, axis], low, high)
+    return ends
+
+
+def _places_beside(surface: "NurbsSurface", axis: int, uv: Array) -> tuple[Array, Array, Bools]:
+    """Two places beside each one along a parameter, on both sides where the surface goes on, and whether found."""
+    before, has_before = _place_at(surface, axis, uv, -1.0, REACH)
+    after, has_after = _place_at(surface, axis, uv, 1.0, REACH)
+    first, second, sound = np.where(has_before[:, None], before, after), after, has_before & has_after
+    for side, rows in ((-1.0, np.flatnonzero(has_before & ~has_after)), (1.0, np.flatnonzero(has_after & ~has_before))):
+        if len(rows):
+            second[rows], sound[rows] = _place_at(surface, axis, uv[rows], side, _SECOND * REACH)
+    return first, second, sound
+
+
+def _place_at(surface: "NurbsSurface", axis: int, uv: Array, side: float, distance: float) -> tuple[Array, Bools]:
+    """Parameters of places at a distance or a little more from others, on one side along a parameter, and whether the
+    surface reaches that far."""
+    d = surface.evaluate(uv)
+    low, high = surface.domain[axis]
+    room = np.maximum(high - uv[:, axis] if side > 0 else uv[:, axis] - low, 0.0)
+    speed = np.linalg.norm((d.su, d.sv)[axis], axis=1)
+    step = np.minimum(1.2 * distance / np.maximum(speed, np.finfo(float).tiny), room)
+    near, beyond = np.zeros(len(uv)), np.full(len(uv), np.inf)
+    place, found, rest = uv.copy(), np.zeros(len(uv), dtype=bool), np.arange(len(uv))
+    for _ in range(_STEPS):
+        place[rest, axis] = uv[rest, axis] + side * step[rest]
+        away = np.linalg.norm(surface.evaluate(place[rest]).point - d.point[rest], axis=1)
+        short, far = away < distance, away > _MOST * distance
+        near[rest[short]], beyond[rest[far]] = step[rest[short]], step[rest[far]]
+        found[rest[~short & ~far]] = True
+        rest = rest[far | (short & (step[rest] < room[rest]))]
+        if not len(rest):
+            break
+        longer = np.minimum(2.0 * step[rest], room[rest])
+        step[rest] = np.where(np.isfinite(beyond[rest]), 0.5 * (near[rest] + beyond[rest]), longer)
+    return place, found
