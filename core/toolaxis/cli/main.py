@@ -81,6 +81,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--faces", metavar="LIST",
                      help="face numbers such as 3,5-8, or all; sculptured faces by default; 3+4,7 machines or divides "
                           "faces that continue each other smoothly as one, skins all that can be joined")
+    sub.add_argument("--skins", metavar="LIST",
+                     help="skins such as 1,3, as toolaxis inspect numbers them: all faces of each as one")
     sub.add_argument("--out", default="out", metavar="DIR", help="folder for plan.json and the rest (default: out)")
     sub.add_argument("--holder", metavar="FILE|SPEC", help="TOML file, or radius,z rows: 10,0;10,40;25,40;25,80")
     sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")

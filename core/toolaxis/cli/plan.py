@@ -7,7 +7,7 @@ from pathlib import Path
 from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
-from toolaxis.errors import REPORT_AT, Cancelled
+from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec
 from toolaxis.machine.library import load_machine
@@ -72,7 +72,10 @@ def _spec(given: Namespace) -> Spec:
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
                         given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
                         passes=given.passes)
-    spec = Spec(given.part, given.tool, inputs, given.faces or "", given.holder or "", given.stickout,
+    if given.faces and given.skins:
+        raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
+    faces = f"skins {given.skins}" if given.skins else given.faces or ""
+    spec = Spec(given.part, given.tool, inputs, faces, given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
     return spec

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import isfinite, pi
 from numbers import Integral
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,12 @@ from toolaxis.tools.tool import Tool
 Numbers = tuple[int | tuple[int, ...], ...]
 
 
+class SomeSkins(NamedTuple):
+    """Some of a part's skins: their numbers, as `toolaxis inspect` lists them."""
+
+    numbers: tuple[int, ...]
+
+
 @dataclass(frozen=True)
 class Spec:
     """A planning job as the command's user writes it; lengths in mm, angles in degrees.
@@ -35,7 +41,7 @@ class Spec:
         Short form, file, or name from the library.
     inputs : PlanInputs
     faces : str
-        "3,5-8", "3+4,7" with faces to be joined, "all", "skins", or empty for the sculptured faces.
+        "3,5-8", "3+4,7" with faces to be joined, "all", "skins", "skins 1,3", or empty for the sculptured faces.
     holder : str
         File or rows "r,z;r,z"; empty for the tool file's own, or none.
     stickout : float or None
@@ -90,18 +96,18 @@ class Spec:
         return offset_from(self.offset) if self.offset else None
 
     @property
-    def numbers(self) -> Numbers | str | None:
+    def numbers(self) -> "Numbers | SomeSkins | str | None":
         """The face list as `toolaxis.plan` takes it."""
         return parse_faces(self.faces) if self.faces else None
 
 
-def parse_faces(text: str) -> Numbers | str:
+def parse_faces(text: str) -> Numbers | SomeSkins | str:
     """Face numbers from their short form.
 
     Parameters
     ----------
     text : str
-        "3,5-8", "all", or "skins"; "3+4,7" for faces that are to be joined.
+        "3,5-8", "all", or "skins"; "3+4,7" for faces that are to be joined; "skins 1,3" for some skins.
 
     Returns
     -------
@@ -113,8 +119,14 @@ def parse_faces(text: str) -> Numbers | str:
     InvalidInput
         When the text is not of that form.
     """
-    if text.strip().lower() in ("all", "skins"):
-        return text.strip().lower()
+    plain = text.strip().lower()
+    if plain in ("all", "skins"):
+        return plain
+    if plain.startswith("skins "):
+        wanted = parse_faces(plain.removeprefix("skins"))
+        if isinstance(wanted, str | SomeSkins) or not all(isinstance(number, int) for number in wanted):
+            raise InvalidInput(f"skins {plain.removeprefix('skins').strip()!r} is not understood: write 1,3-5")
+        return SomeSkins(tuple(int(number) for number in wanted if isinstance(number, int)))
     numbers: list[int | tuple[int, ...]] = []
     for piece in text.split(","):
         members = [number.strip() for number in piece.split("+")]
@@ -166,6 +178,8 @@ def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
         When a number is out of range or no whole number, or there is no sculptured face.
     """
     asked: Any = parse_faces(faces) if isinstance(faces, str) else faces
+    if isinstance(asked, SomeSkins):
+        raise InvalidInput("skins are chosen before faces: give toolaxis.plan the list itself")
     if isinstance(asked, str):
         return part.faces
     if asked is None:
@@ -211,6 +225,8 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
         alone = () if found.joined else (f"--faces skins joins nothing: each of the {len(found.single)} sculptured "
                                          "faces is machined by itself" + _where_apart(found.reasons),)
         return replace(part, selected=()).with_warnings(*alone, *found.reasons), None
+    if isinstance(faces, SomeSkins):
+        faces = _skins_by_number(part, faces.numbers)
     if not isinstance(faces, Iterable) or isinstance(faces, str):
         return part, faces
     rows: list[Any] = []
@@ -221,6 +237,16 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
             row = members[0]
         rows.append(row)
     return part, rows
+
+
+def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[tuple[int, ...], ...]:
+    """Faces of some skins, in the order in which `toolaxis inspect` numbers them."""
+    found = find_skins(part).joined
+    for number in numbers:
+        if not 1 <= number <= len(found):
+            raise InvalidInput(f"skin {number} does not exist: the part has {len(found)} of two faces or more, see "
+                               "toolaxis inspect")
+    return tuple(found[number - 1] for number in numbers)
 
 
 def _where_apart(reasons: tuple[str, ...]) -> str:
