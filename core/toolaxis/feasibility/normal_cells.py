@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.numeric.vectors import lengths
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.work import spend
@@ -140,12 +141,12 @@ class NormalCells:
         hu, hv = half.T
         off_u = bounds[:, 0] * hu + bounds[:, 1] * hv
         off_v = bounds[:, 1] * hu + bounds[:, 2] * hv
-        su, sv = np.linalg.norm(d.su, axis=1), np.linalg.norm(d.sv, axis=1)
-        size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+        su, sv = lengths(d.su), lengths(d.sv)
+        size = lengths(np.cross(d.su, d.sv))
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), np.pi)
         across = 2 * (su * hu + sv * hv) + off_u * hu + off_v * hv
-        spread[(share >= 1) & (across < _SPECK) & (np.linalg.norm(normal, axis=1) > 0.5)] = 0.0
+        spread[(share >= 1) & (across < _SPECK) & (lengths(normal) > 0.5)] = 0.0
         return normal, spread
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:
