@@ -35,7 +35,7 @@ lint: setup
 test: lint tests
 
 tests: setup
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 40
+	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 40
 
 # What stands on the CAD kernel once more, on its release 8.
 $(KERNEL8)/.installed: setup.cfg pyproject.toml
@@ -47,7 +47,7 @@ tests-kernel8: $(KERNEL8)/.installed
 	$(KERNEL8)/bin/python -m pytest -n 2 --dist loadfile tests/cad tests/job/test_exporting.py
 
 test-all: lint
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --long
+	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --long
 
 bench: setup
 	$(BIN)/python -m benchmarks

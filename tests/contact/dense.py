@@ -68,7 +68,8 @@ def _turned(rows, rho, z):
 def phi(tool, points, tip, axis, component):
     w = points - tip
     z = w @ axis
-    rho = np.linalg.norm(w - z[..., None] * axis, axis=-1)
+    across = w - z[..., None] * axis
+    rho = np.sqrt(across[..., 0] ** 2 + across[..., 1] ** 2 + across[..., 2] ** 2)
     return _cutter(tool, rho, z) if component == "cutter" else _turned(tool.outlines[component], rho, z)
 
 
@@ -90,8 +91,10 @@ def _starts(values, place):
     """The two lowest samples that are not neighbours."""
     kept = []
     for k in np.argsort(values)[:400]:
-        if all(np.abs(place[k] - place[m]).max() > 3.5 for m in kept) and len(kept) < 2:
+        if all(np.abs(place[k] - place[m]).max() > 3.5 for m in kept):
             kept.append(int(k))
+        if len(kept) == 2:
+            break
     return kept
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.vectors import angle_between, as_rows, dot, perpendicular, rotation, unit
+from toolaxis.numeric.vectors import angle_between, as_rows, dot, lengths, perpendicular, rotation, unit
 
 numbers = st.floats(-1e6, 1e6)
 
@@ -52,3 +52,13 @@ def test_rows() -> None:
         as_rows([1, 2, 3], 2, "point")
     with pytest.raises(InvalidInput, match=r"point row 1 is \[3.0, nan\]: every number must be finite"):
         as_rows([[1, 2], [3, np.nan]], 2, "point")
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3, 6])
+def test_lengths_are_numpys_to_the_last_digit(columns: int) -> None:
+    """Plans came out of numpy's norm before, and stay what they were."""
+    rng = np.random.default_rng(columns)
+    rows = rng.normal(size=(5000, columns)) * 10.0 ** rng.integers(-6, 6, size=(5000, columns))
+    for some in (rows, rows[::3], np.asfortranarray(rows), rows.reshape(50, 100, columns), rows[:0], 0 * rows[:2]):
+        np.testing.assert_array_equal(lengths(some), np.linalg.norm(some, axis=-1))
+    assert np.isnan(lengths(np.array([[np.nan] * columns]))).all()

@@ -40,8 +40,11 @@ def entered_by(solid, tool, ways, depth, rng):
     lift = 12.0
     for _ in range(24):
         # A surface point comes out of the cutter no slower than by half of the lift, and no faster than by all of it.
-        deepest = -swept(tool.profile, points - lift * solid.middle, tips, axis).min()
-        lift += deepest - depth
+        off = swept(tool.profile, points - lift * solid.middle, tips, axis)
+        rise = -off.min() - depth
+        lift += rise
+        # All that is to come moves no point by more than twice as much: those farther away are never the deepest.
+        points = points[off <= off.min() + 4 * abs(rise)]
     tips = tips + lift * solid.middle
     return tips, points[swept(tool.profile, points, tips, axis).argmin()]
 

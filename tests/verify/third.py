@@ -152,7 +152,8 @@ def standing(profile, apart, axis):
     """Signed distance of places relative to the tip from the cutter; inside, from its nearest side."""
     a, r, beta, top = profile.flat_radius, profile.corner_radius, profile.half_angle, profile.top
     z = apart @ axis
-    rho = np.sqrt(np.maximum((apart**2).sum(axis=-1) - z * z, 0.0))
+    square = apart[..., 0] ** 2 + apart[..., 1] ** 2 + apart[..., 2] ** 2
+    rho = np.sqrt(np.maximum(square - z * z, 0.0))
     x, y = rho - a, z - r
     planes = np.maximum(np.maximum(-z, x * np.cos(beta) - y * np.sin(beta) - r), z - top)
     return np.where((x >= 0) & (y * np.cos(beta) + x * np.sin(beta) <= 0), np.hypot(x, y) - r, planes)

@@ -18,6 +18,8 @@ from toolaxis.progress import NO_PROGRESS
 TOOL, SCALLOP = "torus:6x1", 0.3
 HOLDER = ((10.0, 0.0), (10.0, 30.0))
 LEANING = Vector(0.2, 0.1, 1.0).normalize()
+#: Plans by all that they were asked for with.
+_PLANS = {}
 
 
 def wavy(height=10.0):
@@ -59,7 +61,19 @@ def quick_plan(inputs, axis=LEANING):
     return Plan(part, bare.tool, bare.inputs, tuple(made), bodies, bare.datum, "complete")
 
 
+def known_plan(inputs, axis=LEANING):
+    """The same; what was asked of the same shapes before, in whatever document, is not planned again."""
+    things = [*inputs.things, *inputs.obstacles]
+    if any(thing.getParentGeoFeatureGroup() is not None for thing in things):  # it may stand elsewhere than it says
+        return quick_plan(inputs, axis)
+    asked = repr((inputs.job(), inputs.assembled(), [(things.index(thing), name) for thing, name in inputs.faces],
+                  tuple(axis), [thing.Shape.exportBrepToString() for thing in things]))
+    if asked not in _PLANS:
+        _PLANS[asked] = quick_plan(inputs, axis)
+    return _PLANS[asked]
+
+
 def planned(document, *faces, axis=LEANING, **given):
     """The operations for faces, in the tree."""
     inputs = inputs_for(*faces, **given)
-    return apply(document, inputs, quick_plan(inputs, axis))
+    return apply(document, inputs, known_plan(inputs, axis))

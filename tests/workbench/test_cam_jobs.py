@@ -37,7 +37,7 @@ def planned(document, parts, thing, name, lean=(0.15, 0.1, 0.05), **given):
     shape = shape_of(thing)
     face = shape.Faces[int(name.rsplit("Face", 1)[1]) - 1]
     inputs = parts.inputs_for((thing, name), **given)
-    plan = parts.quick_plan(inputs, Vector(*(np.array(face.normalAt(0.5, 0.5)) + lean)))
+    plan = parts.known_plan(inputs, Vector(*(np.array(face.normalAt(0.5, 0.5)) + lean)))
     assert plan.operations[0].done, plan.operations[0].orientation.reasons
     return apply(document, inputs, plan)[0], plan.operations[0]
 
@@ -172,7 +172,7 @@ def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
     document.recompute()
     assert operation.Stale
     inputs = inputs_of(operation)
-    apply(document, inputs, parts.quick_plan(inputs, Vector(*op.orientation.axis)), operation)
+    apply(document, inputs, parts.known_plan(inputs, Vector(*op.orientation.axis)), operation)
     again, = make_jobs(document, [operation])
     assert len(document.Objects) == count and len(again.Operations.Group[0].Gcode) < lines
     assert (again.PostProcessor, again.PostProcessorArgs, again.Fixtures) == ("grbl", "--no-header", ["G58"])
@@ -349,7 +349,7 @@ def test_a_later_call_takes_offsets_that_are_free(document, parts):
     job, = make_jobs(document, [first[0], second[0]])
     assert job.Fixtures == ["G54"] and make_jobs(document, third[0])[0].Fixtures == ["G55"]
     inputs = inputs_of(second[0])
-    apply(document, inputs, parts.quick_plan(inputs, Vector(0, 0.2, 1)), second[0])
+    apply(document, inputs, parts.known_plan(inputs, Vector(0, 0.2, 1)), second[0])
     jobs = make_jobs(document, [first[0], second[0]])
     assert [job.Fixtures for job in jobs] == [["G54"], ["G56"]] and not shared_of(jobs)
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.rounding import canonical_sign
+from toolaxis.numeric.vectors import lengths
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
@@ -249,7 +250,7 @@ def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[
     centres = np.array([samples.centre[n] for n in looked])
     areas = np.array([samples.area[n] for n in looked])
     moved = (centres - point) @ _turn(axis, angle).T + point
-    away = np.linalg.norm(moved[:, None] - centres, axis=2)
+    away = lengths(moved[:, None] - centres)
     away[np.abs(areas[:, None] / areas - 1) > ALIKE] = np.inf
     np.fill_diagonal(away, np.inf)
     best = away.argmin(axis=1)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.numeric.vectors import as_rows, dot
+from toolaxis.numeric.vectors import as_rows, dot, lengths
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ def frame_from_normal(normal: ArrayLike, feed: ArrayLike) -> Frame:
     z = as_rows(normal, 3, "normal")
     along = np.broadcast_to(as_rows(feed, 3, "feed"), z.shape)
     x = along - dot(along, z)[:, None] * z
-    size, whole = np.linalg.norm(x, axis=1), np.linalg.norm(along, axis=1)
+    size, whole = lengths(x), lengths(along)
     lost = np.flatnonzero(~(size > 1e-9 * whole))
     if lost.size:
         raise InvalidInput(f"feed {lost[0]} is {along[lost[0]].tolist()}: it has no direction in the tangent plane; "

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.vectors import as_rows, axis_rows, dot
+from toolaxis.numeric.vectors import as_rows, axis_rows, dot, lengths
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -36,7 +36,7 @@ def tips(points: Array, normal: Array, axis: ArrayLike, tool: Tool, allowance: f
     tip = points + (tool.corner_radius + allowance) * normal - tool.corner_radius * t
     if tool.flat_radius > 0:
         across = normal - dot(normal, t)[:, None] * t
-        size = np.linalg.norm(across, axis=1, keepdims=True)
+        size = lengths(across)[:, None]
         tip = tip + tool.flat_radius * np.where(size > 1e-12, across / np.where(size > 0, size, 1.0), 0.0)
     return tip
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.numeric.vectors import lengths
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.work import spend
@@ -141,12 +142,12 @@ class NormalCells:
         hu, hv = half.T
         off_u = bounds[:, 0] * hu + bounds[:, 1] * hv
         off_v = bounds[:, 1] * hu + bounds[:, 2] * hv
-        su, sv = np.linalg.norm(d.su, axis=1), np.linalg.norm(d.sv, axis=1)
-        size = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+        su, sv = lengths(d.su), lengths(d.sv)
+        size = lengths(np.cross(d.su, d.sv))
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), np.pi)
         across_u, across_v = 2 * su * hu + off_u * hu, 2 * sv * hv + off_v * hv
-        spread[(share >= 1) & (across_u + across_v < _SPECK) & (np.linalg.norm(normal, axis=1) > 0.5)] = 0.0
+        spread[(share >= 1) & (across_u + across_v < _SPECK) & (lengths(normal) > 0.5)] = 0.0
         # In a fold a narrow cell has no normals but those of the cells beside it.
         folded = np.zeros(len(middle), dtype=bool)
         folded[self._face.folds(middle).rows] = True

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.vectors import lengths
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -45,7 +47,7 @@ def distances(groups: tuple[Array, ...], members: Index, centre: tuple[Array, ..
     -----
     **Source**: [zhu2016] Eq. (2).
     """
-    return np.asarray(sum(np.linalg.norm(g[members] - c, axis=1) for g, c in zip(groups, centre, strict=True)))
+    return np.asarray(sum(lengths(g[members] - c) for g, c in zip(groups, centre, strict=True)))
 
 
 def centroid(groups: tuple[Array, ...], members: Index) -> tuple[Array, ...]:

@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.numeric.vectors import lengths
+
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
@@ -19,8 +21,9 @@ _ALONG = 1e-9
 _ROUNDS = 40
 #: Steps by which the direction of a depth is improved.
 _STEPS = (0.3, 0.1, 0.03)
-#: Corners of simplices of up to four points, the smaller ones first.
+#: Corners of simplices of up to four points, the smaller ones first, and which of the four these are.
 _SUBSETS = tuple(some for size in range(1, 5) for some in combinations(range(4), size))
+_MASKS = tuple(np.isin(np.arange(4), some) for some in _SUBSETS)
 
 
 class ConvexBodies(NamedTuple):
@@ -64,7 +67,7 @@ class ConvexBodies(NamedTuple):
         row = np.zeros(len(ways), dtype=int) if len(self.centre) == 1 else np.arange(len(ways))
         axis, slant = self.axis[row, best], along[np.arange(len(ways)), best][:, None]
         rim = ways - slant * axis
-        size = np.linalg.norm(rim, axis=1, keepdims=True)
+        size = lengths(rim)[:, None]
         rim = np.where(size > _ALONG, rim / np.where(size > _ALONG, size, 1.0), 0.0)
         sides = np.where(np.einsum("nic,nc->ni", np.broadcast_to(self.spread, (len(ways), 3, 3)), ways) >= 0, 1.0, -1.0)
         return np.asarray(self.centre[row, best] + self.radius[row, best][:, None] * rim
@@ -184,7 +187,7 @@ def separation(one: Sequence[ConvexBodies], other: Sequence[ConvexBodies], enoug
     start = (sum((each.centre.mean(axis=1) for each in one), np.zeros(3))
              - sum((each.centre.mean(axis=1) for each in other), np.zeros(3)))
     towards = np.broadcast_to(start, (count, 3)).copy()
-    towards[np.linalg.norm(towards, axis=1) < 1e-9] = [0.0, 0.0, 1.0]
+    towards[lengths(towards) < 1e-9] = [0.0, 0.0, 1.0]
     best, meets = _search_separation(pair, towards, (enough, tolerance))
     rows = np.flatnonzero(meets if inner is None else meets & ~inner)
     if len(rows):
@@ -214,7 +217,7 @@ def _search_separation(pair: _Pair, towards: Array, limits: tuple[float, float])
     simplex, held = np.zeros((count, 4, 3)), np.zeros((count, 4), dtype=bool)
     near, rows = towards.copy(), np.arange(count)
     for _ in range(_ROUNDS):
-        size = np.linalg.norm(near[rows], axis=1)
+        size = lengths(near[rows])
         inside = size <= 1e-7
         meets[rows[inside]] = True
         rows, size = rows[~inside], size[~inside]
@@ -239,22 +242,25 @@ def _nearest(simplex: Array, held: Bools) -> tuple[Array, Bools]:
     count = len(simplex)
     best, near = np.full(count, np.inf), np.zeros((count, 3))
     kept = np.zeros((count, 4), dtype=bool)
-    for some in _SUBSETS:
+    for some, mask in zip(_SUBSETS, _MASKS, strict=True):
         there = held[:, some].all(axis=1)
         if not there.any():
             continue
         corners = simplex[there][:, some]
-        base, edges = corners[:, 0], corners[:, 1:] - corners[:, :1]
-        gram = edges @ edges.transpose(0, 2, 1)
-        size = np.trace(gram, axis1=1, axis2=2) if len(some) > 1 else np.ones(len(base))
-        gram = gram + (1e-13 * size + 1e-30)[:, None, None] * np.eye(len(some) - 1)
-        shares = np.linalg.solve(gram, -(edges @ base[:, :, None]))[:, :, 0]
-        place = base + (shares[:, :, None] * edges).sum(axis=1)
-        length = np.linalg.norm(place, axis=1)
-        good = (shares >= 0).all(axis=1) & (shares.sum(axis=1) <= 1) & (length < best[there] * (1 - 1e-12))
+        place, within = corners[:, 0], np.ones(len(corners), dtype=bool)
+        if len(some) > 1:
+            base, edges = place, corners[:, 1:] - corners[:, :1]
+            gram = edges @ edges.transpose(0, 2, 1)
+            size = np.trace(gram, axis1=1, axis2=2)
+            gram = gram + (1e-13 * size + 1e-30)[:, None, None] * np.eye(len(some) - 1)
+            shares = np.linalg.solve(gram, -(edges @ base[:, :, None]))[:, :, 0]
+            place = base + (shares[:, :, None] * edges).sum(axis=1)
+            within = (shares >= 0).all(axis=1) & (shares.sum(axis=1) <= 1)
+        length = lengths(place)
+        good = within & (length < best[there] * (1 - 1e-12))
         rows = np.flatnonzero(there)[good]
         best[rows], near[rows] = length[good], place[good]
-        kept[rows] = np.isin(np.arange(4), some)
+        kept[rows] = mask
     return near, kept
 
 
@@ -266,7 +272,7 @@ def _depths(pair: _Pair, count: int) -> Array:
     best, along = np.full(count, -np.inf), np.tile([0.0, 0.0, 1.0], (count, 1))
 
     def _tried(ways: Array) -> None:
-        size = np.linalg.norm(ways, axis=1)
+        size = lengths(ways)
         good = np.flatnonzero(size > 1e-9)
         if len(good):
             unit = ways[good] / size[good, None]

@@ -43,6 +43,19 @@ def dot(a: Array, b: Array) -> Array:
     return np.asarray(np.einsum("...i,...i->...", a, b))
 
 
+def lengths(rows: Array) -> Array:
+    """Lengths of rows, (...,), for (..., k) with a small k: numpy's norm, which takes ten times as long over many rows.
+
+    Parameters
+    ----------
+    rows : (..., k) array
+    """
+    square = rows[..., 0] * rows[..., 0]
+    for k in range(1, rows.shape[-1]):
+        square = square + rows[..., k] * rows[..., k]
+    return np.asarray(np.sqrt(square))
+
+
 def unit(vectors: ArrayLike) -> Array:
     """Vectors divided by their lengths.
 
@@ -90,7 +103,7 @@ def angle_between(a: Array, b: Array) -> Array:
     a, b : (..., 3) array
         Unit vectors.
     """
-    return np.asarray(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
+    return np.asarray(2 * np.arctan2(lengths(a - b), lengths(a + b)))
 
 
 def perpendicular(axis: ArrayLike) -> tuple[Array, Array]:

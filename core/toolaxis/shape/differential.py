@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.vectors import dot
+from toolaxis.numeric.vectors import dot, lengths
 from toolaxis.shape.surface import Derivatives
 
 Array = NDArray[np.float64]
@@ -52,17 +52,23 @@ def normals(d: Derivatives, flip: bool = False, inward: ArrayLike = (1.0, 1.0)) 
     of both, is `DEGENERATE`: there each is good to about 1e-8 rad.
     """
     raw = np.cross(d.su, d.sv)
-    poor = degenerate(d)
+    size = lengths(raw)
+    poor = _spans_nothing(d, size)
     if poor.any():
         raw[poor] = _change(Derivatives(*(x[poor] for x in d)), np.broadcast_to(inward, (len(poor), 2))[poor])
-    size = np.linalg.norm(raw, axis=1)
+        size[poor] = lengths(raw[poor])
     return np.asarray((-1.0 if flip else 1.0) * raw / np.where(size > 0, size, 1.0)[:, None])
 
 
 def degenerate(d: Derivatives) -> NDArray[np.bool_]:
     """Whether Su and Sv span no plane: one is next to nothing beside the other, or they are parallel, (n,) bool."""
+    return _spans_nothing(d, lengths(np.cross(d.su, d.sv)))
+
+
+def _spans_nothing(d: Derivatives, size: Array) -> NDArray[np.bool_]:
+    """The same from the length of Su x Sv."""
     scale = np.maximum(dot(d.su, d.su), dot(d.sv, d.sv))
-    return np.asarray(np.linalg.norm(np.cross(d.su, d.sv), axis=1) <= DEGENERATE * scale)
+    return np.asarray(size <= DEGENERATE * scale)
 
 
 def _change(d: Derivatives, inward: Array) -> Array:

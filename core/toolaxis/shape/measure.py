@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.golden_section import least_between
 from toolaxis.numeric.polygons import stations, walk
+from toolaxis.numeric.vectors import lengths
 
 if TYPE_CHECKING:
     from toolaxis.shape.face import Face
@@ -83,7 +84,7 @@ def _up_to(face: "Face", uv: Array, cuts: Array) -> Array:
     u = cuts[piece] + half
     d = face.evaluate(np.stack([u[:, None] + half[:, None] * nodes,
                                 np.broadcast_to(uv[row, 1:], (len(row), POINTS))], axis=-1).reshape(-1, 2))
-    size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(len(row), POINTS)
+    size = lengths(np.cross(d.su, d.sv)).reshape(len(row), POINTS)
     return np.asarray(np.bincount(row, weights=(size * weights).sum(axis=1) * half, minlength=len(uv)))
 
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric.golden_section import least_between
 from toolaxis.numeric.polygons import stations, walk
-from toolaxis.numeric.vectors import as_rows, dot
+from toolaxis.numeric.vectors import as_rows, dot, lengths
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -134,4 +134,4 @@ def _from_border(face: Face, targets: Array, samples: int) -> NearestPoints:
 
 
 def _gap(face: Face, targets: Array, loop: Array, at: Array) -> Array:
-    return np.asarray(np.linalg.norm(face.evaluate(walk(loop, at)).point - targets, axis=1))
+    return lengths(face.evaluate(walk(loop, at)).point - targets)

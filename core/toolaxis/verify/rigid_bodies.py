@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from toolaxis.machine.bodies import MachineBody
+from toolaxis.numeric.vectors import lengths
 from toolaxis.tools.profile import Profile
 
 Array = NDArray[np.float64]
@@ -98,7 +99,7 @@ def _from_triangles(points: Array, triangles: Array) -> Array:
         over &= np.einsum("mkc,kc->mk", away, np.cross(normal, edges[:, i])) >= 0
         size = np.maximum((edges[:, i] ** 2).sum(axis=1), 1e-30)
         along = np.clip(np.einsum("mkc,kc->mk", away, edges[:, i]) / size, 0.0, 1.0)
-        aside = np.minimum(aside, np.linalg.norm(away - along[..., None] * edges[:, i], axis=2))
+        aside = np.minimum(aside, lengths(away - along[..., None] * edges[:, i]))
     return np.asarray(np.where(over, np.abs(above), aside).min(axis=1, initial=np.inf))
 
 
@@ -155,7 +156,7 @@ def _from_line(corners: Array, places: Array) -> Array:
     for (r0, z0), (r1, z1) in pairwise(corners):
         way, size = np.array([r1 - r0, z1 - z0]), (r1 - r0) ** 2 + (z1 - z0) ** 2
         along = np.clip(((places - [r0, z0]) @ way) / max(size, 1e-30), 0.0, 1.0)
-        least = np.minimum(least, np.linalg.norm(places - [r0, z0] - along[:, None] * way, axis=1))
+        least = np.minimum(least, lengths(places - [r0, z0] - along[:, None] * way))
         between = (np.minimum(z0, z1) <= places[:, 1]) & (places[:, 1] < np.maximum(z0, z1))
         at = r0 + (places[:, 1] - z0) * (r1 - r0) / (z1 - z0 if z1 != z0 else 1.0)
         crossings += between & (at > places[:, 0])

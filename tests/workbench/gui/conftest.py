@@ -22,7 +22,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
 SHOTS = os.environ.get("TOOLAXIS_SHOTS")
-SIZE = (1400, 900)
+SIZE = (1400, 900) if SHOTS else (1000, 700)  # each frame is drawn by software, and costs by its area
 TURNS = 8
 PAUSE = 0.05  # between looks at what is waited for: the window takes time from what is computed beside it, s
 LIMIT = 600.0  # the library's kernels are compiled when they are first used

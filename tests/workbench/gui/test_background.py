@@ -39,6 +39,15 @@ def started(compute):
     return work, Ears(work.start())
 
 
+@pytest.fixture
+def unsettled(desk):
+    """The collector as it is before modules are left alone for good."""
+    from freecad.toolaxis.services import background
+
+    background._settled.clear()
+    gc.unfreeze()
+
+
 def test_a_result_arrives_once_on_the_gui_thread(desk):
     from freecad.toolaxis.services.background import BackgroundWork
 
@@ -134,14 +143,17 @@ def test_nothing_is_heard_after_leaving_and_nothing_crashes_when_all_is_forgotte
     desk.wait(lambda: not background._running, "the thread is let go")
 
 
-def test_what_was_closed_is_let_go_while_something_is_computed(desk):
+class Cycle:
+    """What only the collector ends."""
+
+    def __init__(self):
+        self.itself = self
+
+
+def test_what_was_closed_is_let_go_while_something_is_computed(desk, unsettled):
     from freecad.toolaxis.services import background
 
-    class Panel:
-        def __init__(self):
-            self.itself = self
-
-    gone = weakref.ref(Panel())
+    gone = weakref.ref(Cycle())
     work, _ = started(patient)
     gc.collect()
     assert gone() is not None, "set aside"
@@ -152,7 +164,7 @@ def test_what_was_closed_is_let_go_while_something_is_computed(desk):
 
 
 @pytest.mark.parametrize("end", ["cancel", "leave"])
-def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterwards(desk, end):
+def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterwards(desk, unsettled, end):
     """A full collection over all objects of FreeCAD and the libraries takes more than 0.1 s."""
     from freecad.toolaxis.services import background
 
@@ -168,6 +180,37 @@ def test_nothing_holds_the_window_up_while_computing_and_all_is_as_before_afterw
     getattr(second, end)()
     desk.wait(lambda: not background._running, "the other one has ended")
     assert gc.get_freeze_count() == 0 and sys.getswitchinterval() == usual
+
+
+def test_modules_are_left_alone_for_good_and_panels_never(desk, wavy, unsettled):
+    """Else the opening of each panel takes as long as a full collection.  That closed panels are gone says `desk`."""
+    from freecad.toolaxis.services import background
+
+    def opened():
+        gone = weakref.ref(Cycle())
+        desk.start(*wavy)
+        assert gone() is None, "collected before the panel is made"
+        return background._settled.is_set()
+
+    background._load()
+    work, _ = started(patient)
+    assert not opened(), "something is computed"
+    desk.gui.Control.closeDialog()
+    work.leave()
+    desk.wait(lambda: not background._running, "the thread is let go")
+    desk.pump(0.1)
+    window = Cycle()
+    background.note_window(window)
+    assert not opened(), "a window is open"
+    desk.gui.Control.closeDialog()
+    desk.pump(0.1)
+    del window
+    assert opened() and gc.get_freeze_count() > 10 * len(gc.get_objects())
+    desk.gui.Control.closeDialog()
+    work, _ = started(patient)
+    work.leave()
+    desk.wait(lambda: not background._running, "the thread is let go")
+    assert gc.get_freeze_count() > 10 * len(gc.get_objects()), "after a computation too"
 
 
 def test_the_end_of_the_application_waits_for_what_stops(desk):

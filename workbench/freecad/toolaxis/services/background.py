@@ -3,9 +3,10 @@
 The worker writes plain attributes and the GUI thread reads them by a timer, so that the event loop is not flooded,
 however often a computation reports.  Everything that the panel hears, it hears on the GUI thread.
 
-While something is computed, Python's collector leaves alone what was there before: a full collection over all objects
-of FreeCAD and of the libraries holds the interpreter, and the window with it, for more than 0.1 s.  The interpreter
-also changes hands more often, since the window asks for it several times in drawing one picture.
+A full collection over all objects of FreeCAD and of the libraries holds the interpreter, and the window with it, for
+more than 0.1 s.  So Python's collector leaves alone what was there before while something is computed, and for good
+what was there when the libraries were loaded and no panel was open.  The interpreter also changes hands more often
+while something is computed, since the window asks for it several times in drawing one picture.
 """
 
 import gc
@@ -18,6 +19,7 @@ from functools import cache
 from threading import Event
 from time import monotonic
 from typing import Any
+from weakref import ref
 
 import FreeCAD
 from freecad.toolaxis.services.messages import shown
@@ -34,6 +36,10 @@ _TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
 
 #: Who hears of errors inside the add-on: callables that take the sentence and where it came from.
 _hearers: list[Callable[[str, str], Any]] = []
+#: Panels and windows of pictures as long as anything holds them.
+_windows: list[ref] = []
+#: Set when what was there before the first panel after the libraries were loaded is left alone for good.
+_settled = Event()
 #: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
 _running: set["_Thread"] = set()
 
@@ -99,7 +105,19 @@ def _load() -> None:
     finally:
         if collecting:
             gc.enable()
-    gc.freeze()
+    _set_aside()
+
+
+def _set_aside() -> None:
+    """Let the collector leave alone what is there, while something is computed."""
+    if not _settled.is_set():
+        gc.freeze()
+
+
+def _take_back() -> None:
+    """Let the collector look again at what was set aside."""
+    if not _settled.is_set():
+        gc.unfreeze()
 
 
 def clear_away() -> None:
@@ -108,10 +126,33 @@ def clear_away() -> None:
     Panels that were closed leave Python objects of widgets behind, which the bindings hand out again for a new widget
     that lies at a dead one's address; collected later, they would take the new one for dead.
     """
-    gc.unfreeze()
+    _take_back()
     gc.collect()
     if _running:
+        _set_aside()
+
+
+def clear_for_window() -> None:
+    """Collect what nobody holds any more before a panel is made.
+
+    Most of a collection's time goes to modules, which stay.  Once these are loaded, at a time when no panel is there
+    whose widgets would never be collected, the collector leaves them alone for good.
+    """
+    clear_away()
+    if _load.cache_info().currsize and not _running and not any(window() is not None for window in _windows):
         gc.freeze()
+        _settled.set()
+
+
+def note_window(window: Any) -> None:
+    """Know a panel, or a window of pictures, as long as anything holds it.
+
+    Parameters
+    ----------
+    window : Panel or QWidget
+    """
+    _windows[:] = [known for known in _windows if known() is not None]
+    _windows.append(ref(window))
 
 
 def hear_errors(hearer: Callable[[str, str], Any]) -> None:
@@ -200,7 +241,7 @@ class BackgroundWork(QtCore.QObject):
         self._thread.finished.connect(_keeper().sweep)
         self.running = True
         self._timer.start()
-        gc.freeze()
+        _set_aside()
         sys.setswitchinterval(_TURN)
         self._thread.start(QtCore.QThread.LowPriority)
         return self
@@ -251,7 +292,7 @@ class _Keeper(QtCore.QObject):
             thread.wait()
             _running.discard(thread)
         if not _running:
-            gc.unfreeze()
+            _take_back()
             sys.setswitchinterval(_USUAL_TURN)
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
+from freecad.toolaxis.services.background import note_window
 from freecad.toolaxis.services.pictures import title_of
 from PySide import QtCore, QtGui, QtWidgets
 
@@ -24,6 +25,7 @@ class PictureWindow(QtWidgets.QDialog):
 
     def __init__(self, parent, pictures):
         super().__init__(parent)
+        note_window(self)
         self.pictures = list(pictures)
         self.setObjectName("ToolAxisPictures")
         self.setWindowTitle(translate("ToolAxis", "Pictures of the plan"))

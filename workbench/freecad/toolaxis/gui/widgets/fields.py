@@ -15,7 +15,6 @@ from freecad.toolaxis.gui.widgets import palette
 from freecad.toolaxis.gui.widgets.quantity import length_text, value_from_text
 from freecad.toolaxis.gui.widgets.table_entries import data_of, put
 from freecad.toolaxis.paths import RESOURCES
-from freecad.toolaxis.services.background import clear_away
 
 translate = FreeCAD.Qt.translate
 
@@ -29,9 +28,9 @@ def load_form(name):
 
     Where a dead widget lay at the address of a new one, the bindings may hand out the dead one's Python object, which
     is of another class, raises when touched or ends FreeCAD (seen: a QWidget instead of a slider or a layout, a dead
-    box of buttons instead of the form, a former form with all its dead widgets).  So these are collected first; where
-    that does not do, the file is loaded again, elsewhere in memory.  Panels take widgets and layouts by their names
-    here, as they were looked at.
+    box of buttons instead of the form, a former form with all its dead widgets).  So these are collected before a panel
+    is made; where that does not do, the file is loaded again, elsewhere in memory.  Panels take widgets and layouts by
+    their names here, as they were looked at.
 
     Parameters
     ----------
@@ -49,7 +48,6 @@ def load_form(name):
                for one in root.iter("widget") if one is not root}
     layouts = {one.get("name"): getattr(QtWidgets, one.get("class")) for one in root.iter("layout")}
     spoilt = []
-    clear_away()
     for _ in range(_LOADINGS):
         known = shiboken.getAllValidWrappers()  # held meanwhile: what is new cannot be mistaken for one of these
         form = FreeCADGui.PySideUic.loadUi(str(file))

@@ -2,6 +2,7 @@
 
 import FreeCADGui
 from freecad.toolaxis.gui.widgets.document_observer import DocumentObserver
+from freecad.toolaxis.services.background import clear_for_window, note_window
 from PySide import QtCore, QtWidgets
 
 
@@ -15,10 +16,16 @@ class Panel:
         What the panel shows.
     """
 
+    def __new__(cls, *_, **__):
+        """Collect before there is a panel: it must not be among what the collector leaves alone for good."""
+        clear_for_window()
+        return super().__new__(cls)
+
     def __init__(self, document, form):
         self.document, self.form = document, form
         self.work, self.over = None, False
         self.buttons = None
+        note_window(self)
 
     def isAllowedAlterDocument(self):
         """Other commands may change the document meanwhile; the panel notices."""
