@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
+from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import stations, walk
 from toolaxis.shape.face import Face
@@ -66,6 +67,20 @@ class ViewSurface(NurbsSurface):
     def breaks(self) -> tuple[Array, Array]:
         """Inner values of u and of v between which to look for what is not smooth: edges of members run anywhere."""
         return tuple(np.linspace(*ends, _PARTS + 1)[1:-1] for ends in self.domain)  # type: ignore[return-value]
+
+    @cached_property
+    def joins(self) -> tuple[Array, ...]:
+        """Stretches of the members' borders along which they meet, (m, 2) each."""
+        step = float(np.ptp(self.outline[0], axis=0).max()) / _ALONG
+        around = cKDTree(np.concatenate([walk(loop, stations(loop, (step, step))) for loop in self.outline]))
+        found: list[Array] = []
+        for loop in (loop for one in self.seen for loop in one.outline):
+            line = walk(loop, stations(loop, (step, step)))
+            inner = around.query(line)[0] > step
+            cuts = np.flatnonzero(np.diff(inner.astype(int))) + 1
+            found += [piece for piece, kept in zip(np.split(line, cuts), np.split(inner, cuts), strict=True)
+                      if kept[0] and len(piece) > 1]
+        return tuple(found)
 
     def evaluate(self, uv: Array) -> Derivatives:
         """Position and derivatives up to the second order.

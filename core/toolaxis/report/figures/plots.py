@@ -32,6 +32,7 @@ from toolaxis.report.figures.splat_renderer import (
 )
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import joins
+from toolaxis.skin.view_surface import ViewSurface
 from toolaxis.tools.tool import Tool
 from toolaxis.verify.maps import SurfaceMap
 
@@ -124,6 +125,9 @@ def _close_up(ax: Axes, op: Operation, view: tuple[Array, Array]) -> None:
 def _draw_joins(ax: Axes, canvas: Canvas, face: Face, slack: float) -> None:
     """Lines along which the faces meet that were joined to this one."""
     runs: list[Array] = []
+    if isinstance(face.surface, ViewSurface):
+        for line in face.surface.joins:
+            runs += visible_runs(canvas, face.evaluate(line).point, slack)
     for axis, t in joins(face):
         low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
         uv = np.full((400, 2), t)
