@@ -187,6 +187,10 @@
    <translation>Neigung zur Normalen, Mittel</translation>
   </message>
   <message>
+   <source>Over the ideal length</source>
+   <translation>Über der idealen Länge</translation>
+  </message>
+  <message>
    <source>Left to clean-up</source>
    <translation>Restmaterial</translation>
   </message>

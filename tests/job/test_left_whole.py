@@ -107,7 +107,7 @@ def test_a_fillet_tighter_than_the_cutter_is_left_where_no_axis_was_found(radius
                                                                           left: bool) -> None:
     part = post(radius)
     fillet = next(face for face in part.faces if face.kind == "torus")
-    plan = ta.plan(part, ta.Tool.torus(cutter, 0.5, stickout=30), 0.1, faces=[fillet.number])
+    plan = ta.plan(part, ta.Tool.torus(cutter, 0.5, stickout=30), 0.1, faces=[fillet.number], regions=1)
     (op,) = plan.operations
     assert plan.outcome == "incomplete" and op.left == left and not op.done
     assert ("fillet of 2.00 mm radius, tighter than the cutter's 4 mm" in op.orientation.reasons[0]) == left

@@ -60,7 +60,7 @@ def test_the_face_itself_can_be_left_out(scene):
     place, axis = np.array([[-20.0, 0.0, -1.0]]), np.array([0.0, 0.0, 1.0])
     assert not stands_free(scene, place, axis, (True, (SKIN,)))[0]
     itself = scene._replace(groups=(CheckSurfaces(SKIN, scene.groups[0].faces, scene.groups[0].required),))
-    itself = itself._replace(number=itself.groups[0].faces[0].number)
+    itself = itself._replace(numbers=(itself.groups[0].faces[0].number,))
     assert stands_free(itself, place, axis, (False, (SKIN,)))[0]
 
 

@@ -43,7 +43,7 @@ def test_an_obstacle_that_touches_the_face_is_kept_off() -> None:
 
 def test_a_full_sphere_says_why_it_cannot_be_machined_with_one_axis() -> None:
     part = ta.load(cq.Workplane().sphere(10))
-    (op,) = ta.plan(part, BALL, 0.2).operations
+    (op,) = ta.plan(part, BALL, 0.2, regions=1).operations
     assert not op.done and op.orientation.outcome == "infeasible"
     assert "more than a hemisphere" in " ".join(op.orientation.reasons)
 

@@ -141,6 +141,11 @@ class NurbsSurface:
         return (float(ku[pu]), float(ku[-pu - 1])), (float(kv[pv]), float(kv[-pv - 1]))
 
     @property
+    def spline(self) -> "NurbsSurface":
+        """The surface whose numbers kernels take: it stands for this one where strips are measured."""
+        return self
+
+    @property
     def breaks(self) -> tuple[Array, Array]:
         """Inner values of u and of v at which a higher derivative may jump."""
         (u0, u1), (v0, v1) = self.domain

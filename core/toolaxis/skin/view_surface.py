@@ -69,6 +69,11 @@ class ViewSurface(NurbsSurface):
         return tuple(np.linspace(*ends, _PARTS + 1)[1:-1] for ends in self.domain)  # type: ignore[return-value]
 
     @cached_property
+    def spline(self) -> NurbsSurface:  # type: ignore[override]
+        """The smooth spline that stands for the faces where strips are measured."""
+        return NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
+
+    @cached_property
     def joins(self) -> tuple[Array, ...]:
         """Stretches of the members' borders along which they meet, (m, 2) each."""
         step = float(np.ptp(self.outline[0], axis=0).max()) / _ALONG

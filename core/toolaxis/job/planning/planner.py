@@ -44,6 +44,7 @@ from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.fixed_axis import task as search_task
+from toolaxis.search.infeasibility import tight_fillet
 from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
@@ -253,7 +254,9 @@ class PlanningJob:
         return (made, True) if cancelled else (again, False)
 
     def _reached(self, face: Face, progress: Progress) -> ReachDivision | None:
-        """How a face is divided by what axes reach; None where that takes more work than is allowed."""
+        """How a face is divided by what axes reach; None where that takes more work than is allowed, or is no use."""
+        if tight_fillet(face, self.tool):
+            return None
         with limit_work(Budget(self.inputs.limit)):
             try:
                 return divide_by_reach(self._task(face, progress), progress.within(f"face {face.label}"))

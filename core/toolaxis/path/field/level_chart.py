@@ -143,13 +143,14 @@ class LevelChart(FreeChart):
 
         The section is a circle of the surface's curvature there, to the third order of the way.
         """
-        start, normal = self.face.evaluate(uv), self.face.normal(uv)
+        surface = self.face.surface.spline
+        start, normal = surface.evaluate(uv), self.face.normal(uv)
         left = np.cross(normal, feed)
         bend = contact_forms(self.face, uv, feed, False)[:, 11] * way
         reach = way * np.where(np.abs(bend) > _STRAIGHT, np.sin(bend) / np.where(bend != 0, bend, 1.0), 1.0)
         found = uv.copy()
         for _ in range(_BORDER):
-            d = self.face.evaluate(found)
+            d = surface.evaluate(found)
             off = d.point - start.point
             miss_f, miss_l = -dot(off, feed), reach - dot(off, left)
             matrix = dot(d.su, feed), dot(d.sv, feed), dot(d.su, left), dot(d.sv, left)
