@@ -7,6 +7,8 @@ and a row of fillets are built here; the other parts are an example, and parts t
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +17,10 @@ from benchmarks.real_parts import ENDINGS
 from benchmarks.real_parts import FOLDER as PARTS
 
 import toolaxis as ta
+from toolaxis.numeric.knots import restrict_spline
 from toolaxis.plan.choices import FIELD, ISO
 from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.part import Part
 from toolaxis.skin.find import find_skins
 
@@ -49,22 +53,22 @@ def bottle() -> Part:
     net = np.stack([radius[:, None] * np.sin(turn), np.broadcast_to(height[:, None], (10, 25)),
                     radius[:, None] * np.cos(turn)], axis=-1)
     net[:, -1] = net[:, 0]
-    return Part.from_faces([Face.from_bspline(net)])
+    return Part.from_faces([Face.from_bspline(net, flip=True)])
 
 
 def fillets() -> Part:
-    """A wavy top with rounded edges on both long sides, each of three pieces with parameters of their own."""
+    """A wavy top with rounded edges along both long sides, each cut into three at other places than the other."""
     x = np.linspace(0, 60, 13)
     z = 3 * np.sin(x / 12)
     y = np.linspace(0, 30, 5)
-    top = Face.from_bspline(np.stack(np.broadcast_arrays(x[:, None], y, z[:, None]), axis=-1))
-    faces = [top]
-    turn = np.linspace(0, np.radians(70), 4)
-    for side, first in ((-1.0, 0.0), (1.0, 30.0)):
-        for low, high in ((0, 5), (4, 9), (8, 13)):
-            part = np.stack(np.broadcast_arrays(x[low:high, None], first + side * 4 * np.sin(turn),
-                                                z[low:high, None] - 4 * (1 - np.cos(turn))), axis=-1)
-            faces.append(Face.from_bspline(part, flip=side < 0))
+    faces = [Face.from_bspline(np.stack(np.broadcast_arrays(x[:, None], y, z[:, None]), axis=-1))]
+    out, down = np.array([0.0, 1.5, 3.0, 3.8]), np.array([0.0, 0.0, 1.0, 3.2])
+    for side, first, cuts in ((-1.0, 0.0, (0.0, 0.3, 0.7, 1.0)), (1.0, 30.0, (0.0, 0.4, 0.6, 1.0))):
+        net = np.stack(np.broadcast_arrays(x[:, None], first + side * out, z[:, None] - down), axis=-1)
+        whole = Face.from_bspline(net, flip=side < 0)
+        for low, high in pairwise(cuts):
+            knots, own = restrict_spline(whole.surface.knots_u, whole.surface.control, 3, low, high)
+            faces.append(replace(whole, surface=NurbsSurface(knots, whole.surface.knots_v, own, (3, 3))))
     return Part.from_faces(faces)
 
 
