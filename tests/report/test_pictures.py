@@ -87,6 +87,16 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     assert len(colours_of(made, tmp_path / "plan.png")) > 10
 
 
+def test_overview_shows_a_sliver_that_is_left() -> None:
+    """Found: a rest between two sub-surfaces, too thin for the places at which faces are looked at."""
+    plan, op = planned()
+    loops = [np.array([[a, 0.0], [a + 1e-4, 0.0], [a + 1e-4, 1.0], [a, 1.0]]) for a in (0.1, 0.9)]
+    sliver = op.face.trimmed(tuple(loops), "1b")
+    assert not len(sliver.grid(12, 12))
+    made = overview_picture(replace(plan, operations=(op, Operation(2, sliver, Orientation(None)))))
+    assert {text.get_text() for text in made.axes[0].texts} >= {"1", "2: no axis"}
+
+
 def test_sub_surfaces_that_touch_have_different_colours() -> None:
     _, op = planned()
     cells = [(i, j) for i in range(3) for j in range(7)]
