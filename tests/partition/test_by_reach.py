@@ -51,6 +51,10 @@ def test_a_body_is_machined_from_several_sides() -> None:
     assert sum(op.face.area for op in made.operations) == pytest.approx(vault().area, rel=1e-4)
     verdict = ta.verify(made)
     assert verdict.passed, verdict.reasons
+    again = ta.plan(vault(), "ball:8", 0.2, workers=2)
+    for one, other in zip(made.operations, again.operations, strict=True):
+        assert one.path is not None and other.path is not None and np.array_equal(one.path.cl, other.path.cl)
+        assert all(map(np.array_equal, one.face.trims, other.face.trims))
 
 
 def test_nobody_is_asked_where_the_division_is_given() -> None:
