@@ -1,5 +1,6 @@
 """Polygons with holes divided by other polygons: what lies inside them, and what outside."""
 
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ Loops = tuple[Array, ...]
 Corner = tuple[float, float]
 Edge = tuple[Corner, Corner]
 
+#: Shares of its size by which a polygon is moved so that no corner lies on another one's border, and the way.
+_MOVES, _ASLANT = (0.0, 1.7e-7, -3.1e-7, 7.3e-7, -1.3e-6), np.array([0.8, 0.6])
 #: Rows of one polygon's edges that are held against all of the other's at a time.
 _ROWS = 256
 
@@ -60,6 +63,35 @@ def divide_polygon(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     within = [chain for chain, kept in zip(cutting, cutting_in, strict=True) if kept]
     return (_close_chains([chain for chain, kept in zip(own, own_in, strict=True) if kept] + within, len(points)),
             _close_chains([chain for chain, kept in zip(own, own_in, strict=True) if not kept] + within, len(points)))
+
+
+def divide_nearly(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
+    """A polygon divided by another one, which is moved by a millionth of its size where a corner lies on a border.
+
+    Parameters
+    ----------
+    loops, by
+        As for `divide_polygon`.
+
+    Returns
+    -------
+    inside, outside : tuples of (k, 2) arrays
+        As of `divide_polygon`.
+
+    Raises
+    ------
+    InvalidInput
+        When none of the moves that are tried parts corners and borders.
+
+    **Properties**: 1. the areas of both results add up to the whole.
+    """
+    if not loops or not by:
+        return (), loops
+    size = np.ptp(np.concatenate(by), axis=0).max()
+    for share in _MOVES[:-1]:
+        with suppress(InvalidInput):
+            return divide_polygon(loops, tuple(loop + share * size * _ASLANT for loop in by))
+    return divide_polygon(loops, tuple(loop + _MOVES[-1] * size * _ASLANT for loop in by))
 
 
 def _edges(loops: Loops) -> tuple[Array, Array]:

@@ -1,17 +1,15 @@
 """Faces that no axis reaches whole, divided into what one axis reaches, what another reaches of the rest, and so on."""
 
-from contextlib import suppress
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divide_polygon
+from toolaxis.numeric.polygon_boolean import divide_nearly
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.numeric.smallest_cap import smallest_cap
@@ -42,8 +40,6 @@ _BLUR, _EDGE = 0.8, 0.15
 _OVER = 3
 #: How far corners that are left out lie beside the border, in cells.
 _STRAIGHT = 0.3
-#: Shares by which borders are moved so that no corner lies on another border.
-_SHIFTS = (0.0, 1.7e-7, -3.1e-7, 7.3e-7, -1.3e-6)
 
 
 class ReachDivision(NamedTuple):
@@ -76,6 +72,8 @@ def divide_by_reach(job: FaceProblem, progress: Progress = NO_PROGRESS) -> Reach
     Raises
     ------
     OutOfWork, Cancelled
+    InvalidInput
+        When the border of what is reached cannot be told from that of the face.
 
     Notes
     -----
@@ -94,7 +92,9 @@ def divide_by_reach(job: FaceProblem, progress: Progress = NO_PROGRESS) -> Reach
         found = reach.best(left, least)
         if found is None:
             break
-        both, rest = _divide(rest, reach.border(found.held, ~left))
+        both, rest = divide_nearly(rest, reach.border(found.held, ~left))
+        if not both:
+            break
         pieces += [(loops, found.axis) for loops in outer_with_holes(both)]
     area = abs(signed_area(job.worth.face.outline[0]))
     pieces = [one for one in pieces if _area(one[0]) > 1e-6 * area]
@@ -105,17 +105,6 @@ def divide_by_reach(job: FaceProblem, progress: Progress = NO_PROGRESS) -> Reach
 
 def _area(loops: Loops) -> float:
     return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
-
-
-def _divide(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
-    """What of a polygon lies within another one, and the rest; the other one is moved a little where corners meet."""
-    middle = np.concatenate(by).mean(axis=0)
-    for k, share in enumerate(_SHIFTS):
-        moved = tuple(middle + (1 + share) * (loop - middle) + share * np.ptp(loop, axis=0) for loop in by)
-        with suppress(InvalidInput):
-            return divide_polygon(loops, moved)
-        assert k < len(_SHIFTS)
-    return (), loops
 
 
 class _Held(NamedTuple):

@@ -250,7 +250,7 @@ class Face:
     def area(self) -> float:
         """Area of the face, mm^2, to 1e-5 of itself."""
         own = self.own_faces
-        if len(own) > 1 and self._is_whole:
+        if len(own) > 1 and self.fills_outline:
             return sum(face.area for face in own)
         return measure.area(self)
 
@@ -265,8 +265,8 @@ class Face:
         return float(np.linalg.norm(self.box[1] - self.box[0]))
 
     @property
-    def _is_whole(self) -> bool:
-        """Whether the loops are those of the surface's own outline."""
+    def fills_outline(self) -> bool:
+        """Whether the loops are those around all the faces that it was joined from, where it is seen in a plane."""
         outline = getattr(self.surface, "outline", ())
         return len(outline) == len(self.trims) and all(map(np.array_equal, outline, self.trims))
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs
+from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.seen_face import SeenFace
 
 Array = NDArray[np.float64]
@@ -48,6 +49,22 @@ class FacesInView:
         if len(gap):
             owner[gap] = self.nearest(places[gap])
         return owner
+
+    def evaluate(self, places: Array, owner: Index) -> Derivatives:
+        """Points of faces at places of the plane, and their derivatives with these.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        owner : (n,) array of int
+            The face at each place.
+        """
+        found = Derivatives(*np.empty((6, len(places), 3)))
+        for k in np.unique(owner):
+            rows = owner == k
+            for every, own in zip(found, self.seen[k].evaluate(places[rows]), strict=True):
+                every[rows] = own
+        return found
 
     def nearest(self, places: Array) -> Index:
         """The face whose border is nearest to each place, (n,).

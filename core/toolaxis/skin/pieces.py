@@ -1,14 +1,12 @@
 """The part's own faces under a skin, or under a piece of one."""
 
-from contextlib import suppress
-
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
-from toolaxis.numeric.polygon_boolean import divide_polygon
-from toolaxis.numeric.polygons import inside, signed_area, slabs, stations, walk
+from toolaxis.numeric.polygon_boolean import divide_nearly
+from toolaxis.numeric.polygons import signed_area, stations, walk
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joining.joined_surface import name_of
 from toolaxis.skin.seen_face import SeenFace
@@ -19,9 +17,6 @@ Loops = tuple[Array, ...]
 
 #: Share of a member's area in its parameters that may be missing of the whole.
 _WHOLE = 1e-6
-#: Loops of a piece are moved by this share of the skin's size, so that no corner lies on the border of a member, and
-#: how often that is tried.
-_SHIFT, _TRIED = 2e-8, 6
 #: Pieces of the longest side of a loop that is carried over to a member's own parameters.
 _DIVIDED = 128
 
@@ -33,7 +28,7 @@ def own_pieces(face: Face, only_exact: bool = False) -> tuple[Face, ...]:
     ----------
     face : Face
     only_exact : bool
-        Leave out what of a face that is closed in itself cannot be told apart; else all of that face is given.
+        Leave out a face of which it cannot be told what belongs to the piece; else all of that face is given.
 
     Returns
     -------
@@ -81,40 +76,47 @@ def _own(member: Member, uv: Array) -> Array:
 def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -> tuple[Face, ...]:
     """Pieces of the members of a face whose parameters are places in a plane."""
     loops = face.outline
-    if len(loops) == len(surface.outline) and all(map(np.array_equal, loops, surface.outline)):
+    if face.fills_outline:
         return surface.members
     pieces: list[Face] = []
     for seen in surface.seen:
-        for part in _common(seen.outline, loops):
-            if part is None:
-                pieces.append(seen.face)
-                continue
-            own = tuple(_carry_over(seen, loop) for loop in part)
-            if any(one is None for one in own):
-                pieces += [] if only_exact else [seen.face]
-            else:
-                pieces.append(seen.face.trimmed(tuple(one for one in own if one is not None),
-                                                seen.face.label + letters))
-    return tuple(dict.fromkeys(pieces))
+        parts = _common(seen.outline, loops)
+        if parts is not None and any(part is seen.outline for part in parts):
+            pieces.append(seen.face)
+            continue
+        own = None if parts is None else _carry_over_all(seen, parts)
+        if own is None:
+            pieces += [] if only_exact else [seen.face]
+        else:
+            pieces += [seen.face.trimmed(part, seen.face.label + letters) for part in own]
+    return tuple(pieces)
 
 
-def _common(member: Loops, piece: Loops) -> list[Loops | None]:
-    """What two polygons with holes have in common; None for all of the first."""
+def _carry_over_all(seen: SeenFace, parts: list[Loops]) -> list[Loops] | None:
+    """Polygons of the plane in a face's own parameters; None where one of them cannot be carried over."""
+    found: list[Loops] = []
+    for part in parts:
+        own = [_carry_over(seen, loop) for loop in part]
+        known = tuple(loop for loop in own if loop is not None)
+        if len(known) < len(own):
+            return None
+        found.append(known)
+    return found
+
+
+def _common(member: Loops, piece: Loops) -> list[Loops] | None:
+    """What two polygons with holes have in common, the first one itself where that is all of it; None if unknown."""
     box, other = (np.stack([loops[0].min(axis=0), loops[0].max(axis=0)]) for loops in (member, piece))
     if (box[0] > other[1]).any() or (other[0] > box[1]).any():
         return []
-    size = float(np.ptp(other, axis=0).max())
-    for k in range(_TRIED):
-        turn = np.exp(1j * (0.7 + 2.1 * k))
-        shift = (k + 1) * _SHIFT * size * np.array([turn.real, turn.imag])
-        with suppress(InvalidInput):
-            both, apart = divide_polygon(member, tuple(loop + shift for loop in piece))
-            if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * _area(member)]:
-                return [None]
-            least = _WHOLE * min(_area(member), _area(piece))
-            return [part for part in outer_with_holes(both) if _area(part) > least]
-    within = inside(slabs(piece), np.concatenate(member))
-    return [None] if within.all() else []
+    try:
+        both, apart = divide_nearly(member, piece)
+    except InvalidInput:
+        return None
+    if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * _area(member)]:
+        return [member]
+    least = _WHOLE * min(_area(member), _area(piece))
+    return [part for part in outer_with_holes(both) if _area(part) > least]
 
 
 def _carry_over(seen: SeenFace, loop: Array) -> Array | None:

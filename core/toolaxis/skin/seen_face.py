@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs, stations, walk
 from toolaxis.shape.face import Face
+from toolaxis.shape.surface import Derivatives
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -126,6 +127,28 @@ class SeenFace:
             if not len(todo):
                 break
         return uv
+
+    def evaluate(self, places: Array) -> Derivatives:
+        """The face's points at places of the plane, and their derivatives with these.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        d = self.face.evaluate(self.find(places))
+        a, b = d.su @ self.rows.T, d.sv @ self.rows.T
+        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
+        # rates of the face's own parameters (u, v) with x and with y
+        ux, uy, vx, vy = b[:, 1] / det, -b[:, 0] / det, -a[:, 1] / det, a[:, 0] / det
+        sx = d.su * ux[:, None] + d.sv * vx[:, None]
+        sy = d.su * uy[:, None] + d.sv * vy[:, None]
+        second = []
+        for (u1, v1), (u2, v2) in (((ux, vx), (ux, vx)), ((ux, vx), (uy, vy)), ((uy, vy), (uy, vy))):
+            bend = (d.suu * (u1 * u2)[:, None] + d.suv * (u1 * v2 + v1 * u2)[:, None] + d.svv * (v1 * v2)[:, None])
+            aside = bend @ self.rows.T  # places in the plane move evenly: what the bend moves aside, u and v take back
+            second.append(bend - sx * aside[:, :1] - sy * aside[:, 1:])
+        return Derivatives(d.point, sx, sy, *second)
 
     def _wrap(self, uv: Array, low: Array) -> Array:
         """Parameters taken once round where the face is closed."""

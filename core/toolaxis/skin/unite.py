@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.smallest_cap import smallest_cap
@@ -35,7 +35,7 @@ def normals_of(face: Face) -> Array:
     return np.asarray(found[np.linalg.norm(found, axis=1) > 0.5])
 
 
-def unite(faces: Sequence[Face], gap: float = GAP, direction: ArrayLike | None = None) -> Face:
+def unite(faces: Sequence[Face], gap: float = GAP) -> Face:
     """One face from faces that continue each other, whatever their parameters.
 
     Parameters
@@ -44,8 +44,6 @@ def unite(faces: Sequence[Face], gap: float = GAP, direction: ArrayLike | None =
         The first one's number is that of the result.
     gap : float
         How far borders that meet may lie apart, mm.
-    direction : (3,) array_like, optional
-        From which they are seen; the middle of their normals unless given.
 
     Returns
     -------
@@ -65,11 +63,10 @@ def unite(faces: Sequence[Face], gap: float = GAP, direction: ArrayLike | None =
     labels = ", ".join(face.label for face in faces)
     normals = np.concatenate([normals_of(face) for face in faces])
     cap = smallest_cap(normals)
-    up = cap.centre if direction is None else unit(np.asarray(direction, dtype=float))
-    turn = float(np.arccos(np.clip((normals @ up).min(), -1, 1))) if cap.radius < np.pi / 2 else np.pi / 2
-    if turn > GREATEST_TURN:
+    up = cap.centre
+    if cap.radius > GREATEST_TURN:
         raise UnsupportedGeometry(f"faces {labels} cannot be machined as one: their normals turn by up to "
-                                  f"{np.degrees(turn):.0f} degrees from the best view of them, "
+                                  f"{np.degrees(cap.radius):.0f} degrees from the best view of them, "
                                   f"{np.degrees(GREATEST_TURN):.0f} are allowed: choose fewer of them")
     first = _long_direction(faces, up)
     frame = np.stack([first, np.cross(up, first), up])

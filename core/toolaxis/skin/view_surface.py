@@ -17,7 +17,6 @@ from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
 
 Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 #: Points of the grid along the longer side at first and at most, and how exact the spline through them is to be on the
 #: mean of the worst tenth, mm.
@@ -98,11 +97,9 @@ class ViewSurface(NurbsSurface):
         places = np.asarray(uv, dtype=float).reshape(-1, 2)
         found = super().evaluate(places)
         owner = self._view.owners(places)
-        for k in np.unique(owner[owner >= 0]):
-            rows = np.flatnonzero(owner == k)
-            exact = _over_plane(self.seen[k], self.frame, places[rows])
-            for mine, own in zip(found, exact, strict=True):
-                mine[rows] = own
+        within = owner >= 0
+        for mine, exact in zip(found, self._view.evaluate(places[within], owner[within]), strict=True):
+            mine[within] = exact
         return found
 
     def transformed(self, matrix: ArrayLike) -> "ViewSurface":
@@ -118,24 +115,6 @@ class ViewSurface(NurbsSurface):
         return ViewSurface(spline.knots_u, spline.knots_v, spline.control, spline.degree,
                            tuple(face.transformed(m) for face in self.members), self.frame @ np.linalg.inv(m[:3, :3]),
                            m[:3, :3] @ self.origin + m[:3, 3], self.outline)
-
-
-def _over_plane(seen: SeenFace, frame: Array, places: Array) -> Derivatives:
-    """A face's points and their derivatives with the place in the plane."""
-    d = seen.face.evaluate(seen.find(places))
-    a, b = d.su @ frame[:2].T, d.sv @ frame[:2].T
-    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
-    # rates of the face's own parameters (u, v) with x and with y
-    ux, uy, vx, vy = b[:, 1] / det, -b[:, 0] / det, -a[:, 1] / det, a[:, 0] / det
-    sx = d.su * ux[:, None] + d.sv * vx[:, None]
-    sy = d.su * uy[:, None] + d.sv * vy[:, None]
-    second = []
-    for (u1, v1), (u2, v2) in (((ux, vx), (ux, vx)), ((ux, vx), (uy, vy)), ((uy, vy), (uy, vy))):
-        bend = (d.suu * (u1 * u2)[:, None] + d.suv * (u1 * v2 + v1 * u2)[:, None] + d.svv * (v1 * v2)[:, None])
-        aside = bend @ frame[:2].T  # places in the plane move evenly: what the bend moves aside, u and v take back
-        second.append(bend - sx * aside[:, :1] - sy * aside[:, 1:])
-    return Derivatives(d.point, sx, sy, *second)
 
 
 def view_surface(members: Sequence[Face], frame: Array, origin: Array, outline: tuple[Array, ...]) -> ViewSurface:
@@ -163,30 +142,15 @@ def view_surface(members: Sequence[Face], frame: Array, origin: Array, outline: 
                        outline)
 
 
-def _points(seen: Sequence[SeenFace], places: Array, owner: Index) -> tuple[Array, Array, Array]:
-    """Points of the owners at places (n, 3), and their derivatives with x and y."""
-    point, sx, sy = (np.zeros((len(places), 3)) for _ in range(3))
-    for k in np.unique(owner[owner >= 0]):
-        rows, one = np.flatnonzero(owner == k), seen[k]
-        d = one.face.evaluate(one.find(places[rows]))
-        a, b = d.su @ one.rows.T, d.sv @ one.rows.T
-        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)[:, None]
-        point[rows] = d.point
-        sx[rows] = (d.su * b[:, 1:] - d.sv * a[:, 1:]) / det
-        sy[rows] = (d.sv * a[:, :1] - d.su * b[:, :1]) / det
-    return point, sx, sy
-
-
 def _heights(view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> Array:
     """Heights on a grid; beyond the outline those of the tangent planes of the nearest points of the faces."""
     places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
     owner = view.owners(places)
-    point, _, _ = _points(view.seen, places, owner)
-    found = (point - origin) @ frame[2]
-    beyond = np.flatnonzero(owner < 0)
-    if len(beyond):
-        found[beyond] = _heights_beyond(view, frame, origin, places[beyond])
+    within = owner >= 0
+    found = np.empty(len(places))
+    found[within] = (view.evaluate(places[within], owner[within]).point - origin) @ frame[2]
+    if not within.all():
+        found[~within] = _heights_beyond(view, frame, origin, places[~within])
     return np.asarray(found.reshape(len(lines[0]), len(lines[1])))
 
 
@@ -196,9 +160,9 @@ def _heights_beyond(view: FacesInView, frame: Array, origin: Array, places: Arra
     step = size / _ALONG
     border = np.concatenate([walk(loop, stations(loop, (step, step))) for loop in view.outline])
     border = border[:: max(1, len(border) // _BORDER)]
-    point, sx, sy = _points(view.seen, border, view.nearest(border))
-    height = (point - origin) @ frame[2]
-    slope = np.column_stack([sx @ frame[2], sy @ frame[2]])
+    d = view.evaluate(border, view.nearest(border))
+    height = (d.point - origin) @ frame[2]
+    slope = np.column_stack([d.su @ frame[2], d.sv @ frame[2]])
     found = np.empty(len(places))
     for first in range(0, len(places), _AT_ONCE):
         way = places[first:first + _AT_ONCE, None] - border
@@ -229,6 +193,6 @@ def _worst(spline: NurbsSurface, view: FacesInView, frame: Array, origin: Array,
     within = owner >= 0
     if not within.any():
         return 0.0
-    point, _, _ = _points(view.seen, places[within], owner[within])
+    point = view.evaluate(places[within], owner[within]).point
     off = np.sort(np.abs((spline.evaluate(places[within]).point - point) @ frame[2]))
     return float(off[-max(len(off) // 10, 1):].mean())

@@ -15,7 +15,7 @@ from toolaxis.job.planning.blade_pattern import Pattern, group_blade_faces
 from toolaxis.job.planning.clean_up_zones import add_clean_up_zones
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
-from toolaxis.job.planning.failures import fail_face
+from toolaxis.job.planning.failures import fail_face, fail_operation
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.sub_surfaces import (
     Target,
@@ -57,7 +57,7 @@ from toolaxis.work import MOVING, Budget, OutOfWork, limit_work
 
 Array = NDArray[np.float64]
 
-#: Ways to find axes that divide faces which none reaches whole.
+#: Methods under which a face that no axis reaches whole is divided.
 DIVIDED = ("sphere", "sectors")
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
@@ -244,14 +244,15 @@ class PlanningJob:
         found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, inner), len(lost), self.workers, stage)
         if found.cancelled:
             return made, True
-        divided = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
-        if not divided:
-            return made, False
-        rows: list[Target] = []
-        for k, target in enumerate(targets):
-            rows += by_reach(target.face, made[k], divided[k]) if k in divided else [target._replace(ended=made[k])]
-        again, cancelled = self._operations_of(rows, stage)
-        return (made, True) if cancelled else (again, False)
+        pieces = {lost[k]: by_reach(targets[lost[k]].face, made[lost[k]], one)
+                  for k, one in found.results.items() if one is not None and one.pieces}
+        done, cancelled = self._operations_of([piece for k in sorted(pieces) for piece in pieces[k]], stage)
+        failed = {lost[k]: fail_operation(made[lost[k]], why) for k, why in found.faults.items()}
+        rows: list[Operation] = []
+        for k, op in enumerate(made):
+            own = [one for one in done if any(one.face is piece.face for piece in pieces.get(k, ()))]
+            rows += own or [failed.get(k, op)]
+        return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
 
     def _reached(self, face: Face, progress: Progress) -> ReachDivision | None:
         """How a face is divided by what axes reach; None where that takes more work than is allowed, or is no use."""
