@@ -172,7 +172,9 @@ class _Reach:
         """Which nodes each axis may touch by the angle to their normals, (k, n)."""
         own = self._feasibility
         angle = angle_between(self.axes[:, None], self._normal[None])
-        inside = (angle >= own.least_angle) & (angle <= own.greatest_angle - _ROOM)
+        # A flat bottom must not meet a normal between the nodes either.
+        least = own.least_angle + self._lattice.spread.ravel() if own.least_angle > 0 else 0.0
+        inside = (angle >= least) & (angle <= own.greatest_angle - _ROOM)
         return np.asarray(inside & self._on & ~self._tight)
 
     def best(self, left: Bools, least: float) -> _Held | None:
