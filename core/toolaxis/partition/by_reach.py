@@ -161,6 +161,8 @@ class _Reach:
     def axes(self) -> Array:
         """Axes to be tried, inside the limits, (k, 3)."""
         normals = self._normal[self._on]
+        if not len(normals):  # a face without area
+            return np.empty((0, 3))
         cap = smallest_cap(normals)
         middle = cap.centre if cap.radius < np.pi / 2 else normals[0]
         rows = np.vstack([middle[None], spiral(own_frame(normals, middle), _SPACING, np.pi)])
