@@ -13,7 +13,7 @@ from benchmarks._manta import manta_passes
 
 from toolaxis.feed.fixed_axis_time import Feeds, index_time
 from toolaxis.feed.limits import linear_bounds
-from toolaxis.feed.velocity_ramps import ramps
+from toolaxis.feed.time_optimal import schedule_near
 from toolaxis.machine.feed_polytopes import Level, alignments, best_along, box, pole_zone, preferred_direction
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
@@ -109,7 +109,7 @@ def drawn(folder: Path) -> None:
     bounds = linear_bounds(MIKRON.machine)
     for name, tips, rotary in (("paraboloid-200", straight, aligned.rotary),
                                ("manta", curve.tips, find_setup(MIKRON, (curve,)).rotary)):
-        passes = {label: ramps(linear_coordinates(MIKRON.machine, tips, angles), tips, FEEDS.cut, bounds, 0.01)
+        passes = {label: schedule_near(linear_coordinates(MIKRON.machine, tips, angles), FEEDS.cut, bounds, 0.01)
                   for label, angles in (("A = C = 0", np.zeros(2)), ("jerk polytope", rotary))}
         feed_figure(passes, FEEDS.cut).savefig(folder / f"feed-{name}.png")
     print(f"\npictures in {folder}")

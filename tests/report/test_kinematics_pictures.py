@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis.feed.limits import linear_bounds
-from toolaxis.feed.velocity_ramps import ramps
+from toolaxis.feed.time_optimal import schedule_near
 from toolaxis.machine.feed_polytopes import Level, along
 from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.library import load_machine
@@ -34,12 +34,13 @@ def test_the_map_goes_from_two_axes_to_three() -> None:
 
 
 def test_the_feed_rises_from_rest_and_falls_to_rest() -> None:
-    tips = np.linspace(0, 1, 40)[:, None] * (90.0, 90.0, 0.0)
-    found = {name: ramps(linear_coordinates(MIKRON.machine, tips, rotary), tips, 300.0, linear_bounds(MIKRON.machine))
+    tips = np.linspace(0, 1, 40)[:, None] * (30.0, 30.0, 0.0)
+    bounds = linear_bounds(MIKRON.machine)
+    found = {name: schedule_near(linear_coordinates(MIKRON.machine, tips, rotary), 300.0, bounds, 1e-3)
              for name, rotary in (("a", (0.0, 0.0)), ("b", np.radians((-9.7, 44.1))))}
     ax = feed_figure(found, 300.0).axes[0]
     for line, one in zip(ax.lines, found.values(), strict=False):
         places, speeds = line.get_data()
         assert np.abs(speeds[[0, -1]]).max() < 1e-9 and 0 < speeds.max() <= 18.0 * (1 + 1e-9)
-        assert places[-1] == pytest.approx(90 * np.sqrt(2)) and f"{one.duration:.3f} s" in line.get_label()
+        assert places[-1] == pytest.approx(30 * np.sqrt(2)) and f"{one.duration:.3f} s" in line.get_label()
     assert ax.lines[1].get_data()[1].max() > ax.lines[0].get_data()[1].max()

@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import PolylineSchedule, schedule_polyline
-from toolaxis.feed.velocity_ramps import VelocityRamps, ramps
+from toolaxis.feed.time_optimal import CurveSchedule, schedule_near
 from toolaxis.machine.kinematics import linear_coordinates, rotary_angles
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.vectors import angle_between, unit
@@ -154,7 +154,7 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
     curved, seconds = np.zeros(len(moves.kinds), dtype=bool), dict.fromkeys(Motion, 0.0)
     for begin, end in _smooth_cuts(moves) if feeds.smooth else ():
         here = slice(begin, end + 1)
-        seconds[Motion.CUT] += ramps(moves.joints[here], moves.tips[here], feeds.cut, bounds, feeds.tolerance).duration
+        seconds[Motion.CUT] += schedule_near(moves.joints[here], feeds.cut, bounds, feeds.tolerance).duration
         curved[begin:end], stops[[begin, end]] = True, True
         kept[begin + 1:end] = False
         kept[(begin + end) // 2] = True  # both ends may be one point
@@ -168,7 +168,7 @@ def machining_time(machine: Machine, path: ToolPath, feeds: Feeds, rotary: Array
 
 
 def longest_cut(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLike | None = None,
-                table_from_part: ArrayLike | None = None) -> VelocityRamps | None:
+                table_from_part: ArrayLike | None = None) -> CurveSchedule | None:
     """Speeds along the longest smooth cut of a path, as `machining_time` takes it; None where there is none.
 
     Parameters
@@ -182,7 +182,7 @@ def longest_cut(machine: Machine, path: ToolPath, feeds: Feeds, rotary: ArrayLik
     if ends is None:
         return None
     here = slice(ends[0], ends[1] + 1)
-    return ramps(moves.joints[here], moves.tips[here], feeds.cut, linear_bounds(machine), feeds.tolerance)
+    return schedule_near(moves.joints[here], feeds.cut, linear_bounds(machine), feeds.tolerance)
 
 
 def _smooth_cuts(moves: _PathMoves) -> list[tuple[int, int]]:

@@ -11,7 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BSpline, make_lsq_spline
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
@@ -20,6 +19,7 @@ from toolaxis.feed.feed_drop import FeedDrop, crawl
 from toolaxis.feed.fixed_axis_time import CORNER, NO_STEP, Feeds
 from toolaxis.feed.limits import AxisBounds, linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
+from toolaxis.feed.smooth_curve import fit_smooth_curve
 from toolaxis.feed.time_optimal import CurveSchedule, schedule_curve
 from toolaxis.machine.kinematics import linear_coordinates, tool_axes
 from toolaxis.machine.machine import Machine
@@ -32,11 +32,6 @@ Array = NDArray[np.float64]
 _STILL = 1e-9
 #: Points of a curve at least, and of the axes' curves in each gap between the knots of the smoothed one.
 _POINTS, _FINE = 24, 5
-#: Degree of smoothed curves, points to a knot at first, points that a gap between knots must keep, and how often gaps
-#: are halved.
-_DEGREE, _APART, _LEFT, _HALVED = 5, 16, 4, 8
-#: Weight of both ends of a curve, which it must not miss.
-_ENDS = 1e4
 #: Places at which speeds are sought for each point of a cut, and at least and at most: with ten times as many, passes
 #: over a waved face take some percent less.
 _STATIONS = 8, 600, 4000
@@ -209,34 +204,6 @@ class FiveAxisSchedule:
         taken = schedule_polyline(joints[kept], tips[kept], wanted, self.linear, self.feeds.tolerance).segment_times
         for kind in Motion:
             yield kind, float(taken[kinds == kind].sum())
-
-
-def fit_smooth_curve(places: Array, poses: Array, room: Array) -> BSpline:
-    """A smooth curve near poses with few knots: more of them where it needs them to keep near.
-
-    Parameters
-    ----------
-    places : (n,) array
-        Parameters of the poses, ascending.
-    poses, room : (n, d) array
-        Coordinates, and by how much the curve may miss them, both ends apart, which it meets; where gaps between knots
-        hold too few points to be halved, it may miss them by more.
-    """
-    inner, weight = places[_APART:-_APART:_APART], np.ones(len(places))
-    weight[[0, -1]] = _ENDS
-    for _ in range(_HALVED):
-        knots = np.concatenate([np.full(_DEGREE + 1, places[0]), inner, np.full(_DEGREE + 1, places[-1])])
-        curve = make_lsq_spline(places, poses, knots, _DEGREE, weight)
-        missed = (np.abs(curve(places) - poses) > room).any(axis=1)
-        edges = np.concatenate([places[:1], inner, places[-1:]])
-        gap = np.clip(np.searchsorted(edges, places, side="right") - 1, 0, len(inner))
-        counts = np.bincount(gap, minlength=len(inner) + 1)
-        bad = np.flatnonzero((np.bincount(gap, missed, len(inner) + 1) > 0) & (counts >= 2 * _LEFT))
-        if not len(bad):
-            break
-        first = np.searchsorted(gap, bad)
-        inner = np.sort(np.concatenate([inner, places[first + counts[bad] // 2]]))
-    return curve
 
 
 def _apart(places: Array, gap: float) -> NDArray[np.intp]:

@@ -5,7 +5,8 @@ The square b of the path speed is sought at stations along the path, greatest wh
 factor by which the sampled axes still exceed their limits: what is returned keeps them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from toolaxis.feed.interior_point import SpeedProblem, greatest_speeds
 from toolaxis.feed.jerk_profile import profile
 from toolaxis.feed.limits import AxisBounds, check_path
+from toolaxis.feed.smooth_curve import fit_smooth_curve
 
 Array = NDArray[np.float64]
 
@@ -22,6 +24,14 @@ _END = 10
 
 #: Times in each piece at which the axes are compared with their limits.
 _SAMPLES = 5
+
+#: Even stations along a curve near points, stations in a gap between its knots at least, and how often speeds are
+#: sought again, lower at places where limits were exceeded by more than a share.
+_EVEN, _IN_GAP, _ROUNDS, _EXCESS = 200, 4, 3, 0.005
+#: Stations nearer than this share of the even distance are one.
+_ONE = 1e-3
+#: Share of a curve, at either end, that the first jerk from rest is told from.
+_OUTER = 0.01
 
 #: Share of the limits that the speeds are planned with; the rest is for what happens between stations.
 _PLANNED = 0.999
@@ -114,21 +124,79 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
     """
     joints, rows, along = check_path(points, tips, feed, len(bounds.velocity))
     curve, tip = make_interp_spline(along, joints, 5), make_interp_spline(along, rows, 5)
-    limits = _limits_along(curve, tip, float(along[-1]), feed, bounds)
+    limits = _limits_at(np.linspace(0.0, along[-1], 400), curve, tip, feed, bounds)
     count = stations or _enough(float(along[-1]), limits, len(rows))
     plans: list[CurveSchedule] = []
     while not plans or (stations is None and plans[-1].stretch > _REFINE and count < _MOST and len(plans) < 3):
         s = _stations(float(along[-1]), count, limits)
         problem = _problem(s, curve, tip, feed, bounds)
         b = greatest_speeds(problem, _slow(problem.stations, float(along[-1]), limits))
-        plans.append(_within(_pieces(problem.stations, b, float(along[-1])), curve, tip, feed, bounds))
+        plan = CurveSchedule(curve, *_pieces(problem.stations, b, float(along[-1])), 1.0)
+        plans.append(_slow_down(plan, _excess(plan, tip, feed, bounds).by))
         count *= 3
     return min(plans, key=lambda plan: plan.duration)
 
 
-def _limits_along(curve: BSpline, tip: BSpline, length: float, feed: float, bounds: AxisBounds) -> Array:
-    """Path velocity, acceleration and jerk that no axis minds anywhere, (3,)."""
-    probe = np.linspace(0.0, length, 400)
+def schedule_near(points: ArrayLike, feed: float, bounds: AxisBounds, tolerance: float) -> CurveSchedule:
+    """The fastest motion from rest to rest along a smooth curve that passes points within a tolerance.
+
+    Parameters
+    ----------
+    points : (n, 3) array_like
+        Positions of the linear axes, mm, n of at least 6, on a curve without corners, no two neighbours the same; the
+        tip goes as far as they do.
+    feed : float
+        Programmed velocity of the tip, mm/s; infinite for as fast as the axes go.
+    bounds : AxisBounds
+    tolerance : float
+        How far the curve may pass the points, mm.
+
+    Raises
+    ------
+    InvalidInput
+        When points coincide, or the feed is not above zero.
+
+    Notes
+    -----
+    **Source** and **property** are those of `schedule_curve`.  Stations are even, and denser where the curve has more
+    knots; where sampled axes exceed their limits, speeds are capped there and sought again.
+    """
+    joints, _, along = check_path(points, points, feed, len(bounds.velocity))
+    curve, length = fit_smooth_curve(along, joints, tolerance), float(along[-1])
+    outer = np.linspace(0.0, _OUTER * length, 50)
+    ends = _limits_at(np.concatenate([outer, length - outer]), curve, curve, feed, bounds)
+    probes = np.concatenate([np.linspace(0.0, length, 400), curve.t])
+    problem = _problem(_denser(_stations(length, _EVEN, ends), curve), curve, curve, feed, bounds)
+    start = _slow(problem.stations, length, _limits_at(probes, curve, curve, feed, bounds))
+    best: CurveSchedule | None = None
+    for _ in range(_ROUNDS):
+        b = greatest_speeds(problem, start)
+        plan = CurveSchedule(curve, *_pieces(problem.stations, b, length), 1.0)
+        found = _excess(plan, curve, feed, bounds)
+        slowed = _slow_down(plan, found.by)
+        if best is None or slowed.duration < best.duration:
+            best = slowed
+        if slowed.stretch <= 1 + _EXCESS:
+            break
+        problem = replace(problem, most=np.minimum(problem.most, b / found.around(problem.stations) ** 2))
+    assert best is not None
+    return best
+
+
+def _denser(stations: Array, curve: BSpline) -> Array:
+    """Stations with more of them where the knots of a curve lie close, both ends as they are."""
+    knots, inner = np.unique(curve.t), stations[_END:-_END]
+    even = float(np.diff(inner).max())
+    close = np.flatnonzero(np.diff(knots) < _IN_GAP * even)
+    more = (knots[close, None] + np.diff(knots)[close, None] * (np.arange(_IN_GAP) / _IN_GAP)).ravel()
+    more = more[(more > inner[0]) & (more < inner[-1])]
+    both = np.sort(np.concatenate([inner, more]))
+    kept = np.concatenate([[True], np.diff(both) > _ONE * even])
+    return np.concatenate([stations[:_END], both[kept], stations[-_END:]])
+
+
+def _limits_at(probe: Array, curve: BSpline, tip: BSpline, feed: float, bounds: AxisBounds) -> Array:
+    """Path velocity, acceleration and jerk that no axis minds at any of the places, (3,)."""
     q = [np.abs(curve(probe, order)).max(axis=0) + 1e-12 for order in (1, 2, 3)]
     pace = float(np.linalg.norm(tip(probe, 1), axis=1).max())
     a, j = 0.25 * float((bounds.acceleration / q[0]).min()), 0.25 * float((bounds.jerk / q[0]).min())
@@ -226,18 +294,36 @@ def _integrate_motion(times: Array, a: Array) -> Array:
     return np.stack([s, v, a], axis=1)
 
 
-def _within(pieces: tuple[Array, Array], curve: BSpline, tip: BSpline, feed: float,
-            bounds: AxisBounds) -> CurveSchedule:
-    """The pieces slowed down by the least factor that keeps the sampled axes within their limits."""
-    times, states = pieces
-    plan = CurveSchedule(curve, times, states, 1.0)
-    shares = np.linspace(0, 1, _SAMPLES, endpoint=False) + 0.5 / _SAMPLES
-    sampled = np.concatenate([(times[:-1, None] + np.diff(times)[:, None] * shares).reshape(-1), times[:-1], times[1:]])
-    sampled = np.concatenate([sampled, times[1:] - 1e-9 * np.diff(times)])
+class _Excess(NamedTuple):
+    """Places along a path, (n,), and by what factor a motion is too fast there, (n,)."""
+
+    at: Array
+    by: Array
+
+    def around(self, stations: Array) -> Array:
+        """The greatest factor next to each station, (n,), 1 at least."""
+        behind = np.clip(np.searchsorted(stations, self.at), 1, len(stations) - 1)
+        worst = np.ones(len(stations))
+        for side in (behind - 1, behind):
+            np.maximum.at(worst, side, self.by)
+        beside = np.concatenate([[1.0], worst, [1.0]])
+        return np.asarray(np.maximum(np.maximum(beside[:-2], beside[2:]), worst))
+
+
+def _excess(plan: CurveSchedule, tip: BSpline, feed: float, bounds: AxisBounds) -> _Excess:
+    """By what factor a motion is too fast for axes and feed, sampled in all its pieces."""
+    times, inside = plan.times, np.linspace(0, 1, _SAMPLES, endpoint=False) + 0.5 / _SAMPLES
+    shares = np.concatenate([[0.0], inside, [1 - 1e-9]])
+    sampled = np.append((times[:-1, None] + np.diff(times)[:, None] * shares).reshape(-1), times[-1])
     _, v, a, j = plan.at(sampled)
     path = plan.path_at(sampled)
     pace = np.linalg.norm(tip(path[:, 0], 1), axis=1) * path[:, 1] / feed
-    over = [float((np.abs(size) / limit).max()) for size, limit in
+    over = [(np.abs(size) / limit).max(axis=1) for size, limit in
             ((v, bounds.velocity), (a, bounds.acceleration), (j, bounds.jerk))]
-    stretch = max(1.0, float(pace.max()), over[0], over[1] ** (1 / 2), over[2] ** (1 / 3))
-    return CurveSchedule(curve, times * stretch, states / stretch ** np.arange(3), stretch)
+    return _Excess(path[:, 0], np.maximum.reduce([pace, over[0], np.sqrt(over[1]), np.cbrt(over[2])]))
+
+
+def _slow_down(plan: CurveSchedule, factors: Array) -> CurveSchedule:
+    """A motion slowed down as a whole by the greatest of the factors."""
+    stretch = max(1.0, float(factors.max()))
+    return CurveSchedule(plan.curve, plan.times * stretch, plan.states / stretch ** np.arange(3), stretch)

@@ -1,6 +1,7 @@
-"""Time along a curved path by ramps between windows: on the safe side of `curve`, and hundreds of times as fast.
+"""Time along a curved path by ramps between windows, for many set-ups of a machine at once: an estimate, too long.
 
-A controller with splines follows a smooth curve that passes all points within a tolerance.  The path is cut into
+The fastest motion is that of `time_optimal.schedule_near`; a search compares many set-ups by this one.  A control with
+splines follows a smooth curve that passes all points within a tolerance.  The path is cut into
 windows.  In each, curvature takes what it needs of the axes' accelerations and jerks at the window's greatest speed,
 and the rest is for seven-segment ramps from one window to the next; of several numbers of windows the fastest counts.
 """
@@ -9,18 +10,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
+from scipy.interpolate import make_lsq_spline
 
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.limits import AxisBounds, check_path
 from toolaxis.feed.polyline import look_ahead
+from toolaxis.feed.smooth_curve import DEGREE, fit_smooth_curve
 
 Array = NDArray[np.float64]
 
-#: Degree of the curves.
-_DEGREE = 5
-#: Points to a knot at first, and places in a window at least and in all at most.
-_POINTS, _PLACES, _MOST = 12, 4, 4096
+#: Places in a window at least, and in all at most.
+_PLACES, _MOST = 4, 4096
 #: Points to a knot of curves that need not pass near points.
 _APART = 9
 #: Shares of jerk, at the greatest speed of a window, that the curve itself and its change of speed may take.
@@ -38,8 +38,6 @@ class CurveShape(NamedTuple):
 
     Attributes
     ----------
-    curve : BSpline
-        Coordinates over the path parameter, mm or rad.
     length : float
         Of the path parameter, mm.
     derivatives : three (n, d) or (k, n, d) arrays
@@ -48,80 +46,13 @@ class CurveShape(NamedTuple):
         What the path goes for one mm of the parameter; 1 unless given.
     """
 
-    curve: BSpline
     length: float
     derivatives: tuple[Array, Array, Array]
     stretch: Array | None = None
 
 
-class VelocityRamps(NamedTuple):
-    """Speeds along windows of a curve.
-
-    Attributes
-    ----------
-    curve : BSpline
-        Axis positions over the path parameter, mm or rad.
-    borders : (k + 1,) array
-        Path parameters where the windows meet.
-    speeds : (k + 1,) array
-        Path speed there, mm/s; 0 at both ends.
-    limits : three (k,) arrays
-        Velocity, acceleration and jerk along the path in each window.
-    """
-
-    curve: BSpline
-    borders: Array
-    speeds: Array
-    limits: tuple[Array, Array, Array]
-
-    @property
-    def times(self) -> Array:
-        """Time of each window, (k,) s."""
-        return travel_time(np.diff(self.borders), *self.limits, (self.speeds[:-1], self.speeds[1:]))
-
-    @property
-    def duration(self) -> float:
-        """s."""
-        return float(self.times.sum())
-
-
-def ramps(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds,
-          tolerance: float = 1e-3) -> VelocityRamps:
-    """Speeds from rest to rest along a smooth curve through axis positions.
-
-    Parameters
-    ----------
-    points : (n, m) array_like
-        Axis positions, mm or rad, n of at least 6, on a curve without corners.
-    tips : (n, 3) array_like
-        Tool tips there, mm, no two neighbours the same.
-    feed : float
-        Programmed velocity of the tip, mm/s; infinite for as fast as the axes go.
-    bounds : AxisBounds
-    tolerance : float
-        How far the curve may pass the points, mm or rad; 0 to pass through them.
-
-    Raises
-    ------
-    InvalidInput
-        When shapes do not fit, points coincide, or the feed is not above zero.
-
-    Notes
-    -----
-    Properties: (1) no axis exceeds a limit; (2) never faster than the optimum that `curve` seeks, and on passes of
-    finishing within some percent of it.
-    """
-    bend = bend_of(points, tips, feed, len(bounds.velocity), tolerance)
-    tries = [_ramps_in_windows(np.eye(len(bounds.velocity))[None], bend, number, feed, bounds)
-             for number in _numbers(bend.derivatives[0].shape[-2])]
-    best = tries[int(np.argmin([float(_times(one).sum()) for one in tries]))]
-    number = best.limits[0].shape[1]
-    return VelocityRamps(bend.curve, np.linspace(0.0, bend.length, number + 1), best.speeds[0],
-                         (best.limits[0][0], best.limits[1][0], best.limits[2][0]))
-
-
 def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
-    """Time along one curve, or k curves, with the axes set up in k ways, (k,) s: that of `ramps` for each.
+    """Time along one curve, or k curves, with the axes set up in k ways, (k,) s.
 
     Parameters
     ----------
@@ -129,8 +60,13 @@ def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds:
     joint_from_path : (k, m, d) array_like
         What the axes move for a motion along the curve's coordinates.
     feed : float
-        As for `ramps`.
+        Programmed velocity of the tip, mm/s; infinite for as fast as the axes go.
     bounds : AxisBounds
+
+    Notes
+    -----
+    **Property**: never less than the fastest motion takes; up to a fourth more on passes of even bends, and half as
+    much again where a pass bends much at some places.
     """
     matrices = np.asarray(joint_from_path, dtype=float)
     best = np.full(len(matrices), np.inf)
@@ -151,22 +87,28 @@ def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tol
 
     Parameters
     ----------
-    points, tips, feed, tolerance
-        As for `ramps`.
+    points : (n, width) array_like
+        Coordinates, mm or rad, n of at least 6, on a curve without corners.
+    tips : (n, 3) array_like
+        Tool tips there, mm, no two neighbours the same.
+    feed : float
+        As for `durations`.
     width : int
         Number of coordinates.
+    tolerance : float
+        How far the curve may pass the points, mm or rad.
 
     Raises
     ------
     InvalidInput
-        As `ramps`.
+        When shapes do not fit, points coincide, or the feed is not above zero.
     """
     joints, _, along = check_path(points, tips, feed, width)
-    curve, knots = _smooth(along, joints, tolerance)
-    count = int(np.clip(4 * knots, 16 * _PLACES, _MOST))
+    curve = fit_smooth_curve(along, joints, tolerance)
+    count = int(np.clip(_PLACES * len(np.unique(curve.t)), 16 * _PLACES, _MOST))
     s = (np.arange(count) + 0.5) * (along[-1] / count)
     first, second, third = (np.asarray(curve(s, order)) for order in (1, 2, 3))
-    return CurveShape(curve, float(along[-1]), (first, second, third))
+    return CurveShape(float(along[-1]), (first, second, third))
 
 
 def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
@@ -182,8 +124,8 @@ def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
     rows, places = np.asarray(points, dtype=float), np.asarray(along, dtype=float)
     count, n, _ = rows.shape
     inner = places[_APART:-_APART:_APART]
-    knots = np.concatenate([np.full(_DEGREE + 1, places[0]), inner, np.full(_DEGREE + 1, places[-1])])
-    curve = make_lsq_spline(places, rows.swapaxes(0, 1).reshape(n, -1), knots, _DEGREE)
+    knots = np.concatenate([np.full(DEGREE + 1, places[0]), inner, np.full(DEGREE + 1, places[-1])])
+    curve = make_lsq_spline(places, rows.swapaxes(0, 1).reshape(n, -1), knots, DEGREE)
     count_of = int(np.clip(n, 16 * _PLACES, _MOST))
     s = places[0] + (np.arange(count_of) + 0.5) * ((places[-1] - places[0]) / count_of)
     first, second = (np.asarray(curve(s, order)).reshape(len(s), count, 3).swapaxes(0, 1) for order in (1, 2))
@@ -191,20 +133,7 @@ def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
     pace = np.maximum(stretch, _NOTHING)[..., None]
     way = first / pace
     bent = (second - (way * second).sum(axis=2, keepdims=True) * way) / pace**2
-    return CurveShape(curve, float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
-
-
-def _smooth(along: Array, joints: Array, tolerance: float) -> tuple[BSpline, int]:
-    """A curve within the tolerance of the points, with few knots, and their number; else one through the points."""
-    apart = _POINTS
-    while apart > 2 and tolerance > 0:
-        inner = along[apart:-apart:apart]
-        knots = np.concatenate([np.full(_DEGREE + 1, along[0]), inner, np.full(_DEGREE + 1, along[-1])])
-        curve = make_lsq_spline(along, joints, knots, _DEGREE)
-        if np.abs(curve(along) - joints).max() <= tolerance:
-            return curve, len(inner) + 1
-        apart //= 2
-    return make_interp_spline(along, joints, _DEGREE), len(along)
+    return CurveShape(float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
 
 
 def greatest_speeds(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.machine.work_coordinates import mean_feed_across
 from toolaxis.path.estimate import Estimates, Estimator
+from toolaxis.path.field.between_places import hidden_passes
 from toolaxis.path.field.direction_table import DirectionTable, tabulate_directions
 from toolaxis.path.field.ideal_lengths import DirectionForms
 from toolaxis.path.field.level_chart import LevelChart
@@ -33,6 +34,8 @@ PassChart: TypeAlias = IsoChart | PlaneChart | LevelChart
 _GRID = 16
 #: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
 _PRICED, _MADE = (13, 8, 25), (26, 14, 60)
+#: Cells each way where narrow places would lie between those, and the share of passes more from which that is so.
+_DENSE, _HIDDEN = 52, 0.02
 #: Fields that are remembered.
 _KEPT = 64
 
@@ -150,13 +153,19 @@ class FieldPasses:
         """The face in the levels of the field of least length."""
         key = cut.axis.tobytes(), feed
         if key not in self._kept:
-            cells, count, rounds = _MADE
-            table = tabulate_directions(self.estimator.face, cut, cells)
-            found = LevelChart(self.estimator.face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
+            found = self._find_chart(cut, feed, _MADE[0])
+            if hidden_passes(found, cut, _MADE[0]) > _HIDDEN:
+                found = self._find_chart(cut, feed, _DENSE)
             if len(self._kept) >= _KEPT:
                 self._kept.pop(next(iter(self._kept)))
             self._kept[key] = found
         return self._kept[key]
+
+    def _find_chart(self, cut: Cut, feed: str, cells: int) -> LevelChart:
+        """The chart of the field of least length, told from so many cells each way."""
+        face, (_, count, rounds) = self.estimator.face, _MADE
+        table = tabulate_directions(face, cut, cells)
+        return LevelChart(face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
 
 
 def pattern_names(passes: str) -> tuple[str, ...]:

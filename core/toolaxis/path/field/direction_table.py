@@ -153,7 +153,7 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     sqrt(8 h k . D^-1 k) with D the difference of the second forms of cutter and surface, k the way from pass to pass.
     """
     _check_open(face)
-    uv = _places(face, count)
+    uv = even_places(face, count)
     angles = np.arange(_DIRECTIONS) * np.pi / _DIRECTIONS
     frame = feed_frame(face, uv)
     halves = strip_width(face, cut.tool, np.repeat(uv, _DIRECTIONS, axis=0), cut.axis, cut.scallop,
@@ -188,7 +188,15 @@ def _check_open(face: Face) -> None:
                                       "open both ways; use iso-parametric passes, or divide the face")
 
 
-def _places(face: Face, count: int) -> Array:
+def even_places(face: Face, count: int) -> Array:
+    """Even places over the parameter range, its borders among them, (count^2, 2), u slowest.
+
+    Parameters
+    ----------
+    face : Face
+    count : int
+        Each way.
+    """
     u0, u1, v0, v1 = face.bounds
     grid = np.meshgrid(np.linspace(u0, u1, count), np.linspace(v0, v1, count), indexing="ij")
     return np.stack(grid, axis=-1).reshape(-1, 2)

@@ -167,10 +167,14 @@ class LevelChart(FreeChart):
         half = np.empty((1, len(forms)))
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
         ratio = lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis)
+        return np.asarray(2 * half[0] * ratio * self.gradient(uv))
+
+    def gradient(self, uv: Array) -> Array:
+        """How fast the field grows across the passes at parameters, (n,) 1/mm."""
         d, found = self.face.evaluate(uv), self.field.at(uv)
         area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-        gradient = np.linalg.norm(d.su * found.by_v[:, None] - d.sv * found.by_u[:, None], axis=1) / area
-        return np.asarray(2 * half[0] * ratio * gradient)
+        along = np.linalg.norm(d.su * found.by_v[:, None] - d.sv * found.by_u[:, None], axis=1)
+        return np.asarray(along / area)
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2)."""

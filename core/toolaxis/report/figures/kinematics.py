@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.feed.jerk_profile import profile
-from toolaxis.feed.velocity_ramps import VelocityRamps
+from toolaxis.feed.time_optimal import CurveSchedule
 from toolaxis.machine.feed_polytopes import Level, best_along, box, pole_zone
 from toolaxis.machine.kinematics import part_from_machine
 from toolaxis.machine.setup import Mounting
@@ -19,6 +18,8 @@ from toolaxis.report.figures.plots import BLUE, GREY, ORANGE, VERMILION, figure
 Array = NDArray[np.float64]
 
 _UNITS = {Level.VELOCITY: "m/s", Level.ACCELERATION: "m/s²", Level.JERK: "m/s³"}
+#: Times at which a speed is drawn.
+_TIMES = 800
 _COLOURS = (GREY, VERMILION, BLUE, ORANGE)
 
 
@@ -89,12 +90,12 @@ def reach_figure(mounting: Mounting, level: Level) -> Figure:
     return made
 
 
-def feed_figure(passes: Mapping[str, VelocityRamps], feed: float) -> Figure:
+def feed_figure(passes: Mapping[str, CurveSchedule], feed: float) -> Figure:
     """The speed along one pass with several set-ups.
 
     Parameters
     ----------
-    passes : mapping of str to Ramps
+    passes : mapping of str to CurveSchedule
         By the names of the set-ups.
     feed : float
         Programmed, mm/s.
@@ -114,21 +115,12 @@ def feed_figure(passes: Mapping[str, VelocityRamps], feed: float) -> Figure:
     return made
 
 
-def speeds_along(found: VelocityRamps) -> tuple[Array, Array]:
+def speeds_along(found: CurveSchedule) -> tuple[Array, Array]:
     """Ways, mm, and speeds, mm/s, all along.
 
     Parameters
     ----------
-    found : VelocityRamps
+    found : CurveSchedule
     """
-    places: list[Array] = []
-    speeds: list[Array] = []
-    for k, length in enumerate(np.diff(found.borders)):
-        limits = [float(each[k]) for each in found.limits]
-        motion = profile(float(length), limits[0], limits[1], limits[2],
-                         (float(found.speeds[k]), float(found.speeds[k + 1])))
-        state = motion.at(np.linspace(0, motion.duration, 60))
-        places.append(found.borders[k] + state[:, 0])
-        speeds.append(state[:, 1])
-    return np.concatenate(places), np.concatenate(speeds)
-
+    state = found.path_at(np.linspace(0.0, found.duration, _TIMES))
+    return state[:, 0], state[:, 1]
