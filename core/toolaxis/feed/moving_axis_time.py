@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 _STILL = 1e-9
 #: Points of a curve at least, and of the axes' curves in each gap between the knots of the smoothed one.
 _POINTS, _FINE = 24, 5
+#: Points that a gap between the knots of a smoothed curve must keep: where the axis jumps, fewer would follow the jump.
+_LEFT = 4
 #: Places at which speeds are sought for each point of a cut, and at least and at most: with ten times as many, passes
 #: over a waved face take some percent less.
 _STATIONS = 8, 600, 4000
@@ -157,7 +159,7 @@ class FiveAxisSchedule:
             fine = np.linspace(0.0, places[-1], _POINTS)
             poses = np.column_stack([np.interp(fine, places, column) for column in poses.T])
             places = fine
-        curve = fit_smooth_curve(places, poses, self._room(poses[:, 3:]))
+        curve = fit_smooth_curve(places, poses, self._room(poses[:, 3:]), _LEFT)
         knots = np.unique(curve.t)
         shares = np.arange(_FINE) / _FINE
         fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * shares).ravel(), knots[-1])

@@ -6,14 +6,13 @@ from scipy.interpolate import BSpline, make_lsq_spline
 
 Array = NDArray[np.float64]
 
-#: Degree of the curves, points to a knot at first, points that a gap between knots must keep, and how often gaps are
-#: halved.
-DEGREE, _APART, _LEFT, _HALVED = 5, 16, 2, 8
+#: Degree of the curves, points to a knot at first, and how often gaps between knots are halved.
+DEGREE, _APART, _HALVED = 5, 16, 8
 #: Weight of both ends of a curve, which it must not miss.
 _ENDS = 1e4
 
 
-def fit_smooth_curve(places: Array, poses: Array, room: ArrayLike) -> BSpline:
+def fit_smooth_curve(places: Array, poses: Array, room: ArrayLike, left: int = 2) -> BSpline:
     """A smooth curve near poses with few knots: more of them where it needs them to keep near.
 
     Parameters
@@ -24,6 +23,8 @@ def fit_smooth_curve(places: Array, poses: Array, room: ArrayLike) -> BSpline:
     room : (n, d) array_like, or what gives one
         By how much the curve may miss them, both ends apart, which it meets; where gaps between knots hold too few
         points to be halved, it may miss them by more.
+    left : int
+        Points that a gap between knots must keep.
     """
     inner, weight = places[_APART:-_APART:_APART], np.ones(len(places))
     weight[[0, -1]] = _ENDS
@@ -34,7 +35,7 @@ def fit_smooth_curve(places: Array, poses: Array, room: ArrayLike) -> BSpline:
         edges = np.concatenate([places[:1], inner, places[-1:]])
         gap = np.clip(np.searchsorted(edges, places, side="right") - 1, 0, len(inner))
         counts = np.bincount(gap, minlength=len(inner) + 1)
-        bad = np.flatnonzero((np.bincount(gap, missed, len(inner) + 1) > 0) & (counts >= 2 * _LEFT))
+        bad = np.flatnonzero((np.bincount(gap, missed, len(inner) + 1) > 0) & (counts >= 2 * left))
         if not len(bad):
             break
         first = np.searchsorted(gap, bad)

@@ -52,7 +52,7 @@ class CurveShape(NamedTuple):
 
 
 def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
-    """Time along one curve, or k curves, with the axes set up in k ways, (k,) s.
+    """Time along a curve with the axes set up in k ways, (k,) s.
 
     Parameters
     ----------
@@ -72,13 +72,8 @@ def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds:
     best = np.full(len(matrices), np.inf)
     for begin in range(0, len(matrices), _BATCH):
         some = slice(begin, begin + _BATCH)
-        part = bend
-        if bend.derivatives[0].ndim == 3:
-            first, second, third = (rows[some] for rows in bend.derivatives)
-            part = bend._replace(derivatives=(first, second, third),
-                                 stretch=None if bend.stretch is None else bend.stretch[some])
         for number in _numbers(bend.derivatives[0].shape[-2]):
-            best[some] = np.minimum(best[some], _times(_ramps_in_windows(matrices[some], part, number, feed, bounds)))
+            best[some] = np.minimum(best[some], _times(_ramps_in_windows(matrices[some], bend, number, feed, bounds)))
     return best
 
 
@@ -146,14 +141,16 @@ def greatest_speeds(bend: CurveShape, joint_from_path: ArrayLike, feed: float, b
     """
     matrices = np.asarray(joint_from_path, dtype=float).swapaxes(1, 2)
     first, second, third = (np.abs(rows @ matrices) + _NOTHING for rows in bend.derivatives)
-    return _tops(first, second, third, feed, bounds)
+    return _tops((first, second, third), feed, bounds, (1.0, 1.0))
 
 
-def _tops(first: Array, second: Array, third: Array, feed: float, bounds: AxisBounds) -> Array:
-    """Greatest speeds at which a curve takes no more than its shares of the axes' limits; its derivatives above 0."""
+def _tops(bend: tuple[Array, Array, Array], feed: float, bounds: AxisBounds, shares: tuple[float, float]) -> Array:
+    """Greatest speeds at which a curve, its derivatives above 0, takes no more than shares of accelerations and jerks.
+    """
+    first, second, third = bend
     top = np.minimum(feed, (bounds.velocity / first).min(axis=2))
-    top = np.minimum(top, np.sqrt((_BEND * bounds.acceleration / second).min(axis=2)))
-    return np.asarray(np.minimum(top, np.cbrt((_CURVE * bounds.jerk / third).min(axis=2))))
+    top = np.minimum(top, np.sqrt((shares[0] * bounds.acceleration / second).min(axis=2)))
+    return np.asarray(np.minimum(top, np.cbrt((shares[1] * bounds.jerk / third).min(axis=2))))
 
 
 class _Windows(NamedTuple):
@@ -175,7 +172,7 @@ def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: floa
     starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
     first, second, third = (np.maximum.reduceat(np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING, starts, axis=1)
                             for rows in bend.derivatives)
-    top = _tops(first, second, third, feed, bounds)
+    top = _tops((first, second, third), feed, bounds, (_BEND, _CURVE))
     speed = top[..., None]
     a = np.minimum((bounds.acceleration - second * speed**2) / first, _CROSS * bounds.jerk / (3 * second * speed))
     a = a.min(axis=2)
@@ -183,8 +180,6 @@ def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: floa
     caps = np.zeros((len(top), number + 1))
     caps[:, 1:-1] = np.minimum(top[:, :-1], top[:, 1:])
     run = np.full(a.shape, bend.length / number)
-    if bend.stretch is not None:
-        run = np.add.reduceat(bend.stretch, starts, axis=1) * (bend.length / count)
     chain = look_ahead(run.reshape(-1), a.reshape(-1), j.reshape(-1), np.append(caps[:, :-1].reshape(-1), 0.0))
     caps[:, :-1] = chain[:-1].reshape(len(top), number)  # each set-up begins and ends at rest: one chain serves all
     return _Windows(run, caps, (top, a, j))

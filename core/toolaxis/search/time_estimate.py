@@ -17,7 +17,7 @@ from toolaxis.feed.fixed_axis_time import Feeds, index_time
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.feed.limits import linear_bounds
 from toolaxis.feed.polyline import schedule_polyline
-from toolaxis.feed.velocity_ramps import bends_of, durations, greatest_speeds
+from toolaxis.feed.velocity_ramps import bends_of, greatest_speeds
 from toolaxis.machine.kinematics import part_from_machine, rotary_angles
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.links import Linking
@@ -126,14 +126,24 @@ class TimeEstimate:
         axes : (k, 3) array
             Unit vectors.
         """
-        joint_from_part, bounds = self._joint_from_part(axes), linear_bounds(self.mounting.machine)
+        joint_from_part = self._joint_from_part(axes)
         found = np.full((len(axes), 2), self.feeds.cut)
         for feed, lines in enumerate(self.lines):
-            times = [durations(bends_of(self._tips(line, axes), line.along), joint_from_part, self.feeds.cut, bounds)
-                     for line in lines]
+            times = [self._seconds_along(line, axes, joint_from_part) for line in lines]
             if times:
                 found[:, feed] = sum(line.length for line in lines) / np.sum(times, axis=0)
         return found
+
+    def _seconds_along(self, line: _Line, axes: Array, joint_from_part: Array) -> Array:
+        """Time of a pass with axes, (k,) s: that of a straight one as long, and what its bends add where they slow it.
+        """
+        bounds = linear_bounds(self.mounting.machine)
+        bend = bends_of(self._tips(line, axes), line.along)
+        speeds = greatest_speeds(bend, joint_from_part, self.feeds.cut, bounds)
+        assert bend.stretch is not None
+        way = bend.stretch * (bend.length / speeds.shape[1])
+        straight = travel_time(way.sum(axis=1), self.feeds.cut, bounds.acceleration.min(), bounds.jerk.min())
+        return np.asarray(straight + (way / speeds - way / self.feeds.cut).sum(axis=1))
 
     def _rotary_angles_of(self, axes: Array) -> Array:
         """Rotary angles that give axes, (k, m) rad."""
