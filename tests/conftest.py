@@ -17,6 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent
 SHARED = "TOOLAXIS_TESTS_SHARED"
 # s; the slowest tests take a quarter of it on two noisy cores: what takes longer waits for what never comes
 LIMIT, LONG_LIMIT = 900, 5400
+# Before anything loads numpy, here and in all processes that tests start: threads of BLAS that spin while they wait for
+# each other take the processor from the tests beside, and made a few small systems of equations cost half a minute.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -73,7 +73,7 @@ FAULTS = (
     Fault(CORE + "collision/index_moves.py", "proven &= gap - swing >= around.required",
           "proven &= gap >= around.required",
           ("contact/test_indexing.py", "contact/test_machinery.py", "contact/test_turning_machinery.py")),
-    Fault(CORE + "partition/guillotine.py", "best[better] + first, number", "best[better], number",
+    Fault(CORE + "partition/guillotine.py", "feed[better] = first + k, number", "feed[better] = k, number",
           ("partition/test_guillotine.py", "partition/test_regions.py", "partition/test_strips.py",
            "partition/test_times.py")),
     Fault(CORE + "feasibility/feasibility.py", "np.concatenate([self.cloud, self.learnt])) - self.tolerance.gouge",

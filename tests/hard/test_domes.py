@@ -15,7 +15,7 @@ def cap(low: float = 0.9) -> ta.Face:
 
 
 def test_a_dome_is_planned_and_passes() -> None:
-    made = ta.plan(cap(), "ball:6", 0.2, machine="cone:0,0,1,15")
+    made = ta.plan(cap(1.1), "ball:6", 0.3, machine="cone:0,0,1,5")
     assert made.outcome == "complete", made.operations[0].orientation.reasons
     assert made.operations[0].orientation.unreached == 0
     assert ta.verify(made).passed

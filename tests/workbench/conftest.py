@@ -53,6 +53,14 @@ TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "tes
             ("test_background.py", "test_fields.py", "test_settings.py", "test_views.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
+# What runs outside FreeCAD for longest, which follows: on one process alone it would keep all waiting at the end.
+LONGEST = ("partition/test_by_reach.py", "job/test_run.py", "job/test_failures.py", "orient/test_search.py",
+           "tests/test_readme.py", "messages/test_german.py", "job/test_pattern.py", "orient/test_best_axis.py",
+           "partition/test_times.py", "job/test_left_whole.py", "job/test_abreast.py", "hard/test_domes.py",
+           "orient/test_four_plus_one.py", "orient/test_passes_along_planes.py", "job/test_folder_example.py",
+           "path/test_fields.py", "hard/test_axis_of_the_passes.py", "partition/test_bad_bosses.py",
+           "partition/test_regions.py", "job/test_blade_strategy.py", "job/test_division.py",
+           "orient/test_kinematic_axis.py", "contact/test_strip_brute.py", "contact/test_safety_trimmed.py")
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
 STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
@@ -68,12 +76,16 @@ def pytest_configure(config):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items):
-    """FIRST, then what runs in FreeCAD: a file takes minutes, and none should begin when all else is done."""
+    """FIRST, then what runs in FreeCAD, then LONGEST: none that takes minutes should begin when all else is done."""
     _put_together(items)
 
     def place(item):
-        first = [item.path.as_posix().endswith(name) for name in FIRST]
-        return first.index(True) if any(first) else len(FIRST) + (not isinstance(item, InnerRun))
+        name = item.path.as_posix()
+        for group, names in enumerate((FIRST, LONGEST)):
+            for k, end in enumerate(names):
+                if name.endswith(end):
+                    return 2 * group, k
+        return (1, 0) if isinstance(item, InnerRun) else (3, 0)
 
     items.sort(key=place)
 

@@ -149,9 +149,8 @@ class NormalCells:
         across_u, across_v = 2 * su * hu + off_u * hu, 2 * sv * hv + off_v * hv
         spread[(share >= 1) & (across_u + across_v < _SPECK) & (lengths(normal) > 0.5)] = 0.0
         # In a fold a narrow cell has no normals but those of the cells beside it.
-        folded = np.zeros(len(middle), dtype=bool)
-        folded[self._face.folds(middle).rows] = True
-        spread[folded & (share >= 1) & (np.minimum(across_u, across_v) < _SPECK)] = 0.0
+        narrow = np.flatnonzero((share >= 1) & (np.minimum(across_u, across_v) < _SPECK))
+        spread[narrow[self._face.folds(middle[narrow]).rows]] = 0.0
         return normal, spread
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:

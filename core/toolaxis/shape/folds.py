@@ -189,11 +189,14 @@ def _folds_along(surface: "NurbsSurface", axis: int, uv: Array, normal: Array) -
     against = dot(normal, around) < _AGAINST
     rows = np.flatnonzero(sound & (dot(*inner) > _AGREE) & (against | (np.min(areas, 0) < _EVEN * np.max(areas, 0))))
     against, flat = against[rows], np.ones(len(rows), dtype=bool)
-    ends = np.where(between[:, None], second, _end_opposite(surface, axis, uv, first))
-    for place, plane in ((first, inner[0]), (second, inner[1]), (ends, np.where(between[:, None], inner[1], inner[0]))):
-        contradicts, level = _look_on_the_way(surface, (uv[rows], place[rows]), (around[rows], plane[rows]))
-        against |= contradicts
-        flat &= level
+    opposite = _end_opposite(surface, axis, uv, first)
+    for place, plane, asked in ((first, inner[0], sound), (second, inner[1], sound), (opposite, inner[0], ~between)):
+        # What has left a plane is no fold, whatever lies on the other ways.
+        left = np.flatnonzero(flat & asked[rows])
+        here = rows[left]
+        contradicts, level = _look_on_the_way(surface, (uv[here], place[here]), (around[here], plane[here]))
+        against[left] |= contradicts
+        flat[left] = level
     rows = rows[against & flat]
     return Folds(rows, around[rows], first[rows])
 
