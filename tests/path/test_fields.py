@@ -13,6 +13,7 @@ from toolaxis.errors import UnsupportedGeometry
 from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.path.cl_points import trace
 from toolaxis.path.estimate import Estimator
+from toolaxis.path.field.between_places import hidden_passes
 from toolaxis.path.field.direction_table import feed_frame, feeds_in, tabulate_directions
 from toolaxis.path.field.ideal_lengths import DirectionForms
 from toolaxis.path.field.level_chart import LevelChart
@@ -165,6 +166,33 @@ def test_passes_in_a_field_leave_nothing_and_come_to_what_the_field_says(seed: i
     assert sum(zone.area for zone in left_over(face, tool, path, H)) <= 1e-3 * face.area
     if not cut_out:
         assert placed.used == pytest.approx(chart.field.passes, rel=0.1)
+
+
+def _near_its_normals() -> tuple[Face, Array]:
+    """A random patch and an axis less than a degree from its normals along a valley, where strips change at once."""
+    rng = np.random.default_rng(0)
+    x, y = np.meshgrid(np.linspace(0, 60, 6), np.linspace(0, 45, 5), indexing="ij")
+    lean, height = rng.uniform(-0.3, 0.3, 2), rng.uniform(1, 6)
+    z = lean[0] * x + lean[1] * y + height * rng.uniform(-1, 1, x.shape)
+    axis = np.array([-0.15490737, 0.09127503, 0.9837035])
+    return Face.from_bspline(np.stack([x, y, z], axis=-1)), axis / np.linalg.norm(axis)
+
+
+def test_narrow_places_between_those_of_the_table_are_found_and_cost_fewer_passes() -> None:
+    face, axis = _near_its_normals()
+    cut = Cut(TORUS, axis, H)
+    coarse = LevelChart(face, "u", find_field(tabulate_directions(face, cut, 26), 1))
+    assert hidden_passes(coarse, cut, 26) > 0.1
+    made = FieldPasses(Estimator.of(face, TORUS, H)).chart(cut, "u")
+    assert hidden_passes(made, cut, 52) < 0.02
+    few, many = (lay_out(chart, cut) for chart in (made, coarse))
+    assert len(few.steps) < 0.85 * len(many.steps) and pass_length(few) < 0.85 * pass_length(many)
+
+
+def test_where_strips_change_slowly_no_narrow_place_is_hidden() -> None:
+    face, cut = flat(60.0, 40.0), Cut(BALL, LEAN, H)
+    chart = LevelChart(face, "u", find_field(tabulate_directions(face, cut, 10), 1))
+    assert abs(hidden_passes(chart, cut, 10)) < 1e-3
 
 
 def test_plans_in_a_field_pass_the_judge_and_the_shorter_is_taken(tmp_path: Path) -> None:
