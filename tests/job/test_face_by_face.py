@@ -11,7 +11,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
-from toolaxis.job.planning.face_by_face import area_machined, is_better
+from toolaxis.job.planning.face_by_face import area_machined, is_better, loses_area
 from toolaxis.numeric.knots import restrict_spline
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -139,6 +139,8 @@ def test_more_area_counts_first_then_operations_then_length() -> None:
     assert is_better([_done(0.9, 9)], [_done(0.905, 10)], area)
     assert is_better([_done(0.005, 9)], [none], area) and not is_better([none], [_done(0.005, 9)], area)
     assert not is_better([none], [none], area)
+    assert loses_area([none], area) and not loses_area([none], 101 * area) and not loses_area([], area)
+    assert not loses_area([replace(none, orientation=Orientation(None, outcome="failed"))], area)
 
 
 def test_a_part_taken_apart_is_the_one_with_the_other_skins() -> None:

@@ -10,15 +10,18 @@ from toolaxis.shape.face import Face
 _SAME = 0.01
 
 
-def loses_area(operations: Sequence[Operation]) -> bool:
-    """Whether one of the sub-surfaces of a skin has no axis, and none is there on which the program failed.
+def loses_area(operations: Sequence[Operation], area: float) -> bool:
+    """Whether more than a small share of a skin has no axis, and nothing of it is there on which the program failed.
 
     Parameters
     ----------
     operations : sequence of Operation
         None of them where the skin was not planned.
+    area : float
+        Of the skin, mm^2.
     """
-    return any(not op.done for op in operations) and not any(op.failed for op in operations)
+    lost = sum(op.face.area for op in operations if not op.done)
+    return lost > _SAME * area and not any(op.failed for op in operations)
 
 
 def area_machined(operations: Sequence[Operation]) -> float:

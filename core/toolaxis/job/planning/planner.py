@@ -259,9 +259,9 @@ class PlanningJob:
     def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""
         given = {one.face for one in self.division}
-        own = {skin.number: [op for op in plan.operations if op.face.number == skin.number]
-               for skin in self.part.faces if skin.members and skin.number not in given}
-        lost = [self.part.face(number) for number, some in own.items() if loses_area(some)]
+        skins = [face for face in self.part.faces if face.members and face.number not in given]
+        own = {skin.number: [op for op in plan.operations if op.face.number == skin.number] for skin in skins}
+        lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
         if not lost:
             return plan
         apart = replace(self, part=take_apart(self.part, [skin.number for skin in lost]), whole=(), division=())
