@@ -79,12 +79,16 @@ def outer_with_holes(loops: tuple[Array, ...]) -> list[tuple[Array, ...]]:
         Loops that do not cross.
     """
     groups: list[list[Array]] = []
+    lowest, highest = np.empty((len(loops), 2)), np.empty((len(loops), 2))
     for loop in sorted(loops, key=lambda one: -abs(signed_area(one))):
-        within = _inner_point(loop)
-        around = [group for group in groups if inside(slabs(tuple(group)), within)[0]]
+        within, count = _inner_point(loop), len(groups)
+        # Most of many small polygons are told apart by their boxes.
+        near = np.flatnonzero(((lowest[:count] <= within) & (within <= highest[:count])).all(axis=1))
+        around = [groups[k] for k in near if inside(slabs(tuple(groups[k])), within)[0]]
         if around:
             around[-1].append(loop)
         else:
+            lowest[count], highest[count] = loop.min(axis=0), loop.max(axis=0)
             groups.append([loop])
     return [tuple(group) for group in groups]
 

@@ -1,6 +1,6 @@
 """Which faces of a part continue each other and are seen from one side: what one tool axis may machine as one."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import product
@@ -16,14 +16,13 @@ from toolaxis.shape.joining.patch_grid import arrange_from
 from toolaxis.shape.joining.shared_boundary import SharedBoundary, meeting_along
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import PLAIN_KINDS, Part
-from toolaxis.skin.unite import GAP, normals_of, unite
+from toolaxis.skin.smooth_faces import join_faces, neighbours_of
+from toolaxis.skin.unite import normals_of
 
 Array = NDArray[np.float64]
 
 #: Greatest angle between the normals of a skin and the middle of them, rad: what one axis can reach with some room.
 _TURN = np.radians(65.0)
-#: Share by which borders are taken to lie farther apart than was found at points of them.
-_WIDER = 1.5
 
 
 @dataclass(frozen=True)
@@ -32,17 +31,22 @@ class Skins:
 
     Attributes
     ----------
-    joined : tuple of tuple of int
-        Numbers of the faces of each, two or more, in their order; the skin with the largest face first.
+    faces : tuple of Face
+        Each skin as one face, of two faces or more; the skin with the largest of them first.
     single : tuple of int
         Sculptured faces that stay alone.
     reasons : tuple of str
         Sentences: why faces that continue each other smoothly are not joined.
     """
 
-    joined: tuple[tuple[int, ...], ...]
+    faces: tuple[Face, ...]
     single: tuple[int, ...]
     reasons: tuple[str, ...]
+
+    @property
+    def joined(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the faces of each skin, in their order."""
+        return tuple(face.numbers for face in self.faces)
 
 
 def find_skins(part: Part, width: float = 0.0) -> Skins:
@@ -63,49 +67,50 @@ def find_skins(part: Part, width: float = 0.0) -> Skins:
     """
     open_ = {face.number: face for face in part.faces if not face.members
              and (face.kind not in PLAIN_KINDS or mean_width(face) < width)}
-    beside = _neighbours(part, open_)
+    beside = neighbours_of(part, open_)
     order = sorted(open_, key=lambda n: (-open_[n].area, n))
-    joined, refused = [], []
+    skins: list[Face] = []
+    refused: list[str] = []
     free = dict.fromkeys(order)
     for first in order:
         if first not in free or open_[first].kind in PLAIN_KINDS:
             continue
         numbers = _grow(first, open_, {n: [m for m in beside[n] if m in free] for n in free})
-        numbers, why = _united(part, numbers)
+        numbers, made, why = _join_most(part, numbers)
         refused += why
         for number in numbers:
             del free[number]
-        if len(numbers) > 1:
-            joined.append(tuple(sorted(numbers)))
-    alone = [n for n in sorted(open_) if not any(n in numbers for numbers in joined)]
-    joined += _rectangles(part, [n for n in alone if open_[n].kind not in PLAIN_KINDS])
-    within = {n: k for k, numbers in enumerate(joined) for n in numbers}
+        skins += [] if made is None else [made]
+    alone = [n for n in sorted(open_) if not any(n in skin.numbers for skin in skins)]
+    skins += _rectangles(part, [n for n in alone if open_[n].kind not in PLAIN_KINDS])
+    within = {n: k for k, skin in enumerate(skins) for n in skin.numbers}
     single = tuple(face.number for face in part.sculptured if not face.members and face.number not in within)
-    return Skins(tuple(joined), single, _reasons(part, within, open_, refused))
+    return Skins(tuple(skins), single, _reasons(part, within, open_, refused))
 
 
-def _rectangles(part: Part, free: list[int]) -> list[tuple[int, ...]]:
+def _rectangles(part: Part, free: list[int]) -> list[Face]:
     """The largest rectangles of patches whose parameters go together, closed rings among them; those of two or more."""
-    meetings: list[SharedBoundary] = []
+    found: list[SharedBoundary] = []
     for edge in part.edges:
         a, b = edge.faces
         if edge.kind != "tangent" or a == b or not {a, b} <= set(free):
             continue
         with suppress(UnsupportedGeometry):
             meeting = meeting_along(part.face(a), part.face(b), edge)
-            if not any(meeting.faces == other.faces and meeting.sides == other.sides for other in meetings):
+            if not any(meeting.faces == other.faces and meeting.sides == other.sides for other in found):
                 join_patches([part.face(a), part.face(b)], [meeting])
-                meetings.append(meeting)
-    found: list[tuple[int, ...]] = []
+                found.append(meeting)
+    skins: list[Face] = []
     while free:
-        group = _largest(part, free, meetings)
+        made = _join_largest(part, free, found)
+        group = (free[0],) if made is None else made.numbers
         free = [n for n in free if n not in group]
-        found += [group] if len(group) > 1 else []
-    return found
+        skins += [] if made is None else [made]
+    return skins
 
 
-def _largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> tuple[int, ...]:
-    """The largest rectangle of free patches around the first of them."""
+def _join_largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> Face | None:
+    """The largest rectangle of free patches around the first of them; None where that is alone."""
     own = [m for m in found if set(m.faces) <= set(free)]
     cells = arrange_from(part.face(free[0]), own)
     by_cell = {cell: number for number, cell in reversed(list(cells.items()))}
@@ -119,56 +124,9 @@ def _largest(part: Part, free: Sequence[int], found: list[SharedBoundary]) -> tu
             continue
         numbers = sorted(n for n in members if n is not None)
         with suppress(UnsupportedGeometry):
-            join_patches([part.face(n) for n in numbers], [m for m in own if set(m.faces) <= set(numbers)])
-            return tuple(numbers)
-    return (free[0],)
-
-
-def check_connected(part: Part, numbers: Sequence[int]) -> None:
-    """That faces of a part hang together over smooth edges.
-
-    Parameters
-    ----------
-    part : Part
-    numbers : sequence of int
-
-    Raises
-    ------
-    UnsupportedGeometry
-        When one does not.
-    """
-    beside = _neighbours(part, numbers)
-    reached = [numbers[0]]
-    for number in reached:
-        reached += [n for n in beside[number] if n not in reached]
-    apart = [n for n in numbers if n not in reached]
-    if apart:
-        raise UnsupportedGeometry(f"face {part.face(apart[0]).label} does not continue any of the others smoothly: "
-                                  "machine it by itself")
-
-
-def gap_between(part: Part, numbers: Collection[int]) -> float:
-    """How far borders of faces that meet may lie apart, mm: what was found along the edges between them and more.
-
-    Parameters
-    ----------
-    part : Part
-    numbers : collection of int
-    """
-    found = [float(edge.gap.max()) for edge in part.edges if set(edge.faces) <= set(numbers) and len(edge.gap)]
-    return max([GAP, *(_WIDER * gap for gap in found)])
-
-
-def _neighbours(part: Part, among: Collection[int]) -> dict[int, list[int]]:
-    """Faces that continue each one smoothly, the largest first."""
-    found: dict[int, set[int]] = {n: set() for n in among}
-    for edge in part.edges:
-        a, b = edge.faces
-        length = float(np.linalg.norm(np.diff(edge.polyline, axis=0), axis=1).sum())
-        if edge.kind == "tangent" and a != b and a in found and b in found and length > GAP:
-            found[a].add(b)
-            found[b].add(a)
-    return {n: sorted(others, key=lambda m: (-part.face(m).area, m)) for n, others in found.items()}
+            between = [m for m in own if set(m.faces) <= set(numbers)]
+            return join_patches([part.face(n) for n in numbers], between)
+    return None
 
 
 def _grow(first: int, faces: dict[int, Face], beside: dict[int, list[int]]) -> list[int]:
@@ -187,17 +145,17 @@ def _grow(first: int, faces: dict[int, Face], beside: dict[int, list[int]]) -> l
     return numbers
 
 
-def _united(part: Part, numbers: Sequence[int]) -> tuple[list[int], list[str]]:
-    """As many of the first of faces as can be seen as one, and why not all of them."""
-    kept, why = list(numbers), []
+def _join_most(part: Part, numbers: Sequence[int]) -> tuple[list[int], Face | None, list[str]]:
+    """As many of the first of faces as can be machined as one, that one where they are two or more, and why not all."""
+    kept = list(numbers)
+    why: list[str] = []
     while len(kept) > 1:
         try:
-            unite([part.face(n) for n in kept], gap_between(part, kept))
-            break
+            return kept, join_faces(part, sorted(kept)), why
         except UnsupportedGeometry as reason:
             why.append(str(reason))
             kept.pop()
-    return kept, why
+    return kept, None, why
 
 
 def _reasons(part: Part, within: dict[int, int], faces: dict[int, Face], refused: Sequence[str]) -> tuple[str, ...]:

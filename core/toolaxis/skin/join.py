@@ -1,19 +1,17 @@
 """Smooth skins: patches of a part that are machined, or divided, as one face."""
 
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
 
 import numpy as np
 
-from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
-from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, join_patches, joins
-from toolaxis.shape.joining.shared_boundary import GAP, meetings
+from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, joins
+from toolaxis.shape.joining.shared_boundary import GAP
 from toolaxis.shape.part import Part
-from toolaxis.skin.find import check_connected, gap_between
-from toolaxis.skin.unite import unite
+from toolaxis.skin.smooth_faces import join_faces
 
 #: Angle between the two directions of an iso-curve at a join above which that is told, rad.
 _CORNER = np.radians(5.0)
@@ -53,26 +51,63 @@ def join(part: Part, faces: Iterable[int], tolerance: float = GAP, corner: float
 
     **Properties**: 1. areas add up; 2. skin and surroundings of a face are the same faces as before.
     """
-    numbers = _check_faces(part, faces)
-    made = _join_faces(part, numbers, tolerance, corner)
-    first = min(k for k, face in enumerate(part.faces) if face.number in numbers)
-    kept = [(k, face) for k, face in enumerate(part.faces) if face.number not in numbers]
-    order = [face for _, face in sorted([*kept, (first, made)], key=lambda row: row[0])]
-    name = dict.fromkeys(numbers, made.number)
+    return with_skins(part, [join_faces(part, _check_faces(part, faces), tolerance, corner)])
+
+
+def with_skins(part: Part, skins: Sequence[Face]) -> Part:
+    """The part with skins in the place of the faces that they consist of.
+
+    Parameters
+    ----------
+    part : Part
+    skins : sequence of Face
+        Of different faces of the part, each as `toolaxis.skin.smooth_faces.join_faces` makes it.
+    """
+    if not skins:
+        return part
+    name = {number: skin.number for skin in skins for number in skin.numbers}
+    waiting = {skin.number: skin for skin in skins}
+    faces: list[Face] = []
+    for face in part.faces:
+        if face.number not in name:
+            faces.append(face)
+        elif name[face.number] in waiting:  # it stands where the first of its faces stood
+            faces.append(waiting.pop(name[face.number]))
     edges = tuple(replace(edge, faces=(name.get(edge.faces[0], edge.faces[0]), name.get(edge.faces[1], edge.faces[1])))
-                  for edge in part.edges if not (edge.kind == "tangent" and set(edge.faces) <= set(numbers)))
-    bodies = tuple(replace(body, faces=_names_text(body.faces, name)) for body in part.bodies)
-    return replace(part, faces=tuple(order), edges=edges, bodies=bodies, selected=_names_text(part.selected, name),
-                   warnings=(*part.warnings, *_corner_warning(made)), original=part.original or part)
+                  for edge in part.edges if not (edge.kind == "tangent" and _inside_one(edge.faces, name)))
+    bodies = tuple(replace(body, faces=_rename(body.faces, name)) for body in part.bodies)
+    told = [sentence for skin in skins for sentence in _corner_warning(skin)]
+    return replace(part, faces=tuple(faces), edges=edges, bodies=bodies, selected=_rename(part.selected, name),
+                   warnings=(*part.warnings, *told), original=part.original or part)
 
 
-def _join_faces(part: Part, numbers: Sequence[int], tolerance: float, corner: float) -> Face:
-    """One face from some of a part's: in their own parameters if these go together, else as they are seen."""
-    faces = [part.face(n) for n in numbers]
-    with suppress(UnsupportedGeometry):
-        return join_patches(faces, meetings(part, numbers), tolerance, corner)
-    check_connected(part, numbers)
-    return unite(faces, gap_between(part, numbers))
+def take_apart(part: Part, numbers: Collection[int]) -> Part:
+    """The part with the faces of some skins in their place again; other skins stay.
+
+    Parameters
+    ----------
+    part : Part
+    numbers : collection of int
+        Of the skins.
+
+    Notes
+    -----
+    **Properties**: 1. it is the part to which only the other skins were joined.
+    """
+    if part.original is None or not numbers:
+        return part
+    made = with_skins(part.original, [face for face in part.faces if face.members and face.number not in numbers])
+    gone = [part.face(number) for number in numbers]
+    back = {skin.number: skin.numbers for skin in gone}
+    selected = tuple(own for number in part.selected for own in back.get(number, (number,)))
+    told = {sentence for skin in gone for sentence in _corner_warning(skin)}
+    return replace(made, selected=selected, warnings=tuple(text for text in part.warnings if text not in told))
+
+
+def _inside_one(pair: tuple[int, int], name: Mapping[int, int]) -> bool:
+    """Whether both faces of an edge belong to one skin."""
+    a, b = pair
+    return a in name and name[a] == name.get(b)
 
 
 def _check_faces(part: Part, faces: Iterable[int]) -> list[int]:
@@ -89,7 +124,7 @@ def _check_faces(part: Part, faces: Iterable[int]) -> list[int]:
     return numbers
 
 
-def _names_text(numbers: tuple[int, ...], name: dict[int, int]) -> tuple[int, ...]:
+def _rename(numbers: tuple[int, ...], name: dict[int, int]) -> tuple[int, ...]:
     return tuple(dict.fromkeys(name.get(n, n) for n in numbers))
 
 

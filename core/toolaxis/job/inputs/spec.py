@@ -17,7 +17,7 @@ from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.shape.part import Part
 from toolaxis.skin.find import find_skins
-from toolaxis.skin.join import join
+from toolaxis.skin.join import join, with_skins
 from toolaxis.tools.tool import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
@@ -220,13 +220,13 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
         faces = parse_faces(faces)
     if faces == "skins":
         found = find_skins(part, width)
-        for numbers in found.joined:
-            part = join(part, numbers)
+        part = with_skins(part, found.faces)
         alone = () if found.joined else (f"--faces skins joins nothing: each of the {len(found.single)} sculptured "
                                          "faces is machined by itself" + _where_apart(found.reasons),)
         return replace(part, selected=()).with_warnings(*alone, *found.reasons), None
     if isinstance(faces, SomeSkins):
-        faces = _skins_by_number(part, faces.numbers)
+        skins = _skins_by_number(part, faces.numbers)
+        return with_skins(part, skins), [skin.number for skin in skins]
     if not isinstance(faces, Iterable) or isinstance(faces, str):
         return part, faces
     rows: list[Any] = []
@@ -239,9 +239,9 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
     return part, rows
 
 
-def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[tuple[int, ...], ...]:
-    """Faces of some skins, in the order in which `toolaxis inspect` numbers them."""
-    found = find_skins(part).joined
+def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[Face, ...]:
+    """Some skins, each as one face, by the numbers that `toolaxis inspect` gives them."""
+    found = find_skins(part).faces
     for number in numbers:
         if not 1 <= number <= len(found):
             raise InvalidInput(f"skin {number} does not exist: the part has {len(found)} of two faces or more, see "

@@ -210,8 +210,12 @@ def _plan_bladed(job: PlanningJob, compare: bool, progress: Progress) -> tuple[P
 
 def _compare_methods(job: PlanningJob, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
     """A plan with what other methods come to."""
-    plain = replace(job, regions=None, orientations=None, division=())
-    pieces = [target.face for target in smooth_pieces(faces, job.tool) if target.ended is None]
+    plain = replace(job, part=made.part, regions=None, orientations=None, division=())
+    asked = [number for face in faces for number in face.numbers]
+    # A skin that was taken apart is none in the plan's part.
+    there = [face for face in made.part.faces if set(face.numbers) <= set(asked)]
+    there.sort(key=lambda face: asked.index(face.number))
+    pieces = [target.face for target in smooth_pieces(there, job.tool) if target.ended is None]
     return went_on(went_on(made, _in_time), lambda plan: compare_methods(
         plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))
 

@@ -15,6 +15,7 @@ from toolaxis.job.planning.blade_pattern import Pattern, group_blade_faces
 from toolaxis.job.planning.clean_up_zones import add_clean_up_zones
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
+from toolaxis.job.planning.face_by_face import compare_areas, is_better, loses_area, name_faces
 from toolaxis.job.planning.failures import fail_face, fail_operation
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.sub_surfaces import (
@@ -50,6 +51,7 @@ from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
+from toolaxis.skin.join import take_apart
 from toolaxis.strategies.registry import strategy_of
 from toolaxis.strategies.strategy import Strategy
 from toolaxis.tools.tool import Tool
@@ -220,8 +222,8 @@ class PlanningJob:
         made, cancelled = self._operations_of(targets, progress)
         if not cancelled and self._may_divide:
             made, cancelled = self._divided_by_reach(targets, made, progress)
-        complete = "complete" if all(op.done for op in made) else "incomplete"
-        return self._plan(made, "cancelled" if cancelled else complete, options)
+        plan = self._plan(made, "cancelled" if cancelled else _outcome(made), options)
+        return self._face_by_face(plan, progress) if not cancelled and self._may_divide else plan
 
     def _operations_of(self, targets: list[Target], progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations of sub-surfaces as far as they were made, and whether the user stopped that."""
@@ -253,6 +255,32 @@ class PlanningJob:
             own = [one for one in done if any(one.face is piece.face for piece in pieces.get(k, ()))]
             rows += own or [failed.get(k, op)]
         return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
+
+    def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
+        """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""
+        given = {one.face for one in self.division}
+        skins = [face for face in self.part.faces if face.members and face.number not in given]
+        own = {skin.number: [op for op in plan.operations if op.face.number == skin.number] for skin in skins}
+        lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
+        if not lost:
+            return plan
+        apart = replace(self, part=take_apart(self.part, [skin.number for skin in lost]), whole=(), division=())
+        faces = [apart.part.face(number) for skin in lost for number in skin.numbers]
+        other = apart._as_asked(faces, progress.within("faces one by one"))
+        if other.outcome == "cancelled":  # what is finished is kept
+            return replace(plan, outcome="cancelled")
+        part, taken = self.part, {}
+        for skin in lost:
+            rows = [op for op in other.operations if op.face.number in skin.numbers]
+            if is_better(rows, own[skin.number], skin.area):
+                part = take_apart(part, [skin.number]).with_warnings(compare_areas(skin, own[skin.number], rows))
+                taken[skin.number] = name_faces(skin, rows)
+        rows = []
+        for op in plan.operations:  # they stand where the first sub-surface of their skin stood
+            first = op.face.number in taken and op is own[op.face.number][0]
+            rows += taken[op.face.number] if first else [] if op.face.number in taken else [op]
+        made = tuple(replace(op, number=k) for k, op in enumerate(rows, 1))
+        return replace(plan, part=part, operations=made, outcome=_outcome(made))
 
     def _reached(self, face: Face, progress: Progress) -> ReachDivision | None:
         """How a face is divided by what axes reach; None where that takes more work than is allowed, or is no use."""
@@ -462,6 +490,11 @@ class PlanningJob:
 def _refuse_face(number: int, face: Face, reason: ToolAxisError) -> Operation:
     """The operation of a face that cannot be done, in the words of an exception."""
     return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+
+
+def _outcome(operations: Sequence[Operation]) -> str:
+    """What a plan of some operations came to that nobody stopped."""
+    return "complete" if all(op.done for op in operations) else "incomplete"
 
 
 def _without(targets: list[Target], reason: Exception) -> list[Target]:
