@@ -131,15 +131,16 @@ class FieldPasses:
 
     def count(self, cut: Cut, feed: str) -> Count:
         """About the number and the length of the passes with one axis, from a coarse field."""
-        _, count, rounds = _PRICED
+        cells, count, rounds = _PRICED
         try:
             table = self._price_table(cut)
+            if not table.cut_everywhere:
+                return Count(np.inf, np.inf)
+            found = find_field(table, 1 - FEEDS.index(feed), count, rounds)
+            more = 1 + hidden_passes(LevelChart(self.estimator.face, feed, found), cut, cells)
         except UnsupportedGeometry:
             return Count(np.inf, np.inf)
-        if not table.cut_everywhere:
-            return Count(np.inf, np.inf)
-        found = find_field(table, 1 - FEEDS.index(feed), count, rounds)
-        return Count(found.passes, found.length)
+        return Count(more * found.passes, more * found.length)
 
     def _price_table(self, cut: Cut) -> DirectionTable:
         """The table of an axis by which it is priced, the same for both feeds: the last one is kept."""
