@@ -2,8 +2,10 @@
 
 Lengths are those inside the face, run-outs apart.  The ideal length of an axis is what passes tend to as the scallop
 height goes to zero: the integral over the face of the tip's way over the widest strip; the least one is that of all
-free axes that were looked at, by second-order widths.  Times are those of the jerk-limited planner of feeds on the
-Mikron UCP 710 at 3 m/min, cuts with their run-outs.  Random patches are bicubic, 60 x 45 mm, from seeds.
+free axes that were looked at, by second-order widths.  Beside them stand the classical iso-scallop passes, offset from
+a border: the shortest over all borders and both axes, neither proven nor judged.  Times are those of the jerk-limited
+planner of feeds on the Mikron UCP 710 at 3 m/min, cuts with their run-outs.  Random patches are bicubic, 60 x 45 mm,
+from seeds.
 """
 
 import time
@@ -11,6 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from benchmarks._iso_scallop import shortest_from_borders
 from benchmarks.examples import FOLDER
 from numpy.typing import NDArray
 
@@ -20,6 +23,7 @@ from toolaxis.feed.fixed_axis_time import Feeds, machining_time
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.machine import Machine
 from toolaxis.path.field.ideal_lengths import DirectionForms
+from toolaxis.path.parametrization import Cut
 from toolaxis.plan.choices import FIELD, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
@@ -51,6 +55,7 @@ class PassFigures(NamedTuple):
     inside, whole : float, mm, cutting length inside the face and with run-outs;  ideal, least : float, mm, ideal length
     of the axis and least one;  seconds : float, of the cuts;  within : float, share of the area within 1.02 h;
     passed : bool;  taken : float, s of processor for the plan;  strips : float, number of passes
+    cuts : list of (Face, Cut), of its operations
     """
 
     inside: float
@@ -62,6 +67,7 @@ class PassFigures(NamedTuple):
     passed: bool
     taken: float
     strips: float
+    cuts: list[tuple[Face, Cut]]
 
 
 JOBS = (FaceJob("freeform"), FaceJob("saddle"), FaceJob("waves"), FaceJob("manta", "torus:16x2", 0.05),
@@ -100,17 +106,20 @@ def compare(jobs: Sequence[FaceJob]) -> None:
     """
     machine = load_machine(MACHINE)
     print(f"{'face':22} {'tool':10} | {'iso mm':>8} {'field mm':>8} {'less %':>6} | {'ideal':>7} {'gap %':>5} "
-          f"{'least':>7} | {'iso s':>6} {'field s':>7} {'less %':>6} | {'iso %':>7} {'field %':>7} {'judged':>9} | "
-          f"{'plan s':>12}")
-    found = []
+          f"{'least':>7} {'offset':>7} | {'iso s':>6} {'field s':>7} {'less %':>6} | {'iso %':>7} {'field %':>7} "
+          f"{'judged':>9} | {'plan s':>12}")
+    found: list[tuple[PassFigures, PassFigures]] = []
+    shorter: list[float] = []
     for job in jobs:
         part = part_of(job)
         iso, field = (figures(part, job, passes, machine) for passes in (ISO, FIELD))
+        offset = offset_length(iso, field)
         found.append((iso, field))
+        shorter.append(field.inside / offset)
         gap = 100 * (field.inside / field.ideal - 1) if field.ideal else np.nan
         print(f"{job.name:22} {job.tool:10} | {iso.inside:8.0f} {field.inside:8.0f} "
-              f"{100 * (1 - field.inside / iso.inside):6.1f} | {field.ideal:7.0f} {gap:5.1f} {field.least:7.0f} | "
-              f"{iso.seconds:6.1f} {field.seconds:7.1f} {100 * (1 - field.seconds / iso.seconds):6.1f} | "
+              f"{100 * (1 - field.inside / iso.inside):6.1f} | {field.ideal:7.0f} {gap:5.1f} {field.least:7.0f} "
+              f"{offset:7.0f} | {iso.seconds:6.1f} {field.seconds:7.1f} {100 * (1 - field.seconds / iso.seconds):6.1f} | "
               f"{100 * iso.within:7.3f} {100 * field.within:7.3f} "
               f"{'pass' if iso.passed else 'FAIL'} {'pass' if field.passed else 'FAIL'} | "
               f"{iso.taken:5.1f} {field.taken:6.1f}", flush=True)
@@ -122,6 +131,8 @@ def compare(jobs: Sequence[FaceJob]) -> None:
           f"{_mean(both[:, 3] / both[:, 2]):.3f}; longer than iso: {int((both[:, 1] > both[:, 0]).sum())}, slower: "
           f"{int((both[:, 3] > both[:, 2]).sum())}; judged FAIL: "
           f"{sum(not one.passed for pair in found for one in pair)}")
+    print(f"field over iso-scallop passes offset from a border, length: geometric mean "
+          f"{_mean(np.array([ratio for ratio in shorter if np.isfinite(ratio) and ratio > 0])):.3f}")
     if gaps:
         print(f"gap to the ideal length of the axis taken on {len(gaps)} faces of {_STRIPS} strips or more: median "
               f"{100 * np.median(gaps):.1f} %, greatest {100 * max(gaps):.1f} %")
@@ -171,7 +182,22 @@ def figures(part: ta.Part, job: FaceJob, passes: str, machine: Machine) -> PassF
     return PassFigures(sum(inside_length(op) for op in done), plan.length, sum(op.orientation.ideal for op in done),
                        sum(least_ideal(plan, op) for op in done),
                        sum(machining_time(machine, op.path, feeds).cut for op in done if op.path is not None),
-                       within, verdict.passed, taken, sum(op.orientation.count for op in done))
+                       within, verdict.passed, taken, sum(op.orientation.count for op in done),
+                       [(op.face, Cut(plan.tool, op.orientation.axis, job.scallop, plan.inputs.allowance))
+                        for op in done if op.orientation.axis is not None])
+
+
+def offset_length(*kinds: PassFigures) -> float:
+    """Length inside the face of iso-scallop passes offset from a border, mm; nan for faces with several axes.
+
+    Parameters
+    ----------
+    kinds : PassFigures
+        Whose axes are tried.
+    """
+    if any(len(one.cuts) != 1 for one in kinds):
+        return float("nan")
+    return shortest_from_borders(kinds[0].cuts[0][0], [one.cuts[0][1] for one in kinds])
 
 
 def inside_length(op: Operation) -> float:

@@ -7,12 +7,19 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 from benchmarks._bounded import Bounds, MessageLine, Ran, python, run
 from benchmarks._faces import kind_of, outcomes
+from benchmarks._iso_scallop import BORDERS, length_from_border
 from benchmarks._rack import chosen, given
 
+from toolaxis.path.parametrization import Cut
+from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
+
 ROOT = Path(__file__).resolve().parents[1]
+_PLANE = np.array([[[x, y, 0.0] for y in (0, 10, 20, 30, 40)] for x in (0, 15, 30, 45, 60)])
 
 
 def test_benchmarks_go_on_where_there_is_no_freecad() -> None:
@@ -43,6 +50,16 @@ def test_the_work_of_workers_counts_as_processor_time() -> None:
             "own = time.process_time() - own\n"
             "assert processor() - before >= 0.45 + own, (processor() - before, own)\n")
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=60)
+
+
+def test_offset_passes_on_a_plane_lie_a_strip_apart() -> None:
+    """The classical passes that fields are compared with: from any border as many as strips fit in."""
+    face, cut = Face.from_bspline(_PLANE), Cut(Tool.ball(diameter=12), np.array([0.2, 0.1, 0.97]), 0.02)
+    strip = 2 * np.sqrt(2 * 6 * 0.02 - 0.02**2)
+    for border in BORDERS:
+        wide, long = (60.0, 40.0) if border.across == 0 else (40.0, 60.0)
+        found = length_from_border(face, cut, border) / long
+        assert wide / strip - 1 <= found <= wide / strip + 1
 
 
 def _real_parts(*words: str) -> "subprocess.CompletedProcess[str]":

@@ -233,6 +233,18 @@ def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
     assert read_plan(tmp_path).baselines == made.baselines
 
 
+def test_iso_parametric_passes_stand_beside_those_in_a_field(monkeypatch: pytest.MonkeyPatch) -> None:
+    from toolaxis.job.planning import comparison
+
+    monkeypatch.setattr(comparison, "BY_SUB_SURFACE", ())
+    monkeypatch.setattr(comparison, "WHOLE", ())
+    part = ta.Part.from_faces([ta.Face.from_bspline(net(1.0))])
+    made = ta.plan(part, "torus:12x1", 0.1, passes="field", compare=True)
+    mine, other = made.baselines
+    assert (mine.method, other.method, other.shown) == ("plan", "iso", "iso-parametric passes")
+    assert other.length == ta.plan(part, "torus:12x1", 0.1).length != mine.length == made.length
+
+
 @pytest.mark.parametrize("method", ["one", "ball"])
 def test_the_plan_of_a_baseline_is_a_plan_that_passes(method: str) -> None:
     faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]

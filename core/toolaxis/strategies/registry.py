@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from toolaxis import strategies as _package
+from toolaxis.plan.choices import ISO
 from toolaxis.plugins import modules_in, pick
 from toolaxis.strategies.strategy import Strategy
 
@@ -53,5 +54,8 @@ def title_of(method: str) -> str:
     Parameters
     ----------
     method : str
+        Or how passes lie, where a plan is compared with the same method's iso-parametric ones.
     """
+    if method == ISO:
+        return "iso-parametric passes"
     return next((one.methods[method] for one in strategies().values() if method in one.methods), method)

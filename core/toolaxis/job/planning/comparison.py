@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from toolaxis.errors import Cancelled, fault
 from toolaxis.plan.baseline import THIS_PLAN, Baseline
+from toolaxis.plan.choices import ISO
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
 from toolaxis.strategies.registry import strategies, title_of
@@ -21,9 +22,9 @@ def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Seq
     """A plan with what other methods come to.
 
     Sectors, Roman's rule and mean normals on the same sub-surfaces, and where there is a machine the axes along which
-    its jerk is greatest; one fixed axis for all faces; and a ball end of the same radius along each face's mean normal;
-    and strategies that are to be compared, such as five axes with a constant lead, where the machine drives their
-    rotary axes.
+    its jerk is greatest; the plan's own method with iso-parametric passes where its own are others; one fixed axis for
+    all faces; a ball end of the same radius along each face's mean normal; and strategies that are to be compared, such
+    as five axes with a constant lead, where the machine drives their rotary axes.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Seq
     faces : sequence of Face
         What was asked for, before it was divided.
     again : callable
-        Plans faces as they are by a method, under the same limits and proofs.
+        Plans faces as they are by a method, or with iso-parametric passes, under the same limits and proofs.
 
     Returns
     -------
@@ -49,6 +50,8 @@ def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Seq
     driven = sum(not axis.by_hand for axis in rotary)
     moving = [one.name for one in strategies().values() if one.compared and driven >= one.rotary_axes]
     by_sub_surface = BY_SUB_SURFACE if made.machine is None else (*BY_SUB_SURFACE, *ON_MACHINE)
+    if made.inputs.passes != ISO:
+        by_sub_surface = (ISO, *by_sub_surface)
     for method in (*by_sub_surface, *WHOLE, *moving):
         whole = method not in by_sub_surface
         if method == made.inputs.method and (not whole or len(pieces) == len(faces)):

@@ -153,7 +153,12 @@ class PlanningJob:
     division: tuple[SubSurface, ...] = ()
 
     def by(self, method: str) -> "PlanningJob":
-        """The same job by another method; with a ball end in the tool's place where that is what the method takes."""
+        """The same job by another method; with a ball end in the tool's place where that is what the method takes.
+
+        Or by the same method, with iso-parametric passes.
+        """
+        if method == ISO:
+            return replace(self, inputs=replace(self.inputs, passes=ISO))
         return replace(self, inputs=replace(self.inputs, method=method),
                        tool=self.tool.with_ball_end() if method == "ball" else self.tool)
 
