@@ -119,8 +119,8 @@ def compare(jobs: Sequence[FaceJob]) -> None:
         gap = 100 * (field.inside / field.ideal - 1) if field.ideal else np.nan
         print(f"{job.name:22} {job.tool:10} | {iso.inside:8.0f} {field.inside:8.0f} "
               f"{100 * (1 - field.inside / iso.inside):6.1f} | {field.ideal:7.0f} {gap:5.1f} {field.least:7.0f} "
-              f"{offset:7.0f} | {iso.seconds:6.1f} {field.seconds:7.1f} {100 * (1 - field.seconds / iso.seconds):6.1f} | "
-              f"{100 * iso.within:7.3f} {100 * field.within:7.3f} "
+              f"{offset:7.0f} | {iso.seconds:6.1f} {field.seconds:7.1f} "
+              f"{100 * (1 - field.seconds / iso.seconds):6.1f} | {100 * iso.within:7.3f} {100 * field.within:7.3f} "
               f"{'pass' if iso.passed else 'FAIL'} {'pass' if field.passed else 'FAIL'} | "
               f"{iso.taken:5.1f} {field.taken:6.1f}", flush=True)
     both = np.array([[iso.inside, field.inside, iso.seconds, field.seconds] for iso, field in found])
