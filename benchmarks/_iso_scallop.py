@@ -86,17 +86,17 @@ def _join(border: Border, along: Array, front: Array) -> Array:
 def _advance(face: Face, cut: Cut, border: Border, along: Array, front: Array, halves: int) -> Array:
     """The next pass: half a strip across from the border, or from a pass by its half strip and that of the next."""
     start = _join(border, along, front)
-    feed = _feed(face, border, start)
+    feed = _feed(face, start)
     ahead, behind = _halves(face, cut, start, feed, border)
     way = behind if halves == 1 else ahead + behind
     for _ in range(2):  # once more with what the place there is worth
         reached = _go(face, border, start, feed, way)
-        there = _halves(face, cut, reached, _feed(face, border, reached), border)[1]
+        there = _halves(face, cut, reached, _feed(face, reached), border)[1]
         way = there if halves == 1 else ahead + there
     return _nearest_over_lines(face, border, along, _go(face, border, start, feed, way))
 
 
-def _feed(face: Face, border: Border, uv: Array) -> Array:
+def _feed(face: Face, uv: Array) -> Array:
     """Unit directions along a pass, (n, 3)."""
     points = face.evaluate(uv).point
     return np.asarray(unit(np.gradient(points, axis=0)))

@@ -20,7 +20,7 @@ def fit_smooth_curve(places: Array, poses: Array, room: ArrayLike, left: int = 2
     places : (n,) array
         Parameters of the poses, ascending, n of at least 6.
     poses : (n, d) array
-    room : (n, d) array_like, or what gives one
+    room : (n, d) array_like, or one number for all
         By how much the curve may miss them, both ends apart, which it meets; where gaps between knots hold too few
         points to be halved, it may miss them by more.
     left : int

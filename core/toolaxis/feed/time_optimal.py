@@ -1,8 +1,8 @@
 """Time along a curved path with every axis inside velocity, acceleration and jerk.
 
 The square b of the path speed is sought at stations along the path, greatest where the axes allow it: see
-`barrier`.  The speeds are then turned into pieces of constant path jerk, and the whole is slowed down by the small
-factor by which the sampled axes still exceed their limits: what is returned keeps them.
+`interior_point`.  The speeds are then turned into pieces of constant path jerk, and the whole is slowed down by the
+small factor by which the sampled axes still exceed their limits: what is returned keeps them.
 """
 
 from dataclasses import dataclass, replace
@@ -131,8 +131,8 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
         s = _stations(float(along[-1]), count, limits)
         problem = _problem(s, curve, tip, feed, bounds)
         b = greatest_speeds(problem, _slow(problem.stations, float(along[-1]), limits))
-        plan = CurveSchedule(curve, *_pieces(problem.stations, b, float(along[-1])), 1.0)
-        plans.append(_slow_down(plan, _excess(plan, tip, feed, bounds).by))
+        motion = _join_pieces(problem.stations, b, curve, along[-1])
+        plans.append(_slow_down(motion, _excess(motion, tip, feed, bounds).by))
         count *= 3
     return min(plans, key=lambda plan: plan.duration)
 
@@ -162,18 +162,21 @@ def schedule_near(points: ArrayLike, feed: float, bounds: AxisBounds, tolerance:
     knots; where sampled axes exceed their limits, speeds are capped there and sought again.
     """
     joints, _, along = check_path(points, points, feed, len(bounds.velocity))
-    curve, length = fit_smooth_curve(along, joints, tolerance), float(along[-1])
+    curve = fit_smooth_curve(along, joints, tolerance)
+    length = float(along[-1])
     outer = np.linspace(0.0, _OUTER * length, 50)
-    ends = _limits_at(np.concatenate([outer, length - outer]), curve, curve, feed, bounds)
+    at_ends = _limits_at(np.concatenate([outer, length - outer]), curve, curve, feed, bounds)
+    stations = _denser(_stations(length, _EVEN, at_ends), curve)
+    problem = _problem(stations, curve, curve, feed, bounds)
     probes = np.concatenate([np.linspace(0.0, length, 400), curve.t])
-    problem = _problem(_denser(_stations(length, _EVEN, ends), curve), curve, curve, feed, bounds)
-    start = _slow(problem.stations, length, _limits_at(probes, curve, curve, feed, bounds))
+    everywhere = _limits_at(probes, curve, curve, feed, bounds)
+    start = _slow(problem.stations, length, everywhere)
     best: CurveSchedule | None = None
     for _ in range(_ROUNDS):
         b = greatest_speeds(problem, start)
-        plan = CurveSchedule(curve, *_pieces(problem.stations, b, length), 1.0)
-        found = _excess(plan, curve, feed, bounds)
-        slowed = _slow_down(plan, found.by)
+        motion = _join_pieces(problem.stations, b, curve, length)
+        found = _excess(motion, curve, feed, bounds)
+        slowed = _slow_down(motion, found.by)
         if best is None or slowed.duration < best.duration:
             best = slowed
         if slowed.stretch <= 1 + _EXCESS:
@@ -270,8 +273,8 @@ def _slow(inner: Array, length: float, limits: Array) -> Array:
     return np.asarray(np.maximum(motion.at(times)[:, 1], 1e-9) ** 2)
 
 
-def _pieces(inner: Array, b: Array, length: float) -> tuple[Array, Array]:
-    """Times and states of pieces of constant path jerk through the speeds, from rest to rest at the length."""
+def _join_pieces(inner: Array, b: Array, curve: BSpline, length: float) -> CurveSchedule:
+    """The motion in pieces of constant path jerk through the squared speeds, from rest to rest at the length."""
     v, step = np.sqrt(b), np.diff(inner)
     first, last = 3 * inner[0] / v[0], 3 * (length - inner[-1]) / v[-1]
     spans = 2 * step / (v[1:] + v[:-1])
@@ -283,7 +286,7 @@ def _pieces(inner: Array, b: Array, length: float) -> tuple[Array, Array]:
     ends = np.array([_integrate_motion(times, shape)[-1, :2] for shape in shapes]).T
     missing = np.array([length, 0.0]) - _integrate_motion(times, a)[-1, :2]
     a = a + np.linalg.solve(ends, missing) @ np.array(shapes)
-    return times, _integrate_motion(times, a)
+    return CurveSchedule(curve, times, _integrate_motion(times, a), 1.0)
 
 
 def _integrate_motion(times: Array, a: Array) -> Array:

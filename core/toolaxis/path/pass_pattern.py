@@ -34,7 +34,7 @@ PassChart: TypeAlias = IsoChart | PlaneChart | LevelChart
 _GRID = 16
 #: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
 _PRICED, _MADE = (13, 8, 25), (26, 14, 60)
-#: Cells each way where narrow places would lie between those, and the share of passes more from which that is so.
+#: Cells each way where narrow places lie between those, which they do from this share of further passes on.
 _DENSE, _HIDDEN = 52, 0.02
 #: Fields that are remembered.
 _KEPT = 64

@@ -15,7 +15,7 @@ _LEVELS = 24
 
 
 def hidden_passes(chart: LevelChart, cut: Cut, count: int) -> float:
-    """Share of passes more that a field takes for narrow places halfway between those of its table.
+    """How many more passes a field takes, as a share, for narrow places halfway between those of its table.
 
     Parameters
     ----------
