@@ -121,7 +121,8 @@ def test_names_are_read_back(diameter: float, share: float, angle: float) -> Non
     (lambda: Tool.ball(8, stickout=40, holder="hsk"), "^holder is 'hsk': rows of"),
     (lambda: Tool.ball(8, shank=[(4, 0), (4, 30), (4, 20)]), r"^shank z 2 is 20\.0 mm, below the one before: z must"),
     (lambda: Tool.ball(8, shank=[(4, 0), (4,)]), "^shank is .*: rows of"),
-    (lambda: Tool.ball(8, length=70), "^tool has no property 'length': use flute_length, stickout, shank or holder$"),
+    (lambda: Tool.ball(8, length=70), "^tool has no property 'length': use flute_length, "
+     "stickout, shank, holder, title, number, feedrate or spindle$"),
     (lambda: Tool.parse("drill:8"), "^tool 'drill:8' is not understood: write torus:12x1, ball:8, flat:20 or tapered"),
     (lambda: Tool.parse("torus:12"), "is not understood"), (lambda: Tool.parse("ball:"), "is not understood"),
     (lambda: Tool.parse("ball:8x"), "is not understood"), (lambda: Tool.parse(""), "is not understood"),

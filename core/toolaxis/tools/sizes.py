@@ -30,21 +30,22 @@ def number(name: str, value: Any, unit: str = "mm") -> float:
     return found
 
 
-def positive(name: str, value: Any) -> float:
-    """A finite number above zero, mm.
+def positive(name: str, value: Any, unit: str = "mm") -> float:
+    """A finite number above zero.
 
     Parameters
     ----------
     name : str
         For the message.
     value : object
+    unit : str
 
     Raises
     ------
     InvalidInput
         When it is none.
     """
-    found = number(name, value)
+    found = number(name, value, unit)
     if found <= 0:
-        raise InvalidInput(f"{name} is {found} mm: it must be a finite number above zero")
+        raise InvalidInput(f"{name} is {found} {unit}: it must be a finite number above zero")
     return found

@@ -9,12 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.plugins import one_of
 from toolaxis.tools.profile import Profile
 from toolaxis.tools.registry import cutter_named, cutters, short_forms
 from toolaxis.tools.sizes import positive
 from toolaxis.tools.solid import COMPONENTS, Distance, signed_distance, solid_pieces
 
 Array = NDArray[np.float64]
+
+#: What a tool may have besides its sizes.
+PROPERTIES = ("flute_length", "stickout", "shank", "holder", "title", "number", "feedrate", "spindle")
 
 
 def _outline(name: str, rows: ArrayLike | None) -> Array | None:
@@ -60,6 +64,14 @@ class Tool:
         (radius, z) from the tip; counted from the end of the cutting edge up to the holder, see `outlines`.
     holder : (k, 2) array or None
         (radius, z) from the holder's own lower face, which stands at the stick-out.
+    title : str
+        What the shop calls it, "Bull nose D12 R1, ER20, 60 out"; empty where nobody said.
+    number : int
+        Its place in the machine's magazine; 0 where nobody said.
+    feedrate : float or None
+        mm/min, where it is the tool's own.
+    spindle : float or None
+        rev/min, where it is the tool's own.
     """
 
     kind: str
@@ -70,6 +82,10 @@ class Tool:
     stickout: float | None = None
     shank: Array | None = None
     holder: Array | None = None
+    title: str = ""
+    number: int = 0
+    feedrate: float | None = None
+    spindle: float | None = None
 
     @staticmethod
     def torus(diameter: float, corner_radius: float, **body: Any) -> "Tool":
@@ -80,7 +96,7 @@ class Tool:
         diameter, corner_radius : float
             mm, with 0 < corner_radius <= diameter / 2.
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
         """
         return Tool.of("torus", diameter, corner_radius, **body)
 
@@ -93,7 +109,7 @@ class Tool:
         diameter : float
             mm
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
         """
         return Tool.of("ball", diameter, **body)
 
@@ -106,7 +122,7 @@ class Tool:
         diameter : float
             mm
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
         """
         return Tool.of("flat", diameter, **body)
 
@@ -125,7 +141,7 @@ class Tool:
         half_angle_deg : float
             Inclination of the side from the axis, degrees, above 0 and below 80.
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
         """
         return Tool.of("tapered", diameter, corner_radius, half_angle_deg, **body)
 
@@ -140,7 +156,7 @@ class Tool:
         *sizes
             In the order of the kind's short form, mm and degrees.
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
 
         Raises
         ------
@@ -174,6 +190,14 @@ class Tool:
                 counted.  Unless given, the shank is as thick as the cutter's upper end.
             holder : rows of (radius, z), optional
                 From the holder's own lower face, z not decreasing; needs a stick-out.
+            title : str, optional
+                What the shop calls it.
+            number : int, optional
+                Its place in the magazine, 1 or more.
+            feedrate : float, optional
+                mm/min; that of the plan unless given.
+            spindle : float, optional
+                rev/min; that of the plan unless given.
 
         Raises
         ------
@@ -181,10 +205,9 @@ class Tool:
             When there is no such kind, or a size makes no tool.
         """
         cutter_named(kind)
-        unknown = set(body) - {"flute_length", "stickout", "shank", "holder"}
+        unknown = set(body) - set(PROPERTIES)
         if unknown:
-            raise InvalidInput(f"tool has no property {sorted(unknown)[0]!r}: "
-                               "use flute_length, stickout, shank or holder")
+            raise InvalidInput(f"tool has no property {sorted(unknown)[0]!r}: use {one_of(PROPERTIES)}")
         if corner_radius > radius:
             raise InvalidInput(f"corner radius is {corner_radius} mm, above the radius {radius} mm: "
                                "it can be at most half the diameter")
@@ -193,7 +216,10 @@ class Tool:
         shank, holder = _outline("shank", body.get("shank")), _outline("holder", body.get("holder"))
         if holder is not None and stick is None:
             raise InvalidInput("a holder is given without a stick-out: give the length from tip to holder")
-        return Tool(kind, radius, corner_radius, half_angle, flute, stick, shank, holder)
+        rates = [None if body.get(name) is None else positive(name, body[name], unit)
+                 for name, unit in (("feedrate", "mm/min"), ("spindle", "rev/min"))]
+        return Tool(kind, radius, corner_radius, half_angle, flute, stick, shank, holder, str(body.get("title") or ""),
+                    _number(body.get("number")), *rates)
 
     @staticmethod
     def parse(text: str, **body: Any) -> "Tool":
@@ -203,7 +229,7 @@ class Tool:
         ----------
         text : str
         **body
-            flute_length, stickout, shank, holder: see `Tool.build`.
+            flute_length, stickout, shank, holder, title, number, feedrate, spindle: see `Tool.build`.
 
         Raises
         ------
@@ -297,7 +323,7 @@ class Tool:
         """
         flute = self.flute_length if self.flute_length > self.radius else None
         return Tool.ball(2 * self.radius, flute_length=flute, stickout=self.stickout, shank=self.shank,
-                         holder=self.holder)
+                         holder=self.holder, feedrate=self.feedrate, spindle=self.spindle)
 
     def distance(self, points: ArrayLike, component: str | None = None) -> Distance:
         """Exact signed distance of points from the whole rotating solid, or from one component.
@@ -334,6 +360,15 @@ class Tool:
             wide = max(top, line[0, 0])
             line = np.vstack([[[wide, end], [wide, line[0, 1]]], line])
         return line
+
+
+def _number(given: Any) -> int:
+    """A place in the magazine; 0 for none."""
+    if given is None:
+        return 0
+    if isinstance(given, bool) or not isinstance(given, int) or given < 1:
+        raise InvalidInput(f"tool number is {given!r}: it must be a whole number from 1")
+    return given
 
 
 def _flute(usual: float, given: Any, corner_radius: float, stickout: float | None) -> float:

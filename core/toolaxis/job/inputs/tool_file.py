@@ -11,9 +11,8 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.resources import find_files
 from toolaxis.tools.cutter import BIT_SIZES
 from toolaxis.tools.registry import cutter_named, cutter_of_bit, cutters, short_forms
-from toolaxis.tools.tool import Tool
+from toolaxis.tools.tool import PROPERTIES, Tool
 
-_BODY = ("flute_length", "stickout", "shank", "holder")
 _UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4, "°": 1.0, "deg": 1.0}
 
 
@@ -65,7 +64,7 @@ def _build(path: Path, sizes: Mapping[str, Any]) -> Tool:
         raise InvalidInput(f"tool file {path.name} has no {missing[0]}: a {kind} needs {', '.join(names)}")
     try:
         return Tool.of(kind, *(float(sizes[name]) for name in names),
-                       **{name: sizes[name] for name in _BODY if name in sizes})
+                       **{name: sizes[name] for name in PROPERTIES if name in sizes})
     except (TypeError, ValueError) as reason:
         raise InvalidInput(f"tool file {path.name}: {reason}") from reason
 
@@ -89,10 +88,10 @@ def _toml_sizes(path: Path) -> dict[str, Any]:
     if sizes.get("kind") not in cutters():
         raise InvalidInput(f"tool file {path.name} has kind {sizes.get('kind')!r}: use {', '.join(cutters())}")
     own = cutter_named(sizes["kind"]).sizes
-    unknown = set(sizes) - {"kind", "note", *own, *_BODY}
+    unknown = set(sizes) - {"kind", "note", *own, *PROPERTIES}
     if unknown:
         raise InvalidInput(f"tool file {path.name} has an unknown {sorted(unknown)[0]!r}: a {sizes['kind']} has "
-                           f"{', '.join((*own, *_BODY))} and note")
+                           f"{', '.join((*own, *PROPERTIES))} and note")
     return sizes
 
 
