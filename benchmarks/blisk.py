@@ -72,7 +72,7 @@ def told(path: Path, plan: Plan, watch: StageTimes, seconds: float) -> None:
     """Print what was measured of a whole part."""
     own, largest = (resource.getrusage(who).ru_maxrss / 1e3 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     done = sum(op.done for op in plan.operations)
-    print(f"{path.name}, {plan.tool.name}: {seconds:.1f} s with {WORKERS} processes, at most {own:.0f} MB in this one "
+    print(f"{path.name}, {plan.named_tools}: {seconds:.1f} s with {WORKERS} processes, at most {own:.0f} MB in this one "
           f"and {largest:.0f} MB in the largest other; {plan.outcome}, {done} of {len(plan.operations)} sub-surfaces")
     marks = [*sorted(watch.first.items(), key=lambda item: item[1]), ("", seconds)]
     for (stage, start), (_, end) in pairwise(marks):
@@ -104,12 +104,12 @@ class ProvingPlanner:
     def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
         """What decides about an axis."""
         inputs = self.plan.inputs
-        return task(face, self.plan.tool, inputs.scallop, None, (), part=part, tolerance=inputs.tolerance,
+        return task(face, self.plan.tools[0], inputs.scallop, None, (), part=part, tolerance=inputs.tolerance,
                     progress=progress)
 
     def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
         """The operation without an axis."""
-        return Operation(number, face, Orientation(None))
+        return Operation(number, face, self.plan.tools[0], Orientation(None))
 
 
 def growth(plan: Plan) -> None:
@@ -129,7 +129,7 @@ def growth(plan: Plan) -> None:
         part = among(pattern, count)
         start = time.perf_counter()
         groups = ProvingPlanner(plan).task(pattern.blades.apart(part, done.face.number), done.face, NO_PROGRESS).groups
-        proof = prove(done.path, plan.tool, groups, plan.inputs.allowance)
+        proof = prove(done.path, plan.tools[0], groups, plan.inputs.allowance)
         print(f"    {len(part.faces):4d} faces with {count:2d} blades: {time.perf_counter() - start:6.2f} s to prove "
               f"{done.name}, least clearance {min(proof.clearance.values()):.3f} mm")
 

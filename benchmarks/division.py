@@ -143,10 +143,10 @@ def by_patches(part: ta.Part, pieces: Sequence[ta.Face], method: str) -> Plan:
         if found.axis is not None:
             path = task(piece, TOOL, H, part=part, tolerance=GOUGE).made(found.axis, found.feed)
         frame = None if path is None else frame_of(piece, found, np.zeros(3))
-        operations.append(Operation(number, piece, found, path, frame))
+        operations.append(Operation(number, piece, TOOL, found, path, frame))
     outcome = "complete" if all(op.done for op in operations) else "incomplete"
     inputs = PlanInputs(H, method=method, feedrate=FEED, tolerance=ta.Tolerance(GOUGE))
-    return Plan(part, TOOL, inputs, tuple(operations), (), np.zeros(3), outcome)
+    return Plan(part, (TOOL,), inputs, tuple(operations), (), np.zeros(3), outcome)
 
 
 def _timed(name: str, make) -> Plan:  # type: ignore[no-untyped-def]

@@ -183,7 +183,7 @@ def figures(part: ta.Part, job: FaceJob, passes: str, machine: Machine) -> PassF
                        sum(least_ideal(plan, op) for op in done),
                        sum(machining_time(machine, op.path, feeds).cut for op in done if op.path is not None),
                        within, verdict.passed, taken, sum(op.orientation.count for op in done),
-                       [(op.face, Cut(plan.tool, op.orientation.axis, job.scallop, plan.inputs.allowance))
+                       [(op.face, Cut(plan.tools[0], op.orientation.axis, job.scallop, plan.inputs.allowance))
                         for op in done if op.orientation.axis is not None])
 
 
@@ -229,7 +229,7 @@ def least_ideal(plan: Plan, op: Operation) -> float:
     known = op.orientation.map
     if known is None:
         return float("nan")
-    forms = DirectionForms.of(op.face, plan.tool, plan.inputs.scallop, plan.inputs.allowance)
+    forms = DirectionForms.of(op.face, plan.tools[0], plan.inputs.scallop, plan.inputs.allowance)
     return float(forms.estimate(known.axis[known.reason == 0]).length.min())
 
 

@@ -33,7 +33,7 @@ def by_jerk(made: Plan) -> Operation:
     rotary = np.array([mounting.solutions(axis)[0] for axis in axes])
     rows = []
     for k, feed in enumerate(FEEDS):
-        lines = TimeEstimate(op.face, made.tool, mounting, feeds_of(made.inputs)).lines[k]
+        lines = TimeEstimate(op.face, made.tools[0], mounting, feeds_of(made.inputs)).lines[k]
         along = common_feed([PassSegment(line.middles, line.normals) for line in lines])
         rows += [(value, i, feed) for i, value in enumerate(reach_along_feed(mounting, Level.JERK, along, rotary))]
     for _, i, feed in sorted(rows, key=lambda row: -row[0])[:12]:
@@ -51,7 +51,7 @@ def main() -> None:
         wide, fast = (plan(EXAMPLES / f"{name}.step", TOOL, SCALLOP, machine="mikron-ucp-710", feedrate=FEED,
                            objective=objective) for objective in ("length", "time"))
         strong = by_jerk(wide)
-        jerky = add_times(Plan(wide.part, wide.tool, wide.inputs, (strong,), wide.obstacles, wide.datum, wide.outcome,
+        jerky = add_times(Plan(wide.part, wide.tools, wide.inputs, (strong,), wide.obstacles, wide.datum, wide.outcome,
                                machine=wide.machine))
         told = [f"{made.length:7.0f} mm {made.seconds:7.1f} s" for made in (wide, jerky, fast)]
         saved = [100 * (1 - fast.seconds / made.seconds) for made in (wide, jerky)]

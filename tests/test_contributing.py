@@ -153,8 +153,8 @@ def test_a_cutter_is_one_module(add, sheet: str, tmp_path: Path, capsys: pytest.
     same = ta.plan(_face(), ta.Tool.torus(12, 2, stickout=60), SCALLOP, limits=LIMITS, workers=1)
     np.testing.assert_array_equal(made.operations[0].path.cl, same.operations[0].path.cl)
     again = _planned(sheet, tmp_path / "out", "--tool=button:12x2", f"--limits={LIMITS}", "--no-pictures")
-    assert again.tool.name == "button:12x2"
-    assert replace(again.tool, kind="torus").name == "torus:12x2"
+    assert again.tools[0].name == "button:12x2"
+    assert replace(again.tools[0], kind="torus").name == "torus:12x2"
     with pytest.raises(SystemExit):
         main(["plan", "--help"])
     assert "button:52x6" in capsys.readouterr().out

@@ -23,8 +23,8 @@ def test_no_legend_leaves_the_picture(size, tool):
     rows = np.tile(axis, (20, 1))
     path = ToolPath(points, points, rows, rows, np.full(20, Motion.CUT, dtype=np.int8), np.array([0, 20]))
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
-    op = Operation(1, face, Orientation(axis, "u", 1, 1.0, 40.0, 2.5, outcome="feasible"), path, frame)
-    plan = Plan(Part.from_faces([face]), tool, PlanInputs(0.02), (op,), (), np.zeros(3), "complete")
+    op = Operation(1, face, tool, Orientation(axis, "u", 1, 1.0, 40.0, 2.5, outcome="feasible"), path, frame)
+    plan = Plan(Part.from_faces([face]), (tool,), PlanInputs(0.02), (op,), (), np.zeros(3), "complete")
     made = operation_picture(plan, op)
     made.canvas.draw()
     for ax in made.axes:

@@ -33,7 +33,7 @@ def test_widths_are_those_of_the_contacts_and_lie_on_the_passes(small_plan: Plan
     points, widths = np.concatenate([p for p, _ in lines]), np.concatenate([w for _, w in lines])
     on = nearest(op.face, points)
     assert on.distance.max() < 1e-9
-    own = strip_width(op.face, small_plan.tool, on.uv, op.orientation.axis, small_plan.inputs.scallop,
+    own = strip_width(op.face, small_plan.tools[0], on.uv, op.orientation.axis, small_plan.inputs.scallop,
                       op.orientation.feed).sum(axis=1)
     assert widths == pytest.approx(own, rel=1e-6)
     made = np.concatenate([op.path.cc[a:b] for a, b in zip(op.path.breaks[:-1], op.path.breaks[1:], strict=True)])

@@ -200,9 +200,9 @@ def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(monkeypatch:
                                                                     tmp_path: Path) -> None:
     from toolaxis.job.files import plan_folder as folder
 
-    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), folder.apt_text
-    monkeypatch.setattr(folder, "apt_text", lambda path, tool, name, *rest: 1 // 0 if name.endswith("face2") else
-                        whole(path, tool, name, *rest))
+    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), folder.operation_text
+    monkeypatch.setattr(folder, "operation_text", lambda op, inputs: 1 // 0 if op.name.endswith("face2") else
+                        whole(op, inputs))
     with stage_folder(tmp_path / "out") as stage:
         written = write_plan(made, stage.folder)
         stage.publish()

@@ -18,7 +18,7 @@ def names(folder: Path) -> list[str]:
 def test_a_plan_is_read_back_as_it_was_written(small_plan: Plan, folder: Path) -> None:
     assert names(folder) == ["op01-face1.apt", "part.json", "plan.json"]
     back = read_plan(folder)
-    assert back.outcome == "complete" and back.inputs == small_plan.inputs and back.tool.name == "torus:12x1"
+    assert back.outcome == "complete" and back.inputs == small_plan.inputs and back.tools[0].name == "torus:12x1"
     mine, theirs = back.operations[0], small_plan.operations[0]
     assert mine.path is not None and theirs.path is not None and mine.frame is not None and theirs.frame is not None
     assert np.abs(mine.path.cl - theirs.path.cl).max() <= 0.5001e-6
@@ -112,7 +112,7 @@ def test_names_that_lead_out_of_the_folder_are_refused(folder: Path) -> None:
 
 
 def test_a_plan_of_another_version_is_refused(folder: Path) -> None:
-    _edit(folder, '"version": 1', '"version": 99')
+    _edit(folder, '"version": 2', '"version": 99')
     with pytest.raises(InvalidInput, match="schema version 99"):
         read_plan(folder)
 
@@ -122,4 +122,4 @@ def test_plan_json_is_strict_and_names_its_schema(folder: Path) -> None:
         raise AssertionError(f"{word} is not JSON")
 
     document = json.loads((folder / "plan.json").read_text(), parse_constant=refuse)
-    assert (document["schema"], document["version"], document["units"]["length"]) == ("toolaxis.plan", 1, "mm")
+    assert (document["schema"], document["version"], document["units"]["length"]) == ("toolaxis.plan", 2, "mm")

@@ -29,10 +29,10 @@ def leaving(op: Operation, share: float, at_wall: bool = True) -> tuple[Zone, ..
 
 def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) -> None:
     (op,) = small_plan.operations
-    assert 8 < mean_width(op.face) < 12 == 2 * small_plan.tool.radius
-    kept = describe_zones(op, leaving(op, WHOLLY - 0.02), small_plan.tool)
+    assert 8 < mean_width(op.face) < 12 == 2 * small_plan.tools[0].radius
+    kept = describe_zones(op, leaving(op, WHOLLY - 0.02))
     assert kept.done and not kept.left and kept.orientation.unreached == pytest.approx(WHOLLY - 0.02)
-    gone = describe_zones(op, leaving(op, WHOLLY + 0.02), small_plan.tool)
+    gone = describe_zones(op, leaving(op, WHOLLY + 0.02))
     assert gone.left and not gone.done and gone.orientation.axis is None
     assert gone.orientation.passes == 0 and gone.orientation.unreached == 1.0
     assert sum(zone.area for zone in gone.zones) == pytest.approx(op.face.area, rel=1e-12)
@@ -43,14 +43,14 @@ def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) 
 
 def test_a_face_that_is_wider_than_the_cutter_keeps_its_operation(small_plan: Plan) -> None:
     (op,) = small_plan.operations
-    assert describe_zones(op, leaving(op, 0.97), SLIM).done
-    assert describe_zones(op, leaving(op, 0.97, at_wall=False), small_plan.tool).done, "an undercut is no clean-up face"
+    assert describe_zones(replace(op, tool=SLIM), leaving(op, 0.97)).done
+    assert describe_zones(op, leaving(op, 0.97, at_wall=False)).done, "an undercut is no clean-up face"
 
 
 def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
     (op,) = small_plan.operations
     zones = leaving(op, 0.1, at_wall=False)
-    made = describe_zones(describe_zones(op, zones, small_plan.tool), zones, small_plan.tool)
+    made = describe_zones(describe_zones(op, zones), zones)
     (said,) = [why for why in made.orientation.reasons if why.startswith("undercut")]
     at = op.face.evaluate(zones[0].loops[0].mean(axis=0)[None]).point[0]
     assert f"{zones[0].area:.2f} mm2, around {place(at)}:" in said and not np.allclose(at, 0)
@@ -115,14 +115,14 @@ def test_a_fillet_tighter_than_the_cutter_is_left_where_no_axis_was_found(radius
 
 def test_a_face_that_is_merely_not_machined_stays_incomplete(footed: Plan) -> None:
     floor = footed.operations[0].face.number
-    plan = ta.plan(footed.part, footed.tool, 0.1, faces=[floor], machine="cone:0,0,-1,1")
+    plan = ta.plan(footed.part, footed.tools[0], 0.1, faces=[floor], machine="cone:0,0,-1,1")
     assert plan.outcome == "incomplete" and not plan.operations[0].left
 
 
 @pytest.mark.parametrize("asked", [{"regions": 2}, pytest.param({"orientations": 2}, marks=pytest.mark.long)])
 def test_a_fillet_that_cannot_be_divided_does_not_refuse_the_part(footed: Plan, asked: dict[str, int]) -> None:
     numbers = [op.face.number for op in footed.operations]
-    plan = ta.plan(footed.part, footed.tool, 0.1, faces=numbers, machine="cone:0,0,1,5", **asked)
+    plan = ta.plan(footed.part, footed.tools[0], 0.1, faces=numbers, machine="cone:0,0,1,5", **asked)
     assert plan.outcome == "complete"
     assert [op.face.number for op in plan.operations if op.left] == numbers[1:]
     floor = [op for op in plan.operations if op.face.number == numbers[0]]

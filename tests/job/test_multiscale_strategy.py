@@ -43,7 +43,7 @@ def test_the_judge_passes_it_and_finds_the_roughness(plan) -> None:
     uv = np.array([[0.5, 0.5], [0.35, 0.5], [0.65, 0.45]])
     at = section_parameters(face, uv, np.linspace(-2, 2, 241), op.orientation.feed)
     points, normal = section_points(face, at)
-    left = removal((path.cl, path.axis, path.kind), plan.tool.profile, (points.reshape(-1, 3), normal.reshape(-1, 3)),
+    left = removal((path.cl, path.axis, path.kind), op.tool.profile, (points.reshape(-1, 3), normal.reshape(-1, 3)),
                    depth=0.05, height=0.5)
     judged = arithmetic_roughness(left.remaining.reshape(3, -1))
     assert (judged < 1.1 * RA).all() and (judged > 0.3 * RA).all()
@@ -55,8 +55,8 @@ def test_strips_are_as_wide_as_expected_and_the_machine_follows(plan) -> None:
     found = nearest(op.face, op.path.cc[cut])
     inside = (found.distance < 1e-6) & ((found.uv > 0.02) & (found.uv < 0.98)).all(axis=1)
     uv, axis = found.uv[inside][::3], op.path.axis[cut][inside][::3]
-    wide = section_width(op.face, plan.tool, uv, axis, H, op.orientation.feed).sum(axis=1)
-    low, high = expect_widths(plan.tool, np.radians(20.0), H)
+    wide = section_width(op.face, plan.tools[0], uv, axis, H, op.orientation.feed).sum(axis=1)
+    low, high = expect_widths(plan.tools[0], np.radians(20.0), H)
     assert len(wide) > 20 and wide.min() > low - 5e-3 and wide.max() < high + 5e-3
     assert len(following(plan.machine.machine, op.path).rotary) >= len(op.path.cl)
     assert any("um allowed" in why for why in op.orientation.reasons)

@@ -71,7 +71,8 @@ def test_an_axis_that_is_tried_stands_on_the_machine_s_steps(plan) -> None:
 def test_travel_is_said_not_to_be_judged_without_a_place(plan) -> None:
     bare = replace(plan, machine=Mounting(plan.machine.machine))
     assert "travel of the machine's linear axes" in bare.not_checked
-    short = replace(plan, tool=ta.Tool.torus(diameter=12, corner_radius=2))
+    tool = ta.Tool.torus(diameter=12, corner_radius=2)
+    short = replace(plan, tools=(tool,), operations=tuple(replace(op, tool=tool) for op in plan.operations))
     assert "travel of the machine's linear axes" in short.not_checked
     hollow = replace(plan, machine=replace(plan.machine, machine=replace(plan.machine.machine, bodies=())))
     assert all("collision with the machine itself" in one.not_checked for one in (bare, short, hollow))

@@ -43,7 +43,7 @@ def operation(number: int, axis: np.ndarray, start: np.ndarray) -> Operation:
     kind = np.array([Motion.LINK, Motion.ENTRY, Motion.CUT, Motion.LINK], dtype=np.int8)
     path = ToolPath(tips, tips, np.tile(axis, (4, 1)), np.tile(axis, (4, 1)), kind, np.array([0, 4]))
     found = Orientation(axis, "u", 1, 1.0, 12.4, 2.0, 0.0, {}, "feasible")
-    return Operation(number, FACE, found, path, work_coordinates(axis, np.array([1.0, 0, 0]), np.zeros(3), start))
+    return Operation(number, FACE, TOOL, found, path, work_coordinates(axis, np.array([1.0, 0, 0]), np.zeros(3), start))
 
 
 def plan_of(axes: list[tuple[float, float, float]], machine: str = "bc-table-table", bodies: bool = False) -> Plan:
@@ -53,7 +53,7 @@ def plan_of(axes: list[tuple[float, float, float]], machine: str = "bc-table-tab
     found = ta.load_machine(machine)
     if not bodies:
         found = replace(found, bodies=())
-    return Plan(Part((FACE,)), TOOL, PlanInputs(0.1), operations, (), np.zeros(3), "complete",
+    return Plan(Part((FACE,)), (TOOL,), PlanInputs(0.1), operations, (), np.zeros(3), "complete",
                 machine=Mounting(found, PLACE))
 
 

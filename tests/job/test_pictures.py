@@ -15,7 +15,7 @@ from toolaxis.strategies.indexed.pictures import width_study
 def test_estimate_and_count_stay_near_the_passes_made(small_plan: Plan) -> None:
     op = small_plan.operations[0]
     axis = np.array([np.sin(0.5), 0.0, np.cos(0.5)])
-    study = width_study(op.face, small_plan.tool, axis, 0.01, "u", angles=4)  # a dozen passes and more
+    study = width_study(op.face, small_plan.tools[0], axis, 0.01, "u", angles=4)  # a dozen passes and more
     assert len(study.angle) >= 3 and study.chosen == pytest.approx(0.5, abs=0.1)
     close = study.angle < np.radians(50)
     assert np.abs(study.count / study.made - 1)[close].max() < 0.005

@@ -54,7 +54,7 @@ def test_the_judge_fails_a_spoilt_plan(small_plan: Plan) -> None:
 
 
 def test_the_same_again(small_plan: Plan) -> None:
-    again = ta.plan(small_plan.part, small_plan.tool, 0.1)
+    again = ta.plan(small_plan.part, small_plan.tools[0], 0.1)
     mine, theirs = again.operations[0], small_plan.operations[0]
     assert np.array_equal(mine.orientation.axis, theirs.orientation.axis)
     assert mine.path is not None and theirs.path is not None and np.array_equal(mine.path.cl, theirs.path.cl)
@@ -250,7 +250,7 @@ def test_the_plan_of_a_baseline_is_a_plan_that_passes(method: str) -> None:
     faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
     made = ta.plan(ta.Part.from_faces(faces), "torus:12x1", 0.1, method=method)
     assert made.outcome == "complete" and made.inputs.method == method
-    assert made.tool.name == ("ball:12" if method == "ball" else "torus:12x1")
+    assert made.tools[0].name == ("ball:12" if method == "ball" else "torus:12x1")
     assert made.orientations == (1 if method == "one" else 2)
     assert ta.verify(made).passed
 

@@ -15,7 +15,7 @@ DOWN, LEANING = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.6, 0.8])
 
 @pytest.fixture(scope="module")
 def job(small_plan: Plan) -> PlanningJob:
-    return PlanningJob(small_plan.part, small_plan.tool, small_plan.inputs, None, (), np.zeros(3))
+    return PlanningJob(small_plan.part, small_plan.tools[0], small_plan.inputs, None, (), np.zeros(3))
 
 
 def test_the_cheapest_of_the_other_shared_axes_serves(job: PlanningJob, small_plan: Plan) -> None:

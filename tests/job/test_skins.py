@@ -42,7 +42,7 @@ def patches(face: ta.Face) -> list[ta.Face]:
 
 @pytest.fixture(scope="module")
 def joined_plan(small_plan: Plan) -> Plan:
-    return ta.plan(patches(sheet()), small_plan.tool, 0.1, faces=[(1, 2, 3, 4)])
+    return ta.plan(patches(sheet()), small_plan.tools[0], 0.1, faces=[(1, 2, 3, 4)])
 
 
 def test_the_plan_of_joined_patches_is_that_of_the_whole_surface(joined_plan: Plan, small_plan: Plan) -> None:

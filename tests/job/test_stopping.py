@@ -64,7 +64,7 @@ def test_a_loop_hears_only_whom_its_thread_listens_to() -> None:
 
 def test_there_is_little_work_between_two_checks(small_plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
     counted = Counted(monkeypatch)
-    made = ta.plan(small_plan.part, small_plan.tool, 0.1, progress=counted.progress)
+    made = ta.plan(small_plan.part, small_plan.tools[0], 0.1, progress=counted.progress)
     assert made.outcome == "complete" and counted.checks > 1000
     assert 0 < counted.most["points"] <= POINTS and counted.most.get("motions", 0) <= MOTIONS, counted.most
     judge = Counted(monkeypatch)
@@ -81,7 +81,7 @@ def counted_checks(act) -> int:
 
 def test_any_check_stops_the_whole(small_plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
     def act(progress):
-        return ta.plan(small_plan.part, small_plan.tool, 0.1, progress=progress)
+        return ta.plan(small_plan.part, small_plan.tools[0], 0.1, progress=progress)
 
     checks = counted_checks(act)
     for share in (0.001, 0.3, 0.7, 0.999):

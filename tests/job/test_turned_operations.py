@@ -67,7 +67,7 @@ class Planner:
 
     def search(self, part, face, number, progress):
         self.asked.append(face.number)
-        return Operation(number, face, Orientation(None, reasons=("searched",)))
+        return Operation(number, face, TOOL, Orientation(None, reasons=("searched",)))
 
 
 @pytest.fixture(scope="module")

@@ -27,6 +27,8 @@ from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
 FILES = {"part": {"file": "part.json", "sha256": "00"}, "obstacles": [], "operations": ["op01-face1.apt", None]}
+BULL_NOSE = Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)])
+BALL = Tool.ball(6, stickout=40, title="Ball D6, 40 out", number=7, feedrate=900.0, spindle=12000.0)
 
 
 def net(height: float) -> np.ndarray:
@@ -48,10 +50,10 @@ def example() -> Plan:
                        ("gouge limits",), 431, found, (lobe,), 0.01)
     piece = part.faces[0].trimmed((loop,), "1a")
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), np.ones(3))
-    return Plan(part, Tool.torus(12, 1, stickout=60, holder=[(10, 0), (10, 40)]),
+    return Plan(part, (BULL_NOSE, BALL),
                 PlanInputs(0.02, tolerance=Tolerance(chord=0.001)),
-                (Operation(1, piece, best, path, frame, (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
-                 Operation(2, part.faces[1], Orientation(None, outcome="infeasible", reasons=("no axis",)))),
+                (Operation(1, piece, BULL_NOSE, best, path, frame, (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
+                 Operation(2, part.faces[1], BALL, Orientation(None, outcome="infeasible", reasons=("no axis",)))),
                 (), np.zeros(3), "incomplete")
 
 
@@ -79,7 +81,10 @@ def test_written_and_read_back_is_the_same() -> None:
     assert (zone.area, zone.at_wall, zone.elsewhere) == (12.25, True, 0.125) and back.operations[1].zones == ()
     assert all(map(np.array_equal, zone.loops, plan.operations[0].zones[0].loops))
     assert back.inputs == plan.inputs and back.outcome == "incomplete"
-    assert back.tool.name == "torus:12x1" and back.not_checked == plan.not_checked
+    assert [tool.name for tool in back.tools] == ["torus:12x1", "ball:6"] and back.not_checked == plan.not_checked
+    assert [op.tool for op in back.operations] == list(back.tools)
+    assert (back.tools[1].title, back.tools[1].number) == ("Ball D6, 40 out", 7)
+    assert (back.tools[1].feedrate, back.tools[1].spindle) == (900.0, 12000.0)
 
 
 def test_times_are_lengths_over_their_rates_and_survive() -> None:
@@ -106,7 +111,7 @@ def test_times_are_lengths_over_their_rates_and_survive() -> None:
 
 def test_what_was_not_given_is_named() -> None:
     assert example().not_checked == ("obstacles other than the part", "machine")
-    bare = Plan(example().part, Tool.ball(8), PlanInputs(0.02), (), (), np.zeros(3), "complete")
+    bare = Plan(example().part, (Tool.ball(8),), PlanInputs(0.02), (), (), np.zeros(3), "complete")
     assert bare.not_checked == ("shank", "holder", "obstacles other than the part", "machine")
 
 
@@ -136,9 +141,9 @@ def _drop(*place: Any) -> Callable[[dict[str, Any]], None]:
 
 
 @pytest.mark.parametrize("change, said", [
-    (_set("version", value=2), "schema version 2: this program reads 1"),
+    (_set("version", value=1), "schema version 1: this program reads 2"),
     (_set("schema", value="other"), "plan.json.schema is 'other'"),
-    (_drop("tool"), "plan.json has no 'tool'"),
+    (_drop("tools"), "plan.json has no 'tools'"),
     (_drop("operations", 0, "orientation", "gouge"), r"operations\[0\].orientation has no 'gouge'"),
     (_set("operations", 0, "orientation", "axis", 1, value="x"), r"operations\[0\].orientation.axis\[1\] is 'x'"),
     (_set("operations", 0, "orientation", "axis", value=[1, 0]), "axis has 2 items: 3 are needed"),
@@ -146,7 +151,7 @@ def _drop(*place: Any) -> Callable[[dict[str, Any]], None]:
     (_set("operations", 1, "face", value=9), "face 9 does not exist: the part has 2 faces"),
     (_set("operations", 1, "face", value=True), r"face is True: integer is needed"),
     (_set("outcome", value="perhaps"), "outcome is 'perhaps': one of complete"),
-    (_set("tool", "colour", value="red"), "unknown 'colour'"),
+    (_set("tools", 0, "colour", value="red"), "unknown 'colour'"),
     (_set("inputs", "scallop", value=-1.0), "scallop is -1.0"),
     (_set("operations", 0, "orientation", "clearance", value={"cutter": "far"}), "clearance.cutter is 'far'"),
 ])

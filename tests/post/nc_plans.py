@@ -79,9 +79,9 @@ def a_plan(axes: np.ndarray, rng: np.random.Generator, **inputs: float) -> Plan:
     for number, axis in enumerate(np.atleast_2d(axes), 1):
         path = a_path(axis, rng)
         frame = work_coordinates(axis, rng.normal(size=(5, 3)), DATUM, DATUM)
-        operations.append(Operation(number, face, Orientation(axis, outcome="optimal"), path, frame))
+        operations.append(Operation(number, face, TOOL, Orientation(axis, outcome="optimal"), path, frame))
     asked = PlanInputs(0.02, **{"feedrate": 1234.5, "rapid": 8000.0, **inputs})
-    return Plan(Part((face,)), TOOL, asked, tuple(operations), (), DATUM, "complete")
+    return Plan(Part((face,)), (TOOL,), asked, tuple(operations), (), DATUM, "complete")
 
 
 def axes_at(machine: Machine, angles: np.ndarray, turn: np.ndarray) -> np.ndarray:

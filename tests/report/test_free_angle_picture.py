@@ -31,9 +31,10 @@ def _plan(clamp: Clamp) -> Plan:
     kind = np.full(82, Motion.CUT, dtype=np.int8)
     kind[[0, 41]] = Motion.LINK
     path = ToolPath(tips, tips, axes, axes, kind, np.array([0, 41, 82]))
-    op = Operation(1, face, Orientation(np.array([0.0, 0.0, 1.0]), outcome="feasible", lead=0.3), path, None)
+    tool = Tool.torus(12, 1)
+    op = Operation(1, face, tool, Orientation(np.array([0.0, 0.0, 1.0]), outcome="feasible", lead=0.3), path, None)
     inputs = PlanInputs(0.02, method="four-plus-one")
-    return Plan(Part((face,)), Tool.torus(12, 1), inputs, (op,), (), np.zeros(3), "complete", machine=Mounting(MIKRON))
+    return Plan(Part((face,)), (tool,), inputs, (op,), (), np.zeros(3), "complete", machine=Mounting(MIKRON))
 
 
 @pytest.mark.parametrize(("which", "angle"), [(0, 30.0), (1, 25.0)])

@@ -30,10 +30,10 @@ def plan(*tilts: float) -> Plan:
         tips = np.array([[5.0, 5, 1], [35, 25, 1]]) + np.zeros((2, 3))
         path = ToolPath(tips, tips, np.tile(axis, (2, 1)), np.tile(axis, (2, 1)),
                         np.full(2, Motion.CUT, dtype=np.int8), np.array([0, 2]))
-        operations.append(Operation(number, FACE, Orientation(axis, "u", 1, outcome="feasible"), path,
+        operations.append(Operation(number, FACE, TOOL, Orientation(axis, "u", 1, outcome="feasible"), path,
                                     work_coordinates(axis, np.array([1.0, 0, 0]), np.zeros(3), np.zeros(3)),
                                     rotary=(0.0, tilt)))
-    return Plan(Part((FACE,)), TOOL, PlanInputs(0.1), tuple(operations), (), np.zeros(3), "complete", machine=mounting)
+    return Plan(Part((FACE,)), (TOOL,), PlanInputs(0.1), tuple(operations), (), np.zeros(3), "complete", machine=mounting)
 
 
 @pytest.mark.parametrize("body", [
@@ -71,10 +71,11 @@ def test_one_panel_for_each_orientation_and_its_angles() -> None:
 def test_where_there_is_nothing_to_draw() -> None:
     made = plan(0.2)
     assert has_machine_picture(made)
-    bare = replace(made.machine.machine, bodies=())
+    bare, tool = replace(made.machine.machine, bodies=()), ta.Tool.torus(diameter=12, corner_radius=2)
     for other in (replace(made, machine=None), replace(made, machine=replace(made.machine, machine=bare)),
                   replace(made, machine=Mounting(made.machine.machine)),
-                  replace(made, tool=ta.Tool.torus(diameter=12, corner_radius=2)), replace(made, operations=())):
+                  replace(made, tools=(tool,), operations=tuple(replace(op, tool=tool) for op in made.operations)),
+                  replace(made, operations=())):
         assert not has_machine_picture(other)
 
 

@@ -52,8 +52,8 @@ def planned() -> tuple[Plan, Operation]:
                     np.arange(0, 241, 20))
     found = Orientation(AXIS, "u", 12, 11.5, 480.0, 2.5, outcome="feasible")
     frame = work_coordinates(AXIS, np.array([[1.0, 0, 0]]), np.zeros(3), points[0])
-    op = Operation(1, face, found, path, frame)
-    return Plan(Part.from_faces([face]), TOOL, PlanInputs(0.02), (op,), (), np.zeros(3), "complete"), op
+    op = Operation(1, face, TOOL, found, path, frame)
+    return Plan(Part.from_faces([face]), (TOOL,), PlanInputs(0.02), (op,), (), np.zeros(3), "complete"), op
 
 
 def colours_of(made: Figure, path: Path) -> np.ndarray:
@@ -79,7 +79,7 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     plan, op = planned()
     halves = [np.array([[a, 0.0], [a + 0.5, 0.0], [a + 0.5, 1.0], [a, 1.0]]) for a in (0.0, 0.5)]
     both = (replace(op, face=op.face.trimmed((halves[0],), "1a")),
-            Operation(2, op.face.trimmed((halves[1],), "1b"), Orientation(None), None, None))
+            Operation(2, op.face.trimmed((halves[1],), "1b"), TOOL, Orientation(None), None, None))
     made = overview_picture(replace(plan, operations=both))
     ax = made.axes[0]
     assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
@@ -93,7 +93,7 @@ def test_overview_shows_a_sliver_that_is_left() -> None:
     loops = [np.array([[a, 0.0], [a + 1e-4, 0.0], [a + 1e-4, 1.0], [a, 1.0]]) for a in (0.1, 0.9)]
     sliver = op.face.trimmed(tuple(loops), "1b")
     assert not len(sliver.grid(12, 12))
-    made = overview_picture(replace(plan, operations=(op, Operation(2, sliver, Orientation(None)))))
+    made = overview_picture(replace(plan, operations=(op, Operation(2, sliver, TOOL, Orientation(None)))))
     assert {text.get_text() for text in made.axes[0].texts} >= {"1", "2: no axis"}
 
 
@@ -101,7 +101,7 @@ def test_sub_surfaces_that_touch_have_different_colours() -> None:
     _, op = planned()
     cells = [(i, j) for i in range(3) for j in range(7)]
     pieces = [Operation(k, op.face.trimmed((np.array([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]) / [3, 7],)),
-                        Orientation(None)) for k, (i, j) in enumerate(cells, 1)]
+                        TOOL, Orientation(None)) for k, (i, j) in enumerate(cells, 1)]
     colours = colour_map(pieces)
     for k, (i, j) in enumerate(cells):
         for m, other in enumerate(cells[:k]):

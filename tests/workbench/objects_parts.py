@@ -55,10 +55,11 @@ def quick_plan(inputs, axis=LEANING):
     """A plan with one axis for every face; axis in the document's space."""
     source = ShapesRead.of(inputs)
     part, bodies = source.read(NO_PROGRESS)
-    bare = Plan(part, inputs.assembled(), inputs.job(), (), bodies, FreeCAD.Vector(*source.datum), "complete")
-    made = [try_axis(bare, Operation(k, part.face(number), Orientation(None)), tuple(axis))
+    tool = inputs.assembled()
+    bare = Plan(part, (tool,), inputs.job(), (), bodies, FreeCAD.Vector(*source.datum), "complete")
+    made = [try_axis(bare, Operation(k, part.face(number), tool, Orientation(None)), tuple(axis))
             for k, number in enumerate(source.numbers, 1)]
-    return Plan(part, bare.tool, bare.inputs, tuple(made), bodies, bare.datum, "complete")
+    return Plan(part, bare.tools, bare.inputs, tuple(made), bodies, bare.datum, "complete")
 
 
 def known_plan(inputs, axis=LEANING):

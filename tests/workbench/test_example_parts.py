@@ -189,7 +189,7 @@ def test_both_solutions_of_a_machine_are_the_commands(walk, machine):
         found = [(list(ours.RotaryAngles), np.degrees(op["rotary"])) for ours, op in rows]
     else:
         numbered = {op.number: op for op in walk.plan.operations}
-        mounted = machine_limits.mounting(f"machine:{machine}@0,0,60", walk.plan.tool)
+        mounted = machine_limits.mounting(f"machine:{machine}@0,0,60", walk.plan.tools[0])
         ways = machine_angles.in_order(mounted, [(op.orientation.axis, op.path.cl) for op in
                                            (numbered[row["number"]] for _, row in rows)])
         texts = [machine_angles.texts_of(mounted.machine, *one) for one in ways]

@@ -31,7 +31,7 @@ def theirs(prepared):
     document = json.loads((prepared / "out" / "plan.json").read_text())
     op, = document["operations"]
     path = read_apt((prepared / "out" / op["cl_file"]).read_text()).path
-    return SimpleNamespace(inputs=document["inputs"], tool=document["tool"]["name"], face=op["face"],
+    return SimpleNamespace(inputs=document["inputs"], tool=document["tools"][0]["name"], face=op["face"],
                            found=op["orientation"], path=path)
 
 

@@ -68,7 +68,7 @@ def again(thing, commands, tmp_path_factory):
     """plan.json made through FreeCAD with the command's inputs."""
     scallop, folder = commands["inputs"]["scallop"], tmp_path_factory.mktemp("plan")
     faces = sorted({op["face"] for op in commands["operations"]})
-    write_plan(ta.plan(thing, tool_from(commands["tool"]), scallop, faces=faces), folder)
+    write_plan(ta.plan(thing, tool_from(commands["tools"][0]), scallop, faces=faces), folder)
     return json.loads((folder / "plan.json").read_text())
 
 
@@ -96,7 +96,7 @@ def test_the_same_axis_comes_to_the_same(commands, part):
         if theirs["axis"] is None:
             continue
         face = next(piece for piece in split_at_kinks(part.face(op["face"])) if piece.label == op["label"])
-        ours = evaluate_axis(face, tool_from(commands["tool"]), theirs["axis"], commands["inputs"]["scallop"],
+        ours = evaluate_axis(face, tool_from(commands["tools"][0]), theirs["axis"], commands["inputs"]["scallop"],
                              part=part, feed=theirs["feed"])
         assert ours.outcome == theirs["outcome"]
         assert ours.passes == pytest.approx(theirs["passes"], rel=1e-3)
@@ -126,7 +126,7 @@ def test_a_division_comes_to_the_same_through_the_document(prepared):
     theirs = json.loads((FOLDER / "divided" / "out" / "plan.json").read_text())
     asked = theirs["inputs"]
     with imported("freeform") as thing:
-        made = api.plan(thing.Document, (thing, theirs["operations"][0]["face"]), theirs["tool"]["name"],
+        made = api.plan(thing.Document, (thing, theirs["operations"][0]["face"]), theirs["tools"][0]["name"],
                            asked["scallop"], regions=2, method=asked["method"], shank=None, holder=None,
                            feedrate=asked["feedrate"])
         assert len(made) == len(theirs["operations"]) == 2

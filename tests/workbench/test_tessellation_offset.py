@@ -55,7 +55,7 @@ def test_chords_over_a_hollow_stay_below_what_is_shown(shown):
 def test_the_mesh_of_a_sub_surface_is_above_them(document, shown):
     thing, _, face, _ = shown
     group = document.addObject("App::DocumentObjectGroupPython", "Group")
-    show_surface(group, Operation(1, face, Orientation(None)), chain_of(thing), (0.5, 0.5, 1.0))
+    show_surface(group, Operation(1, face, None, Orientation(None)), chain_of(thing), (0.5, 0.5, 1.0))
     mesh, = (one for one in group.Group if one.Shows == SURFACE)
     points = np.array([tuple(point) for point in mesh.Mesh.Topology[0]])
     corners = points[np.array(mesh.Mesh.Topology[1])].mean(axis=1)

@@ -266,7 +266,7 @@ def test_clean_up_zones_are_hatched(document, whole_parts):
     part, _ = ShapesRead.of(inputs).read(NO_PROGRESS)
     face = part.face(int(name[4:]))
     group = document.addObject("App::DocumentObjectGroupPython", "Group")
-    op = Operation(1, face, Orientation(None), zones=(Zone(face.outline, face.area),))
+    op = Operation(1, face, None, Orientation(None), zones=(Zone(face.outline, face.area),))
     show_surface(group, op, chain_of(thing), (0.5, 0.5, 1.0))
     lines, = shown(group, CLEAN_UP)
     mesh, = shown(group, SURFACE)
@@ -279,7 +279,7 @@ def test_clean_up_zones_are_hatched(document, whole_parts):
     thing.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, 7), FreeCAD.Rotation())
     document.recompute()
     assert lines.Placement.Base.z == mesh.Placement.Base.z == pytest.approx(7)
-    show_surface(group, Operation(1, face, Orientation(None)), chain_of(thing), None)
+    show_surface(group, Operation(1, face, None, Orientation(None)), chain_of(thing), None)
     assert not group.Group
 
 

@@ -69,8 +69,8 @@ def compile_ahead() -> None:
     path = passes(waved, tool, axis, _SCALLOP)
     orientation = Orientation(axis, "u", path.passes, counted, path.length(), outcome="feasible")
     frame = work_coordinates(axis, np.array([1.0, 0.0, 0.0]), start, start)
-    operation = Operation(1, waved, orientation, path, frame)
-    verify_plan(Plan(Part((waved, below)), tool, PlanInputs(_SCALLOP), (operation,), (), start, "complete"))
+    operation = Operation(1, waved, tool, orientation, path, frame)
+    verify_plan(Plan(Part((waved, below)), (tool,), PlanInputs(_SCALLOP), (operation,), (), start, "complete"))
 
 
 if __name__ == "__main__":

@@ -89,11 +89,10 @@ def _mounting(given: Namespace, plan: Plan) -> Mounting | None:
     """The machine that was given, else the plan's own, with the part where it was said to stand."""
     offset = offset_from(given.offset) if given.offset else None
     if given.machine:
-        return Mounting(load_machine(given.machine), offset, plan.tool.gauge_length)
+        return Mounting(load_machine(given.machine), offset)
     if plan.machine is None:
         return None
-    return Mounting(plan.machine.machine, plan.machine.table_from_part if offset is None else offset,
-                    plan.tool.gauge_length)
+    return Mounting(plan.machine.machine, plan.machine.table_from_part if offset is None else offset)
 
 
 def _words(text: str) -> tuple[str, ...]:

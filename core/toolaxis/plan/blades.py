@@ -167,10 +167,11 @@ class Blades:
         Parameters
         ----------
         numbers : mapping of int to int
-            From the old number of each operation to the new one.
+            From old numbers of operations to new ones; others keep theirs.
         """
-        return replace(self, copies={numbers[copy]: numbers[source] for copy, source in self.copies.items()},
-                       searched=tuple(sorted(numbers[one] for one in self.searched)),
+        return replace(self, copies={numbers.get(copy, copy): numbers.get(source, source)
+                                     for copy, source in self.copies.items()},
+                       searched=tuple(sorted(numbers.get(one, one) for one in self.searched)),
                        room=tuple(replace(one, operation=numbers.get(one.operation, 0)) for one in self.room))
 
     def checked(self, operations: int) -> "Blades":

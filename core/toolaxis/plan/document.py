@@ -26,7 +26,7 @@ from toolaxis.shape.kinks import split_at_kinks
 from toolaxis.shape.part import Part
 from toolaxis.skin.join import join
 from toolaxis.tolerances import Tolerance
-from toolaxis.tools.tool import Tool
+from toolaxis.tools.tool import PROPERTIES, Tool
 
 Array = NDArray[np.float64]
 Document = dict[str, Any]
@@ -51,7 +51,8 @@ def tool_document(tool: Tool) -> Document:
     """
     return {"name": tool.name, "kind": tool.kind, "radius": tool.radius, "corner_radius": tool.corner_radius,
             "half_angle": tool.half_angle, "flute_length": tool.flute_length, "stickout": tool.stickout,
-            "shank": _rows(tool.shank), "holder": _rows(tool.holder)}
+            "shank": _rows(tool.shank), "holder": _rows(tool.holder), "title": tool.title, "number": tool.number,
+            "feedrate": tool.feedrate, "spindle": tool.spindle}
 
 
 def tool_from(document: Mapping[str, Any]) -> Tool:
@@ -66,7 +67,7 @@ def tool_from(document: Mapping[str, Any]) -> Tool:
     InvalidInput
         When the sizes make no tool.
     """
-    body = {key: document[key] for key in ("flute_length", "stickout", "shank", "holder") if document[key] is not None}
+    body = {key: document[key] for key in PROPERTIES if document.get(key)}
     return Tool.build(document["kind"], document["radius"], document["corner_radius"], document["half_angle"], **body)
 
 
@@ -137,7 +138,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
     same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
-            "label": op.face.label,
+            "label": op.face.label, "tool": 1 + plan.tools.index(op.tool),
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
@@ -145,7 +146,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
             "points": 0 if path is None else len(path.cl),
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
             "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
-            "rotary": _rows(rotary_of(plan.machine, op, plan.tool.gauge_length)),
+            "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
             "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
 
 
@@ -174,7 +175,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "joined": [list(face.numbers) for face in plan.part.faces if face.members],
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams]},
         "obstacles": list(files["obstacles"]),
-        "tool": tool_document(plan.tool),
+        "tools": [tool_document(tool) for tool in plan.tools],
         "inputs": asdict(plan.inputs),
         "datum": _rows(plan.datum),
         "outcome": plan.outcome,
@@ -207,7 +208,8 @@ def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Doc
     return record
 
 
-def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | None) -> Operation:
+def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Tool],
+                    path: ToolPath | None) -> Operation:
     face = _smooth_piece(part, document["face"], document["label"])
     if document["region"] is not None:
         face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
@@ -218,8 +220,8 @@ def _operation_from(document: Mapping[str, Any], part: Part, path: ToolPath | No
     time = document.get("time")
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
     rotary = document.get("rotary") or [()]
-    return Operation(document["number"], face, orientation_from(document["orientation"]), path, axes, zones, known,
-                     tuple(rotary[0]))
+    return Operation(document["number"], face, tools[document["tool"] - 1], orientation_from(document["orientation"]),
+                     path, axes, zones, known, tuple(rotary[0]))
 
 
 def _order_from(document: Mapping[str, Any] | None) -> Order | None:
@@ -251,9 +253,10 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
         part = join(part, numbers, np.inf, np.inf)
     given = dict(document["inputs"])
     inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
-    operations = tuple(_operation_from(record, part, path)
+    tools = tuple(tool_from(one) for one in document["tools"])
+    operations = tuple(_operation_from(record, part, tools, path)
                        for record, path in zip(document["operations"], paths, strict=True))
-    return Plan(part, tool_from(document["tool"]), inputs, operations, tuple(obstacles),
+    return Plan(part, tools, inputs, operations, tuple(obstacles),
                 np.array(document["datum"], dtype=float), document["outcome"],
                 tuple(Option(**option) for option in document.get("options", ())),
                 tuple(Baseline(**one) for one in document.get("baselines", ())),

@@ -1,4 +1,4 @@
-"""One operation: a sub-surface, its orientation, its tool path and its work coordinate system."""
+"""One operation: a sub-surface, its tool, its orientation, its tool path and its work coordinate system."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,12 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.timing import MachiningTime
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
 
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """What is done to one sub-surface with one fixed axis.
+    """What is done to one sub-surface with one tool and one fixed axis.
 
     Attributes
     ----------
@@ -20,6 +21,8 @@ class Operation:
         From 1, in the order in which operations are carried out.
     face : Face
         The sub-surface.
+    tool : Tool
+        What machines it, or what was tried.
     orientation : Orientation
         The axis with what it costs, or the reasons why there is none.
     path : ToolPath or None
@@ -39,6 +42,7 @@ class Operation:
 
     number: int
     face: Face
+    tool: Tool
     orientation: Orientation
     path: ToolPath | None = None
     frame: WorkCoordinates | None = None
@@ -81,11 +85,11 @@ class Operation:
         Parameters
         ----------
         feedrate, rapid : float
-            mm/min
+            The plan's, mm/min.
         """
         if self.path is None:
             return 0.0
         if self.time is not None:
             return self.time.path
         slow = self.path.length(Motion.CUT, Motion.ENTRY, Motion.EXIT)
-        return 60 * (slow / feedrate + self.path.length(Motion.LINK) / rapid)
+        return 60 * (slow / (self.tool.feedrate or feedrate) + self.path.length(Motion.LINK) / rapid)

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 _LIE = {PLANES: "planes", FIELD: "a field"}
 #: What a change of the tool axis between operations is reckoned to take, s.
 INDEX_SECONDS = 6.0
+#: What a change of tools is reckoned to take, s.
+CHANGE_SECONDS = 10.0
 
 
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
@@ -110,6 +112,15 @@ class PlanInputs:
         """How far straight motions may leave passes, mm."""
         return self.tolerance.chord_for(self.scallop)
 
+    def at_rates_of(self, tool: Tool) -> "PlanInputs":
+        """The same with a tool's own feed rate and spindle speed, where it states them.
+
+        Parameters
+        ----------
+        tool : Tool
+        """
+        return replace(self, feedrate=tool.feedrate or self.feedrate, spindle=tool.spindle or self.spindle)
+
     def check_tool(self, tool: Tool) -> None:
         """Check that the scallop is one that this cutter can leave.
 
@@ -184,11 +195,12 @@ class Plan:
     Attributes
     ----------
     part : Part
-    tool : Tool
+    tools : tuple of Tool
+        Those that could be chosen from, in the order in which they are used: one at least.
     inputs : PlanInputs
     operations : tuple of Operation
-        One per sub-surface, in the order of the faces; by axis where sub-surfaces share axes; on a machine in the order
-        that takes least time between them.
+        One per sub-surface and tool, tool by tool, in the order of the faces; by axis where sub-surfaces share axes; on
+        a machine in the order that takes least time between them.
     obstacles : tuple of Part
         Further bodies that were kept clear of.
     datum : (3,) array
@@ -216,7 +228,7 @@ class Plan:
     """
 
     part: Part
-    tool: Tool
+    tools: tuple[Tool, ...]
     inputs: PlanInputs
     operations: tuple[Operation, ...]
     obstacles: tuple[Part, ...]
@@ -246,10 +258,30 @@ class Plan:
         return f"<Plan of {len(self.operations)} operations, {done} with a path: {self.outcome}>"
 
     @property
+    def used_tools(self) -> tuple[Tool, ...]:
+        """The tools with which something is machined; all that were given where nothing is."""
+        used = tuple(tool for tool in self.tools if any(op.done and op.tool == tool for op in self.operations))
+        return used or self.tools
+
+    @property
+    def named_tools(self) -> str:
+        """The tools with which something is machined, in words."""
+        *most, last = [tool.title or tool.name for tool in self.used_tools]
+        return f"{', '.join(most)} and {last}" if most else last
+
+    def by_tool(self) -> tuple["Plan", ...]:
+        """The operations of each tool as a plan of its own at that tool's feed and speed, in their order; tools without
+        operations only where none has any."""
+        rows = [tuple(op for op in self.operations if op.tool == tool) for tool in self.tools]
+        made = [replace(self, tools=(tool,), operations=some, inputs=self.inputs.at_rates_of(tool))
+                for tool, some in zip(self.tools, rows, strict=True)]
+        return tuple(one for one in made if one.operations) or tuple(made[:1])
+
+    @property
     def not_checked(self) -> tuple[str, ...]:
         """What the collision check left out because it was not given, or could not be read."""
-        known = self.tool.outlines
-        missing = [name for name in ("shank", "holder") if name not in known]
+        used = self.used_tools
+        missing = [name for name in ("shank", "holder") if not all(name in tool.outlines for tool in used)]
         unread = sum(len(one.left_out) for one in (self.part, *self.obstacles))
         if unread:
             missing.append("1 face that could not be read" if unread == 1 else f"{unread} faces that could not be read")
@@ -257,12 +289,12 @@ class Plan:
             missing.append("obstacles other than the part")
         if self.machine is None:
             return (*missing, "machine")
-        if self.machine.table_from_part is None or self.tool.gauge_length is None:
+        mounted = [replace(self.machine, tool_length=tool.gauge_length) for tool in used]
+        if not all(mounting.judges_travel for mounting in mounted):
             missing.append("travel of the machine's linear axes")
-        mounting = replace(self.machine, tool_length=self.tool.gauge_length)
-        if not mounting.judges_bodies:
+        if not all(mounting.judges_bodies for mounting in mounted):
             missing.append("collision with the machine itself")
-        elif not mounting.judges_index_moves and self.orientations > 1:
+        elif not all(mounting.judges_index_moves for mounting in mounted) and self.orientations > 1:
             missing.append("collision with the machine on index moves")
         return tuple(missing)
 
@@ -295,9 +327,10 @@ class Plan:
     @property
     def seconds(self) -> float:
         """Time of all operations, s: see `Operation.seconds`; between them what the machine takes to index, or
-        `INDEX_SECONDS` for each change of axis where that is not known."""
+        `INDEX_SECONDS` for each change of axis where that is not known, and `CHANGE_SECONDS` for each further tool."""
+        swaps = CHANGE_SECONDS * (len(self.used_tools) - 1)
         if self.timed:
-            return float(sum(op.time.total for op in self.operations if op.time is not None))
+            return swaps + float(sum(op.time.total for op in self.operations if op.time is not None))
         changes = int((np.abs(np.diff(self.axes, axis=0)) > 1e-9).any(axis=1).sum())
-        return INDEX_SECONDS * changes + sum(op.seconds(self.inputs.feedrate, self.inputs.rapid)
+        return swaps + INDEX_SECONDS * changes + sum(op.seconds(self.inputs.feedrate, self.inputs.rapid)
                                              for op in self.operations)

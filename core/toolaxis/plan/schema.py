@@ -9,7 +9,7 @@ from typing import Any
 from toolaxis.errors import InvalidInput
 
 NAME = "toolaxis.plan"
-VERSION = 1
+VERSION = 2
 
 _TYPES: dict[str, Callable[[Any], bool]] = {
     "object": lambda v: isinstance(v, Mapping),

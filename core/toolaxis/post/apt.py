@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import PlanInputs
 from toolaxis.post.cl_points import CutterLocations
 from toolaxis.tools.tool import Tool
 
@@ -57,6 +59,21 @@ def cutter_statement(tool: Tool) -> str:
     sizes = (2 * tool.radius, profile.corner_radius, profile.flat_radius, profile.corner_radius, 0.0,
              degrees(profile.half_angle), profile.top)
     return "CUTTER/" + ",".join(f"{size:.6g}" for size in sizes)
+
+
+def operation_text(op: Operation, inputs: PlanInputs) -> str:
+    """The CL file of an operation, at its tool's feed and speed.
+
+    Parameters
+    ----------
+    op : Operation
+        With a path.
+    inputs : PlanInputs
+        The plan's.
+    """
+    assert op.path is not None
+    own = inputs.at_rates_of(op.tool)
+    return apt_text(op.path, op.tool, op.name, own.feedrate, own.spindle)
 
 
 def apt_text(path: ToolPath, tool: Tool, name: str, feedrate: float, spindle: float) -> str:

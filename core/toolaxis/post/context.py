@@ -24,6 +24,8 @@ class ProgramContext:
         Spindle speed and feed rates.
     name : str
         Of the program; letters, digits, points, dashes and underscores are kept.
+    tool_number : int
+        Its place in the machine's magazine.
     retract : float or None
         Machine coordinate of Z at which rotary axes may turn, mm, for controls that are told it.
     clamp, unclamp : tuple of str
@@ -33,6 +35,7 @@ class ProgramContext:
     mounting: Mounting
     inputs: PlanInputs
     name: str = "toolaxis"
+    tool_number: int = 1
     retract: float | None = None
     clamp: tuple[str, ...] = ()
     unclamp: tuple[str, ...] = ()
@@ -49,7 +52,7 @@ class Program(ProgramContext):
 
     Attributes
     ----------
-    mounting, inputs, name, retract, clamp, unclamp
+    mounting, inputs, name, tool_number, retract, clamp, unclamp
         As for `ProgramContext`.
     plan : Plan
     stations : tuple of IndexedPosition

@@ -194,7 +194,7 @@ def _round_angles(rows: Array, machine: Machine, digits: int) -> Array:
 def _close(rows: Array, op: Operation, plan: Plan, mounting: Mounting) -> Array:
     """The angles at which the tool does not lean away from the axis that the passes were made and checked for."""
     assert op.path is not None
-    tolerance, tool = plan.inputs.tolerance, plan.tool
+    tolerance, tool = plan.inputs.tolerance, op.tool
     least = min(tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)
     leans = np.array([float(np.max(angle_between(op.path.axis, mounting.axis_at(row)))) for row in rows])
     shifts, swings = leans * 2 * tool.radius, leans * tool.height

@@ -104,16 +104,16 @@ class Dialect(ABC):
 
     def approach(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks to the first tip: across, then down; in one straight block where the spindle is tilted."""
-        point, length = station.tips[0], self.tool_length()
+        point, length = station.tips[0], self.tool_length(program)
         if not station.tilt:
             first, down = self.point(point).rsplit(" ", 1)
             return [f"G0 {first}", " ".join(filter(None, ["G0", length, down]))]
         code, words = self.straight_rapid(program, point).split(" ", 1)
         return [" ".join(filter(None, [code, length, words]))]
 
-    def tool_length(self) -> str:
+    def tool_length(self, program: ProgramContext) -> str:
         """The word that turns tool length compensation on in the approach."""
-        return "G43 H1"
+        return f"G43 H{program.tool_number}"
 
     def straight_rapid(self, program: ProgramContext, point: Array) -> str:
         """A rapid motion along a straight line, at rapid rate by G1 where G0 may bend it."""
@@ -265,7 +265,8 @@ def bare_program(plan: Plan, mounting: Mounting, dialect: Dialect, options: Opti
     InvalidInput
         When the machine's axes are not X, Y, Z with the spindle along Z.
     """
-    return Program(plan=plan, **_setting(plan.inputs, mounting, dialect, options, name))
+    return Program(plan=plan, tool_number=plan.tools[0].number or 1,
+                   **_setting(plan.inputs, mounting, dialect, options, name))
 
 
 def setting_of(inputs: PlanInputs, mounting: Mounting, dialect: Dialect, options: Options | None = None,

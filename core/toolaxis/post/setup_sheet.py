@@ -141,9 +141,9 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
 
 
 def _tool(plan: Plan) -> str:
-    tool, inputs = plan.tool, plan.inputs
+    tool, inputs = plan.tools[0], plan.inputs
     stickout = "not given" if tool.stickout is None else f"{tool.stickout:.3f}"
-    rows = [["T1", tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}", f"{tool.flute_length:.3f}",
+    rows = [[f"T{tool.number or 1}", tool.title or tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}", f"{tool.flute_length:.3f}",
              stickout, "yes" if "holder" in tool.outlines else "not given", f"{inputs.spindle:.0f}",
              f"{inputs.feedrate:.0f}"]]
     return _table(["tool", "name", "diameter", "corner radius", "cutting edge", "stick-out", "holder", "rev/min",
@@ -229,7 +229,7 @@ def gouge_of(program: Program, dialect: Dialect, station: IndexedPosition) -> fl
         The plan's bound, more by what rounding moves a tip and by what leaning moves the cutter about it.
     """
     rounding = 0.5 * 3 ** 0.5 * 10.0 ** -dialect.digits
-    return station.operation.orientation.gouge + rounding + 2 * program.plan.tool.radius * station.lean
+    return station.operation.orientation.gouge + rounding + 2 * station.operation.tool.radius * station.lean
 
 
 def _start(program: Program, dialect: Dialect, angles: Array) -> list[str]:

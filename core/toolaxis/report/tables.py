@@ -93,7 +93,7 @@ def plan_table(plan: Plan) -> Table:
         rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
                 for row, op in zip(rows, shown, strict=True)]
     moves = any(op.orientation.lead is not None for op in plan.operations)
-    title = (f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm, tolerance {plan.inputs.tolerance.gouge:g} mm: "
+    title = (f"{plan.named_tools}, scallop {plan.inputs.scallop:g} mm, tolerance {plan.inputs.tolerance.gouge:g} mm: "
              f"cutting length {plan.length:.1f} mm, with links {plan.length + plan.travel:.1f} mm, "
              f"time {clock(plan.seconds)}, " + ("moving axes" if moves else f"different axes {plan.orientations}"))
     if plan.machine is not None:
@@ -141,7 +141,7 @@ def _order(plan: Plan) -> str:
 
 def _angles(plan: Plan, op: Operation) -> str:
     """Angles of the rotary axes, the solution with the least turns."""
-    rows = rotary_of(plan.machine, op, plan.tool.gauge_length)
+    rows = rotary_of(plan.machine, op, op.tool.gauge_length)
     return " / ".join(f"{angle:.3f}" for angle in np.degrees(rows[0]) + 0.0) if len(rows) else "-"
 
 
@@ -165,7 +165,7 @@ def reckoning(plan: Plan) -> str:
     """
     inputs = plan.inputs
     if plan.timed and plan.machine is not None:
-        placed = "" if plan.machine.table_from_part is not None and plan.tool.gauge_length is not None else (
+        placed = "" if "travel of the machine's linear axes" not in plan.not_checked else (
             " without retracts, since offset and tool length are needed for them")
         return (f"time: {plan.machine.machine.name} within velocity, acceleration and jerk of its axes, "
                 f"{inputs.feedrate:g} mm/min in the cut and on its ramps; index moves{placed}")
@@ -280,6 +280,6 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     columns = [*_COLUMNS, ("clean-\nup %", "right"), ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"),
                ("verdict", "left")]
     aside = any(op.declared > 0 for op in verdict.operations)
-    return table(f"{plan.tool.name}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
+    return table(f"{plan.named_tools}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
                  f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows,
                  "scallop left and % within: of the area that is not left to clean-up" if aside else "")

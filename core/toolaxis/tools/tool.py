@@ -1,6 +1,6 @@
 """The whole rotating solid: cutter, shank, holder and how far the cutter sticks out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import degrees
 from typing import Any
@@ -86,6 +86,19 @@ class Tool:
     number: int = 0
     feedrate: float | None = None
     spindle: float | None = None
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        return tuple(value.tobytes() if isinstance(value, np.ndarray) else value
+                     for value in (getattr(self, one.name) for one in fields(self)))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all of both is the same: plans tell their tools apart so, in other processes too."""
+        return isinstance(other, Tool) and self._key == other._key
+
+    def __hash__(self) -> int:
+        """The same for tools that are equal."""
+        return hash(self._key)
 
     @staticmethod
     def torus(diameter: float, corner_radius: float, **body: Any) -> "Tool":

@@ -47,7 +47,7 @@ def _touching(plan: Plan, op: Operation, path: ToolPath) -> tuple[NDArray[np.int
     """Rows of a path at which the tool touches the face or its continuation, and the parameters there."""
     cutting = path.kind == Motion.CUT
     rows = np.flatnonzero(cutting | np.append(cutting[1:], False))
-    found = contacts_of(op.face, plan.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance)
+    found = contacts_of(op.face, op.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance)
     near = found.off <= _NEAR
     return rows[near], found.uv[near]
 
@@ -79,7 +79,7 @@ def widths_along(plan: Plan, op: Operation) -> list[tuple[Array, Array]]:
         if len(dense) > 1:
             along = op.face.evaluate(dense).point
             feed = op.orientation.feed if op.orientation.pattern == ISO else np.gradient(along, axis=0)
-            width = strip_width(op.face, plan.tool, dense, axis, plan.inputs.scallop, feed).sum(axis=1)
+            width = strip_width(op.face, op.tool, dense, axis, plan.inputs.scallop, feed).sum(axis=1)
             lines.append((along, width))
     return lines
 

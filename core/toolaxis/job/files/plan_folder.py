@@ -18,7 +18,7 @@ from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.part_document import part_document, part_from
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.schema import check
-from toolaxis.post.apt import apt_text
+from toolaxis.post.apt import operation_text
 from toolaxis.post.read_apt import read_apt
 from toolaxis.shape.part import Part
 from toolaxis.strategies.registry import strategy_of, title_of
@@ -181,7 +181,7 @@ def _write_operations(plan: Plan, folder: Path) -> dict[str, Any]:
         failures.append(f"failed-{op.name}.txt" if told else None)
         if op.path is not None:
             with about(op.face.label):
-                text = apt_text(op.path, plan.tool, op.name, plan.inputs.feedrate, plan.inputs.spindle)
+                text = operation_text(op, plan.inputs)
             (folder / f"{op.name}.apt").write_text(text, encoding="ascii")
         if told:
             (folder / f"failed-{op.name}.txt").write_text(failure_text(plan, op), encoding="utf-8")

@@ -17,6 +17,7 @@ from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.shape.face import Face
 from toolaxis.skin.pieces import own_pieces
+from toolaxis.tools.tool import Tool
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.maps import MapPoint, MapZone
 from toolaxis.verify.task import VerificationTask
@@ -126,18 +127,19 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                  for own in own_pieces(op.face.trimmed(zone.loops), only_exact=True))
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
-    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, plan.tool.profile, targets,
+    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
                             plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER),
-                            plan.tool.outlines,
+                            op.tool.outlines,
                             plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
-                            tool_length=plan.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                            before=_end_of(last))
+                            tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
+                            before=_end_of(last, op.tool))
 
 
-def _end_of(op: Operation | None) -> tuple[Array, Array, tuple[float, ...]] | None:
-    """Where an operation ends: tip, axis and rotary angles; None where its axis moves, and at the start."""
-    if op is None or op.path is None or not op.rotary or op.orientation.lead is not None:
+def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:
+    """Where an operation ends: tip, axis and rotary angles; None where its axis moves, before another tool, at the start.
+    """
+    if op is None or op.path is None or not op.rotary or op.orientation.lead is not None or op.tool != tool:
         return None
     return op.path.cl[-1], op.path.axis[-1], op.rotary
 

@@ -14,6 +14,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.path_check import COMPONENTS
 from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ def with_rooms(plan: Plan, progress: Progress = NO_PROGRESS) -> Plan:
 
 
 def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iterator[BladeClearance]:
-    known = [c for c, name in enumerate(COMPONENTS) if name in {"cutter", *plan.tool.outlines}]
+    known = [c for c, name in enumerate(COMPONENTS) if name in {"cutter", *plan.tools[0].outlines}]
     best = {c: BladeClearance(to, COMPONENTS[c], MOST) for c in known}
     own = [op for op in plan.operations if op.done and blades.blade_of(op.face.number) == 1]
     if not faces or not own:
@@ -82,13 +83,13 @@ def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iter
         asked = [c for c in known if c > 0 or not joined]
         grazed = to == "hub" and any(face.number in blades.hub for face in
                                      blades.apart(plan.part, op.face.number).skin(op.face.number))
-        for c, (value, face, _, _) in _nearest(plan, op, group, {c: best[c].distance for c in asked}).items():
+        for c, (value, face, _, _) in _nearest(op, group, {c: best[c].distance for c in asked}).items():
             proven = -op.orientation.gouge if c == 0 and grazed else op.orientation.clearance[COMPONENTS[c]]
             best[c] = BladeClearance(to, COMPONENTS[c], max(value, proven), op.number, face)
     yield from (best[c] for c in known)
 
 
-def _nearest(plan: Plan, op: Operation, group: CheckSurfaces,
+def _nearest(op: Operation, group: CheckSurfaces,
              below: dict[int, float]) -> dict[int, tuple[float, int, Array, Array]]:
     """Where components come nearer to a group than a distance each: how near, to which face, its place, the motion."""
     assert op.path is not None
@@ -98,7 +99,7 @@ def _nearest(plan: Plan, op: Operation, group: CheckSurfaces,
     best = np.array([below.get(c, 0.0) for c in range(3)])
     found: dict[int, tuple[float, int, Array, Array]] = {}
     for first in range(0, len(moves), _BATCH):
-        some: DistanceBounds = lower_bounds(group.cells, plan.tool, moves[first:first + _BATCH], best, ROUGH, asked)
+        some: DistanceBounds = lower_bounds(group.cells, op.tool, moves[first:first + _BATCH], best, ROUGH, asked)
         for c in below:
             i = int(some.lower[:, c].argmin())
             k = int(some.face[i, c])
@@ -108,13 +109,13 @@ def _nearest(plan: Plan, op: Operation, group: CheckSurfaces,
     return found
 
 
-def _standing(plan: Plan, group: CheckSurfaces, move: Array, component: int) -> tuple[Array, Array]:
+def _standing(tool: Tool, group: CheckSurfaces, move: Array, component: int) -> tuple[Array, Array]:
     """Where on a motion a component is nearest to a group: the place that it is near to, and the tip."""
     share = np.linspace(-1.0, 1.0, _STEPS)[:, None]
     asked = np.full((len(group.faces), 3), -np.inf)
     asked[:, component] = 0.0
     tips = move[0] + share * move[1]
-    found = lower_bounds(group.cells, plan.tool, motions(tips, move[2]), 2 * MOST, ROUGH / 10, asked)
+    found = lower_bounds(group.cells, tool, motions(tips, move[2]), 2 * MOST, ROUGH / 10, asked)
     k = int(found.lower[:, component].argmin())
     return found.point[k, component], tips[k]
 
@@ -146,7 +147,7 @@ def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> ClosestMotion | No
         if c == 0 and group.role != OTHER:
             continue
         limit = value + 10 * ROUGH if best is None else best.distance
-        for distance, face, _, move in _nearest(plan, op, group, {c: limit}).values():  # rougher than what is proven
-            place, tip = _standing(plan, group, move, c)
+        for distance, face, _, move in _nearest(op, group, {c: limit}).values():  # rougher than what is proven
+            place, tip = _standing(op.tool, group, move, c)
             best = ClosestMotion(op, COMPONENTS[c], max(distance, value), face, place, tip)
     return best

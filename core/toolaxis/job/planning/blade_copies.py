@@ -66,7 +66,7 @@ def with_refused(first: Plan, pattern: Pattern, share: BladeFaces) -> Plan:
     """
     faces = [(pattern.face(number), "infeasible", why) for number, why in share.refused.items()]
     faces += [(pattern.face(number), "not_found", why) for number, why in share.left.items()]
-    made = tuple(Operation(len(first.operations) + k, face, Orientation(None, outcome=outcome, reasons=(why,)),
+    made = tuple(Operation(len(first.operations) + k, face, first.tools[0], Orientation(None, outcome=outcome, reasons=(why,)),
                            zones=(Zone(face.outline, face.area),) if face.number in share.left else ())
                  for k, (face, outcome, why) in enumerate(faces, 1))
     return replace(first, operations=first.operations + made)
@@ -138,7 +138,8 @@ def _fail_blade(pattern: Pattern, k: int, first: Plan, why: Fault) -> _OnBlade:
     lost = []
     for op in first.operations:
         other = pattern.matching[k].get(op.face.number)
-        lost.append(fail_face(op.number, op.face if other is None else pattern.part.face(other.face.number), why))
+        face = op.face if other is None else pattern.part.face(other.face.number)
+        lost.append(fail_face(op.number, face, op.tool, why))
     return lost, [0] * len(lost)
 
 
@@ -208,13 +209,13 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
     if other is None:
         beside = pattern.blades.blades[k + 1].numbers[0]
         reason = f"no face where the turn puts face {number}: plan the faces of this blade ({beside} ...) by hand"
-        return Operation(op.number, op.face, Orientation(None, reasons=(reason,))), False
+        return Operation(op.number, op.face, op.tool, Orientation(None, reasons=(reason,))), False
     suffix = op.face.label.removeprefix(str(number))
     piece, away = turn_piece(op.face, pattern.face(number), other, matrix, f"{other.face.number}{suffix}")
     apart = pattern.blades.apart(pattern.part, piece.number)
     if not op.done:
         whole = tuple(Zone(piece.outline, piece.area) for _ in op.zones)
-        return Operation(op.number, piece, replace(op.orientation, map=None, lobes=()), zones=whole), True
+        return Operation(op.number, piece, op.tool, replace(op.orientation, map=None, lobes=()), zones=whole), True
     assert op.path is not None and op.orientation.axis is not None
     task = planner.task(apart, piece, progress)
     axis = matrix[:3, :3] @ op.orientation.axis
@@ -257,7 +258,7 @@ def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) ->
                        path.normal @ turn.T, path.kind, path.breaks)
     feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
     left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
-    return Operation(op.number, piece, replace(found, axis=axis, feed=feed, map=None, lobes=(), evaluations=1,
+    return Operation(op.number, piece, op.tool, replace(found, axis=axis, feed=feed, map=None, lobes=(), evaluations=1,
                                                reasons=(f"turned copy of {op.name}", *left)), carried)
 
 
@@ -323,4 +324,4 @@ def _replan_turned(op: Operation, piece: Face, task: FaceProblem, axis: Array,
         return None, "; ".join(found.reasons)
     note = f"turned copy of {op.name}, its passes laid anew: the faces differ"
     made = replace(found, evaluations=2, reasons=(note, *found.reasons))
-    return Operation(op.number, piece, made, path, frame_of(piece, made, first_datum(op))), ""
+    return Operation(op.number, piece, op.tool, made, path, frame_of(piece, made, first_datum(op))), ""

@@ -17,7 +17,6 @@ from toolaxis.search.infeasibility import corner_too_large, tight_fillet
 from toolaxis.search.messages import LEFT_OVER, left_reasons, tells_of_left
 from toolaxis.shape.measure import mean_width
 from toolaxis.strategies.registry import strategy_of
-from toolaxis.tools.tool import Tool
 
 #: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
 #: than this share of it: what it machines is not worth an operation.
@@ -68,7 +67,7 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
             made.append(op)
             continue
         try:
-            why = "" if mean_width(op.face) >= 2 * plan.tool.radius else _too_tight(plan, op, progress)
+            why = "" if mean_width(op.face) >= 2 * op.tool.radius else _too_tight(plan, op, progress)
             made.append(_leave_whole(op, why) if why else op)
         except Cancelled:
             raise
@@ -79,7 +78,7 @@ def _without_fillets(plan: Plan, progress: Progress) -> Plan:
 
 def _too_tight(plan: Plan, op: Operation, progress: Progress) -> str:
     """Why a face without an axis is one for a smaller tool; empty where it need not be."""
-    tight = tight_fillet(op.face, plan.tool)
+    tight = tight_fillet(op.face, op.tool)
     if tight:
         return f"{tight}, for which no axis was found: a ball end no larger than that reaches it"
     return corner_too_large(search_task(plan, op, progress).feasibility)
@@ -112,7 +111,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     if not zones:
         return ()
     height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
-    others = [Excess(op.face, plan.tool, other.path, height) for other in plan.operations
+    others = [Excess(op.face, other.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
     return tuple(also_machined(op.face, zone, others) for zone in zones)
 
@@ -132,17 +131,16 @@ def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> O
     Cancelled
         When the user asked to stop.
     """
-    return describe_zones(op, zones_of(plan, op, progress), plan.tool)
+    return describe_zones(op, zones_of(plan, op, progress))
 
 
-def describe_zones(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operation:
+def describe_zones(op: Operation, zones: tuple[Zone, ...]) -> Operation:
     """An operation with its zones, their share, the width of its strips over the rest, and what is to be said of them.
 
     Parameters
     ----------
     op : Operation
     zones : tuple of Zone
-    tool : Tool
 
     Returns
     -------
@@ -151,7 +149,7 @@ def describe_zones(op: Operation, zones: tuple[Zone, ...], tool: Tool) -> Operat
     """
     found, area = op.orientation, op.face.area
     at_walls = min(1.0, sum(zone.area for zone in zones if zone.at_wall) / area)
-    if at_walls > WHOLLY and mean_width(op.face) < 2 * tool.radius:
+    if at_walls > WHOLLY and mean_width(op.face) < 2 * op.tool.radius:
         return _leave_whole(op, f"the best axis would leave {100 * at_walls:.1f} % of it")
     notes = (*left_reasons(zones, op.face), *(why for why in found.reasons if not tells_of_left(why)))
     width = area * (1 - at_walls) / found.length if found.length > 0 else 0.0
@@ -164,4 +162,4 @@ def _leave_whole(op: Operation, why: str) -> Operation:
     reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {LEFT_OVER} as a whole: {why}"
     none = Orientation(None, op.orientation.feed, reasons=(reason, *op.orientation.reasons), unreached=1.0,
                        evaluations=op.orientation.evaluations, map=op.orientation.map, lobes=op.orientation.lobes)
-    return Operation(op.number, op.face, none, zones=(Zone(op.face.outline, op.face.area),))
+    return Operation(op.number, op.face, op.tool, none, zones=(Zone(op.face.outline, op.face.area),))

@@ -49,10 +49,10 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     op : Operation
     progress : Progress
     """
-    return task(op.face, plan.tool, plan.inputs.scallop, _limits(plan),
+    return task(op.face, op.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
                 part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
-                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds_of(plan.inputs),
+                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds_of(plan.inputs.at_rates_of(op.tool)),
                 progress=progress)
 
 
@@ -116,8 +116,8 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
         found, path = evaluate_given_axis(job, axis, feed)
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if path is None:
-        return Operation(op.number, op.face, found)
-    return Operation(op.number, op.face, found, path, frame_of(op.face, found, plan.datum), job.left_by(path))
+        return Operation(op.number, op.face, op.tool, found)
+    return Operation(op.number, op.face, op.tool, found, path, frame_of(op.face, found, plan.datum), job.left_by(path))
 
 
 def evaluate_given_axis(task: FaceProblem, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation,

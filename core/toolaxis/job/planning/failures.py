@@ -1,6 +1,7 @@
 """A face on which the program itself failed: its operation, and the text that tells others what happened."""
 
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict
 
 from toolaxis import __version__
@@ -9,21 +10,23 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
 
 
-def fail_face(number: int, face: Face, fault: Fault, notes: tuple[str, ...] = ()) -> Operation:
+def fail_face(number: int, face: Face, tool: Tool, fault: Fault, notes: tuple[str, ...] = ()) -> Operation:
     """The operation of a face on which the program failed.
 
     Parameters
     ----------
     number : int
     face : Face
+    tool : Tool
     fault : Fault
     notes : tuple of str
         Reasons that stand beside it.
     """
     none = Orientation(None, outcome="failed", reasons=(fault.sentence, *notes))
-    return Operation(number, face, none, traceback=fault.traceback)
+    return Operation(number, face, tool, none, traceback=fault.traceback)
 
 
 def fail_operation(op: Operation, fault: Fault) -> Operation:
@@ -34,7 +37,7 @@ def fail_operation(op: Operation, fault: Fault) -> Operation:
     op : Operation
     fault : Fault
     """
-    return fail_face(op.number, op.face, fault, op.orientation.reasons)
+    return fail_face(op.number, op.face, op.tool, fault, op.orientation.reasons)
 
 
 def failure_text(plan: Plan, op: Operation) -> str:
@@ -48,7 +51,7 @@ def failure_text(plan: Plan, op: Operation) -> str:
     """
     numbers = ", ".join(map(str, op.face.numbers))
     face = f"sub-surface {op.face.label}, face {numbers}, {op.face.kind}"
-    return _text(plan, f"{op.name}: {op.orientation.reasons[0]}", face, op.traceback)
+    return _text(plan, (op.tool,), f"{op.name}: {op.orientation.reasons[0]}", face, op.traceback)
 
 
 def fault_text(plan: Plan, fault: Fault) -> str:
@@ -59,12 +62,10 @@ def fault_text(plan: Plan, fault: Fault) -> str:
     plan : Plan
     fault : Fault
     """
-    return _text(plan, fault.sentence, f"all {len(plan.operations)} operations", fault.traceback)
+    return _text(plan, plan.tools, fault.sentence, f"all {len(plan.operations)} operations", fault.traceback)
 
 
-def _text(plan: Plan, sentence: str, what: str, traceback: str) -> str:
-    tool = plan.tool
-    holder = "with holder" if "holder" in tool.outlines else "without holder"
+def _text(plan: Plan, tools: Sequence[Tool], sentence: str, what: str, traceback: str) -> str:
     machine = "no machine" if plan.machine is None else plan.machine.machine.name
     lines = (sentence,
              "",
@@ -72,8 +73,13 @@ def _text(plan: Plan, sentence: str, what: str, traceback: str) -> str:
              "",
              f"toolaxis {__version__}, Python {platform.python_version()}, {platform.platform()}",
              f"{plan.part.source or 'part without a file'}, {what}",
-             f"{tool.name} {holder}, stickout {tool.stickout} mm, {machine}",
+             f"{'; '.join(map(_describe, tools))}, {machine}",
              ", ".join(f"{name} {value}" for name, value in asdict(plan.inputs).items()),
              "",
              traceback.rstrip() or "no traceback is known")
     return "\n".join(lines) + "\n"
+
+
+def _describe(tool: Tool) -> str:
+    holder = "with holder" if "holder" in tool.outlines else "without holder"
+    return f"{tool.name} {holder}, stickout {tool.stickout} mm"

@@ -204,7 +204,7 @@ class PlanningJob:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
         options: tuple[Option, ...] = ()
         order = [face.number for face in (*faces, *self.whole)]
-        given = targets_of_given(self.part, self.division, order)
+        given = targets_of_given(self.part, self.division, order, self.tool)
         pieces = smooth_pieces((face for face in faces if face.number not in given), self.tool)
         faces = [target.face for target in pieces if target.ended is None]
         try:
@@ -234,7 +234,8 @@ class PlanningJob:
         """The operations of sub-surfaces as far as they were made, and whether the user stopped that."""
         done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
                        self.workers, progress)
-        made = {**done.results, **{k: fail_face(k + 1, targets[k].face, why) for k, why in done.faults.items()}}
+        made = {**done.results,
+                **{k: fail_face(k + 1, targets[k].face, self.tool, why) for k, why in done.faults.items()}}
         return tuple(replace(made[k], face=targets[k].face) for k in sorted(made)), done.cancelled
 
     @property
@@ -321,7 +322,7 @@ class PlanningJob:
             except ToolAxisError:  # Cancelled among them
                 raise
             except Exception as reason:
-                targets = _without(targets, reason)
+                targets = _without(targets, self.tool, reason)
         return np.empty((0, 3)), targets
 
     def empty(self) -> Plan:
@@ -329,7 +330,7 @@ class PlanningJob:
         return self._plan((), "cancelled", ())
 
     def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
-        return Plan(self.part, self.tool, self.inputs, operations, self.bodies, self.datum, outcome, options,
+        return Plan(self.part, (self.tool,), self.inputs, operations, self.bodies, self.datum, outcome, options,
                     machine=self.machine, at_points=self._strategy.at_points)
 
     def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
@@ -359,9 +360,9 @@ class PlanningJob:
         for k, face in enumerate(faces):
             one = found.results.get(k)
             if one is None:
-                targets.append(lost_face(face, found.faults[k]))
+                targets.append(lost_face(face, self.tool, found.faults[k]))
             elif isinstance(one, ToolAxisError):  # this face cannot be divided so; the others can
-                targets.append(Target(face, ended=_refuse_face(1, face, one)))
+                targets.append(Target(face, ended=_refuse_face(1, face, self.tool, one)))
             else:
                 targets += [Target(piece, axis) for piece, axis in zip_longest(one.faces, one.axes)]
         return targets
@@ -382,7 +383,7 @@ class PlanningJob:
             except ToolAxisError:  # Cancelled among them
                 raise
             except Exception as reason:
-                ended.append(lost_face(face, fault(reason)))
+                ended.append(lost_face(face, self.tool, fault(reason)))
         dividers = [one for one in every if len(one.best.known)] or every
         ended += [Target(one.job.worth.face) for one in every if one not in dividers]
         while dividers:
@@ -392,7 +393,7 @@ class PlanningJob:
             except ToolAxisError:
                 raise
             except Exception as reason:
-                left = _without([Target(one.job.worth.face) for one in dividers], reason)
+                left = _without([Target(one.job.worth.face) for one in dividers], self.tool, reason)
                 ended += [target for target in left if target.ended is not None]
                 dividers = [one for one, target in zip(dividers, left, strict=True) if target.ended is None]
         return ended, ()
@@ -436,7 +437,7 @@ class PlanningJob:
                 found, path = self._plan_with_shared_axis(target, inner)
             if found.axis is None and self.inputs.method == "one":
                 why = found.reasons or ("no axis found that all sub-surfaces allow",)
-                return Operation(number, face, replace(found, reasons=why))
+                return Operation(number, face, self.tool, replace(found, reasons=why))
             if found.axis is None and (given is None or self._strategy.moves):
                 refused = found.reasons
                 found, path = self._search_axis(face, axis, inner)
@@ -444,12 +445,14 @@ class PlanningJob:
         except Cancelled:
             raise
         except OutOfWork as reason:
-            return Operation(number, face, Orientation(None, outcome="not_found", reasons=(str(reason),)))
+            none = Orientation(None, outcome="not_found", reasons=(str(reason),))
+            return Operation(number, face, self.tool, none)
         except ToolAxisError as reason:  # this face cannot be done; the others can
-            return _refuse_face(number, face, reason)
+            return _refuse_face(number, face, self.tool, reason)
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
-        return Operation(number, face, found, path, None if path is None else frame_of(face, found, self.datum))
+        frame = None if path is None else frame_of(face, found, self.datum)
+        return Operation(number, face, self.tool, found, path, frame)
 
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
@@ -487,14 +490,14 @@ class PlanningJob:
 
     def _task(self, face: Face, progress: Progress) -> FaceProblem:
         return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
-                           objective=self.inputs.objective, feeds=feeds_of(self.inputs), part=self.part,
-                           allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
+                           objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
+                           part=self.part, allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, passes=self.inputs.passes, progress=progress)
 
 
-def _refuse_face(number: int, face: Face, reason: ToolAxisError) -> Operation:
+def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:
     """The operation of a face that cannot be done, in the words of an exception."""
-    return Operation(number, face, Orientation(None, reasons=(f"no axis found: {reason}",)))
+    return Operation(number, face, tool, Orientation(None, reasons=(f"no axis found: {reason}",)))
 
 
 def _outcome(operations: Sequence[Operation]) -> str:
@@ -502,12 +505,12 @@ def _outcome(operations: Sequence[Operation]) -> str:
     return "complete" if all(op.done for op in operations) else "incomplete"
 
 
-def _without(targets: list[Target], reason: Exception) -> list[Target]:
+def _without(targets: list[Target], tool: Tool, reason: Exception) -> list[Target]:
     """Targets, that one ended on which the program failed; all of them where nobody knows which it was."""
     why, piece = fault(reason), piece_of(reason)
     guilty = {target.face.label for target in targets if target.face.label == piece} or {
         target.face.label for target in targets}
-    return [lost_face(target.face, why) if target.ended is None and target.face.label in guilty else target
+    return [lost_face(target.face, tool, why) if target.ended is None and target.face.label in guilty else target
             for target in targets]
 
 

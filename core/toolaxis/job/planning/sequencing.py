@@ -21,6 +21,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
 from toolaxis.plan.timing import Order
 from toolaxis.shape.bounding.bounding_tree import forest
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -49,6 +50,7 @@ def sequence_operations(plan: Plan, reorder: bool = False) -> Plan:
     Parameters
     ----------
     plan : Plan
+        With one tool.
     reorder : bool
         Whether operations may be put in another order; they are then numbered in it.
 
@@ -60,8 +62,9 @@ def sequence_operations(plan: Plan, reorder: bool = False) -> Plan:
     """
     if plan.machine is None:
         return plan
-    mounting = replace(plan.machine, tool_length=plan.tool.gauge_length)
-    around = _around(plan)
+    tool, = plan.tools
+    mounting = replace(plan.machine, tool_length=tool.gauge_length)
+    around = _around(plan, tool)
     found: list[tuple[list[_State], str]] = []
     for op in plan.operations:
         with about(op.face.label):
@@ -120,12 +123,12 @@ def _has_fixed_axis(op: Operation) -> bool:
     return op.path is not None and len(op.path.cl) > 0 and bool(np.ptp(op.path.axis, axis=0).max() < 1e-9)
 
 
-def _around(plan: Plan) -> MachineSurroundings:
+def _around(plan: Plan, tool: Tool) -> MachineSurroundings:
     """Part and obstacles, and the distance that machine bodies keep."""
     bodies = [plan.part, *plan.obstacles]
     judged = plan.machine is not None and plan.machine.machine.bodies
     faces = tuple(forest(body.faces, FLAT / 10) for body in bodies if len(body.faces)) if judged else ()
-    return MachineSurroundings(plan.tool, faces, plan.inputs.tolerance.holder_clearance)
+    return MachineSurroundings(tool, faces, plan.inputs.tolerance.holder_clearance)
 
 
 def _states(mounting: Mounting, op: Operation, around: MachineSurroundings) -> tuple[list[_State], str]:
@@ -259,7 +262,7 @@ def _put(plan: Plan, rows: Sequence[list[_State]], way: _Way, order: Order | Non
     operations = list(plan.operations)
     if any(a is not b for a, b in zip(listed, moved, strict=True)):
         operations = [*moved, *(op for op in plan.operations if id(op) not in stood)]
-    numbers = {op.number: k for k, op in enumerate(operations, 1)}
+    numbers = dict(zip([op.number for op in operations], sorted(op.number for op in operations), strict=True))
     made = tuple(replace(op, number=numbers[op.number], rotary=tuple(stood[id(op)].tolist()) if id(op) in stood else ())
                  for op in operations)
     blades = None if plan.blades is None else plan.blades.renumbered(numbers)

@@ -78,7 +78,7 @@ def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Targ
         pieces = f" in {len(division.rest)} places" if len(division.rest) > 1 else ""
         words = f"none of the {division.tried} axes tried reaches {part.area:.1f} mm2{pieces} of face {face.label}"
         none = Orientation(None, outcome="not_found", reasons=(words, *whole.orientation.reasons))
-        targets.append(Target(part, ended=Operation(1, part, none)))
+        targets.append(Target(part, ended=Operation(1, part, whole.tool, none)))
     return targets
 
 
@@ -104,7 +104,8 @@ def read_division(path: str | Path) -> tuple[SubSurface, ...]:
     return division_from(document)
 
 
-def targets_of_given(part: Part, division: Sequence[SubSurface], numbers: Iterable[int]) -> dict[int, list[Target]]:
+def targets_of_given(part: Part, division: Sequence[SubSurface], numbers: Iterable[int],
+                     tool: Tool) -> dict[int, list[Target]]:
     """Targets for the faces whose division is given, by the faces' numbers.
 
     Parameters
@@ -114,6 +115,7 @@ def targets_of_given(part: Part, division: Sequence[SubSurface], numbers: Iterab
         Those of other faces are left aside.
     numbers : iterable of int
         The faces that are planned.
+    tool : Tool
 
     Raises
     ------
@@ -134,19 +136,20 @@ def targets_of_given(part: Part, division: Sequence[SubSurface], numbers: Iterab
         except ToolAxisError:
             raise
         except Exception as reason:
-            found[number] = [lost_face(whole, fault(reason))]
+            found[number] = [lost_face(whole, tool, fault(reason))]
     return found
 
 
-def lost_face(face: Face, why: Fault) -> Target:
+def lost_face(face: Face, tool: Tool, why: Fault) -> Target:
     """A face on which the program failed before an axis was looked for.
 
     Parameters
     ----------
     face : Face
+    tool : Tool
     why : Fault
     """
-    return Target(face, ended=fail_face(1, face, why))
+    return Target(face, ended=fail_face(1, face, tool, why))
 
 
 def why_faceted(face: Face, tool: Tool) -> str:
@@ -176,18 +179,18 @@ def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:
     for face in faces:
         try:
             why = why_faceted(face, tool)
-            found += [_leave_whole(face, why)] if why else map(Target, split_at_kinks(face))
+            found += [_leave_whole(face, tool, why)] if why else map(Target, split_at_kinks(face))
         except Cancelled:
             raise
         except Exception as reason:
-            found.append(lost_face(face, fault(reason)))
+            found.append(lost_face(face, tool, fault(reason)))
     return found
 
 
-def _leave_whole(face: Face, why: str) -> Target:
+def _leave_whole(face: Face, tool: Tool, why: str) -> Target:
     """A face that is left to clean-up before an axis was looked for."""
     none = Orientation(None, outcome="not_found", reasons=(why,))
-    return Target(face, ended=Operation(1, face, none, zones=(Zone(face.outline, face.area),)))
+    return Target(face, ended=Operation(1, face, tool, none, zones=(Zone(face.outline, face.area),)))
 
 
 def not_divided(part: Part, division: Sequence[SubSurface]) -> tuple[str, ...]:

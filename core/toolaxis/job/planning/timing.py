@@ -1,5 +1,6 @@
 """The time of a plan on its machine: paths within the axes' limits, and what lies between them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
@@ -16,7 +17,7 @@ from toolaxis.machine.kinematics import linear_coordinates
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, PlanInputs
-from toolaxis.plan.timing import CRAWLING, MOTION_WARNINGS, UNTIMED, MachiningTime
+from toolaxis.plan.timing import CRAWLING, MOTION_WARNINGS, UNTIMED, MachiningTime, Order
 
 Array = NDArray[np.float64]
 
@@ -38,13 +39,34 @@ def add_times(plan: Plan, reorder: bool = False) -> Plan:
     ----------
     plan : Plan
     reorder : bool
-        Whether operations may be put in the order that takes least time between them, see `sequencing`.
+        Whether operations of one tool may be put in the order that takes least time between them, see `sequencing`.
     """
+    made = [_add_times_of_tool(one, reorder) for one in plan.by_tool()]
+    if len(made) == 1:
+        return replace(made[0], tools=plan.tools, inputs=plan.inputs)
+    outcome = plan.outcome
+    if outcome == "complete" and any(one.outcome != "complete" for one in made):
+        outcome = "incomplete"
+    return replace(plan, operations=tuple(op for one in made for op in one.operations), outcome=outcome,
+                   order=_add_orders([one.order for one in made]),
+                   in_the_way=tuple(f"{one.named_tools}: {why}" for one in made for why in one.in_the_way))
+
+
+def _add_orders(orders: Sequence[Order | None]) -> Order | None:
+    """What the orders of several tools' operations save together."""
+    known = [one for one in orders if one is not None]
+    if not known:
+        return None
+    return Order(*(sum(getattr(one, name) for one in known) for name in ("seconds", "listed", "bound")))
+
+
+def _add_times_of_tool(plan: Plan, reorder: bool) -> Plan:
+    """A plan with one tool with angles and times."""
     plan = plan if reorder and plan.order is not None else sequence_operations(plan, reorder)
     plain = replace(plan, operations=tuple(replace(op, time=None) for op in plan.operations))
     if plan.machine is None or plan.machine.machine.unstated:
         return plain
-    mounting = replace(plan.machine, tool_length=plan.tool.gauge_length)
+    mounting = replace(plan.machine, tool_length=plan.tools[0].gauge_length)
     stand, last, done = np.zeros(len(mounting.machine.rotary)), None, []
     for op in plan.operations:
         if op.path is None:

@@ -29,7 +29,7 @@ class Fanuc(Dialect):
     def start(self, program: ProgramContext) -> Lines:
         """Number, modes, plane off, Z to its reference point, tool, spindle."""
         return ["%", "O0001", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", *self.cancelled(),
-                *self.retracted(program), "T1 M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
+                *self.retracted(program), f"T{program.tool_number} M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
 
     def cancelled(self) -> Lines:
         """The block that cancels the plane."""
@@ -96,7 +96,7 @@ class FanucTip(TipControl):
 
     def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then control of the tip."""
-        return [*program.unclamp, f"G0 {self.orientation(program, course, 0)}", "G43.4 H1"]
+        return [*program.unclamp, f"G0 {self.orientation(program, course, 0)}", f"G43.4 H{program.tool_number}"]
 
     def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Control of the tip off, retract."""

@@ -30,7 +30,7 @@ class LinuxCnc(Iso):
         """Modes with the passes' chord tolerance as that of the path, retract, tool, spindle."""
         return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{program.inputs.chord:.4f}",
                 *self.cancelled(),
-                "G54", *self.retracted(program), "T1 M6", f"S{program.inputs.spindle:.0f} M3"]
+                "G54", *self.retracted(program), f"T{program.tool_number} M6", f"S{program.inputs.spindle:.0f} M3"]
 
     def retracted(self, program: ProgramContext) -> Lines:
         """Z to the machine coordinate at which rotary axes may turn."""

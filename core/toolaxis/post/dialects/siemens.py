@@ -37,7 +37,7 @@ class Siemens(Dialect):
 
     def start(self, program: ProgramContext) -> Lines:
         """Modes, swivel frames deleted, straight rapids, tool, spindle."""
-        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", "T1 D1", "M6", "G54",
+        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", f"T{program.tool_number} D1", "M6", "G54",
                 f"S{program.inputs.spindle:.0f} M3"]
 
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
@@ -60,7 +60,7 @@ class Siemens(Dialect):
         """A block that is a comment."""
         return "; " + super().comment(text)[1:-1]
 
-    def tool_length(self) -> str:
+    def tool_length(self, program: ProgramContext) -> str:
         """Nothing: D1 holds."""
         return ""
 
@@ -95,7 +95,7 @@ class SiemensTip(TipControl):
 
     def start(self, program: ProgramContext) -> Lines:
         """Modes, transformations and frames off, tool, spindle, retract."""
-        return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", "T1 D1", "M6", "G54",
+        return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", f"T{program.tool_number} D1", "M6", "G54",
                 f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
 
     def begin(self, program: ProgramContext, course: TcpPath) -> Lines:

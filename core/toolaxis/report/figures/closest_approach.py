@@ -71,16 +71,16 @@ def tightest_picture(plan: Plan, op: Operation, at: ToolPlace) -> Figure:
     back = _open_side(plan, np.cross(axis, aside), at)
     made = figure(12.0, 6.6)
     whole, close = made.subplots(1, 2)
-    outlines = tool_outlines(plan.tool, 8 * plan.tool.radius)
+    outlines = tool_outlines(op.tool, 8 * op.tool.radius)
     ends = np.concatenate([at.tip + line[:, 1:] * axis + sign * line[:, :1] * aside
                            for line in outlines.values() for sign in (1, -1)])
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
     _draw(whole, plan, op, (at, outlines, camera(back, axis, np.concatenate([ends, corners]), pixels=900)))
-    span = 2.2 * plan.tool.radius + 1.5 * max(at.distance, 0.0)
+    span = 2.2 * op.tool.radius + 1.5 * max(at.distance, 0.0)
     middle = 0.7 * at.place + 0.3 * (at.tip + ((at.place - at.tip) @ axis) * axis)
     around = np.array([middle + x * aside + y * axis for x in (-span, span) for y in (-span, span)])
     _draw(close, plan, op, (at, outlines, camera(back, axis, around, pixels=800)))
-    whole.set_title(f"{op.name}: {plan.tool.name} where it is tightest", fontsize=10)
+    whole.set_title(f"{op.name}: {op.tool.name} where it is tightest", fontsize=10)
     close.set_title(f"{at.component} at least {at.distance:.3f} mm from face {at.face}", fontsize=10)
     near = {} if at.face == op.face.number else {f"face {at.face}, nearest": _NEAR}
     areas = {"machined face": _MACHINED, **near, "part": _PART, **{name: _COLOURS[name] for name in outlines}}

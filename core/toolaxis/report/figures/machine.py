@@ -1,6 +1,7 @@
 """The machine at each orientation of a plan: its bodies with part, tool and holder, seen from the front."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
@@ -54,24 +55,24 @@ def machine_picture(plan: Plan) -> Figure:
         With a machine that has bodies, the part's place, and operations whose rotary angles are known.
     """
     assert plan.machine is not None
-    mounting = Mounting(plan.machine.machine, plan.machine.table_from_part, plan.tool.gauge_length)
     groups = orientations_of(plan)
     shown = groups[:_MOST]
     made = figure(4.6 * min(len(shown), _ROW), 4.9 * -(-len(shown) // _ROW) + 0.5)
     axes = np.atleast_1d(made.subplots(-(-len(shown) // _ROW), min(len(shown), _ROW))).ravel()
     for ax, group in zip(axes, shown, strict=False):
-        seen, canvas = _panel(plan, mounting, group)
+        seen, canvas = _panel(plan, group)
         ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
         names = ", ".join(op.name for op in group[:2]) + (f" and {len(group) - 2} more" if len(group) > 2 else "")
         angles = "  ".join(f"{axis.name} {degrees(angle) + 0.0:.2f}°" for axis, angle in
-                           zip(mounting.machine.rotary, group[0].rotary, strict=True))
+                           zip(plan.machine.machine.rotary, group[0].rotary, strict=True))
         ax.set_title(f"{names}\n{angles}", fontsize=9)
         scale_bar(ax, seen)
     for ax in axes:
         bare(ax)
     left = f", the first {_MOST} of {len(groups)} orientations" if len(groups) > _MOST else ""
-    assumed = " (bodies assumed)" if any("bod" in word or "every" in word for word in mounting.machine.assumed) else ""
-    made.suptitle(f"{mounting.machine.name}{assumed}{left}", fontsize=10)
+    machine = plan.machine.machine
+    assumed = " (bodies assumed)" if any("bod" in word or "every" in word for word in machine.assumed) else ""
+    made.suptitle(f"{machine.name}{assumed}{left}", fontsize=10)
     areas = {"table's side": _TABLE, "spindle's side": _HEAD, "part": _PART, "machined": _MACHINED, **_TOOL}
     made.legend(handles=[Patch(facecolor=colour, edgecolor="#555555", linewidth=0.5, label=name)
                          for name, colour in areas.items()], loc="outside lower center", ncol=7, fontsize=8,
@@ -86,13 +87,14 @@ def has_machine_picture(plan: Plan) -> bool:
     ----------
     plan : Plan
     """
-    if plan.machine is None or not plan.machine.machine.bodies or plan.tool.gauge_length is None:
+    if plan.machine is None or not plan.machine.machine.bodies:
         return False
-    return plan.machine.table_from_part is not None and bool(orientations_of(plan))
+    return plan.machine.table_from_part is not None and any(
+        group[0].tool.gauge_length is not None for group in orientations_of(plan))
 
 
 def orientations_of(plan: Plan) -> list[list[Operation]]:
-    """Operations with known rotary angles, those that stand at one place together, in their order.
+    """Operations with known rotary angles, those that stand at one place with one tool together, in their order.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def orientations_of(plan: Plan) -> list[list[Operation]]:
     groups: list[list[Operation]] = []
     for op in plan.operations:
         if op.done and (op.rotary or plan.machine is None or not plan.machine.machine.rotary):
-            same = next((some for some in groups if np.allclose(some[0].rotary, op.rotary, atol=1e-6)), None)
+            same = next((some for some in groups if some[0].tool == op.tool and np.allclose(some[0].rotary, op.rotary, atol=1e-6)), None)
             if same is None:
                 groups.append([op])
             else:
@@ -109,10 +111,12 @@ def orientations_of(plan: Plan) -> list[list[Operation]]:
     return groups
 
 
-def _panel(plan: Plan, mounting: Mounting, group: Sequence[Operation]) -> tuple[Camera, Canvas]:
+def _panel(plan: Plan, group: Sequence[Operation]) -> tuple[Camera, Canvas]:
     """One orientation: everything in machine coordinates, the tool in the middle of the first operation's cuts."""
-    op, machine = group[0], mounting.machine
-    assert op.path is not None
+    op = group[0]
+    assert op.path is not None and plan.machine is not None
+    mounting = replace(plan.machine, tool_length=op.tool.gauge_length)
+    machine = mounting.machine
     rotary = np.array(op.rotary)
     cuts = op.path.cl[op.path.kind == Motion.CUT]
     tip = cuts[len(cuts) // 2] if len(cuts) else op.path.cl[0]
@@ -137,7 +141,7 @@ def _panel(plan: Plan, mounting: Mounting, group: Sequence[Operation]) -> tuple[
         colour = (_MACHINED if face.number in machined else _PART) if own else _OBSTACLE
         points, ways = face_splats(face, seen)
         canvas.splat(_move_points(points, bed_from_part), ways @ bed_from_part[:3, :3].T, colour)
-    for name, line in tool_outlines(plan.tool, 0.0).items():
+    for name, line in tool_outlines(op.tool, 0.0).items():
         points, ways = splats_of_revolution(line, foot, axis, seen.pixel)
         canvas.splat(points, ways, _TOOL[name])
     for one in (canvas, head):

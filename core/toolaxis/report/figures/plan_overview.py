@@ -66,7 +66,7 @@ def overview_picture(plan: Plan) -> Figure:
         if op.done or outcome_of([op], plan.blades) == "incomplete":
             _arrow(ax, op, (foot, tip), at_feet)
     done = sum(op.done for op in plan.operations)
-    ax.set_title(f"{plan.tool.name}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
+    ax.set_title(f"{plan.named_tools}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
                  f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
     if any(op.zones or not op.done for op in operations):
         ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)

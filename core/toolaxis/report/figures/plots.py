@@ -97,7 +97,7 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
                     f"cutting length {op.orientation.length:.0f} mm", fontsize=10)
     lead, shown = op.orientation.lead, ", ".join(f"{value:+.3f}" for value in axis)
     said = f"axis ({shown})" if lead is None else f"the axis moves, lead {np.degrees(lead):+.2f} deg"
-    whole.set_title(f"{plan.tool.name}, {said}", fontsize=10)
+    whole.set_title(f"{op.tool.name}, {said}", fontsize=10)
     return made
 
 
@@ -176,7 +176,7 @@ def cutting_lines(path: ToolPath) -> list[Array]:
 def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -> None:
     assert op.path is not None and op.frame is not None
     tip, axis = standing(op.path)
-    outlines = tool_outlines(plan.tool, 8 * plan.tool.radius)
+    outlines = tool_outlines(op.tool, 8 * op.tool.radius)
     ends = np.array([tip + z * axis + r * side for line in outlines.values() for r, z in line
                      for side in (op.frame.x, -op.frame.x, op.frame.y, -op.frame.y)])
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])

@@ -98,7 +98,7 @@ def _setup(plan: Plan, op: Operation) -> list[str]:
     frame = op.frame
     assert frame is not None
     angles = [" / ".join(f"{angle:.3f}" for angle in np.degrees(row) + 0.0)
-              for row in rotary_of(plan.machine, op, plan.tool.gauge_length)]
+              for row in rotary_of(plan.machine, op, op.tool.gauge_length)]
     axis = _vector(frame.z, 6)
     if op.orientation.lead is not None:
         axis = f"moves, lead {np.degrees(op.orientation.lead):+.3f}°; mean {axis}"
@@ -191,12 +191,12 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     names = {"gouge": "machining tolerance"}
     rows += [[names.get(name, f"tolerance {name.replace('_', ' ')}"), _tolerance(name, value)]
              for name, value in tolerance.items()]
-    tool = plan.tool
-    rows += [["tool", tool.name], ["tool kind", tool.kind], ["cutter radius", f"{tool.radius:g} mm"],
-             ["corner radius", f"{tool.corner_radius:g} mm"], ["half angle", f"{np.degrees(tool.half_angle):g}°"],
-             ["cutting edge", f"{tool.flute_length:g} mm"],
-             ["stick-out", "not given" if tool.stickout is None else f"{tool.stickout:g} mm"],
-             ["shank (radius, z)", _outline(tool.shank)], ["holder (radius, z)", _outline(tool.holder)]]
+    for tool in plan.used_tools:
+        rows += [["tool", tool.title or tool.name], ["tool kind", tool.kind],
+                 ["cutter radius", f"{tool.radius:g} mm"], ["corner radius", f"{tool.corner_radius:g} mm"],
+                 ["half angle", f"{np.degrees(tool.half_angle):g}°"], ["cutting edge", f"{tool.flute_length:g} mm"],
+                 ["stick-out", "not given" if tool.stickout is None else f"{tool.stickout:g} mm"],
+                 ["shank (radius, z)", _outline(tool.shank)], ["holder (radius, z)", _outline(tool.holder)]]
     rows += [["part", source or "given as faces"], ["datum", f"{_vector(plan.datum, 4)} mm"],
              ["unit of the part's file", plan.part.unit or "mm"],
              ["faces of the part", str(len((plan.part.original or plan.part).faces))],

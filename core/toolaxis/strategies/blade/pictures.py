@@ -18,6 +18,7 @@ from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.plan import CLEARANCES, BladeSearch
 from toolaxis.strategies.blade.schedule import CLEARANCE, ScheduledLayer, SwivelAxis, schedule_layers
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ def draw_blade(plan: Plan, op: Operation, job: FaceProblem, folder: Path, curve:
         return
     angles = {**others, **{title: one.curve.at(s)[0] for title, one in curves.items()}}
     speed = plan.inputs.feedrate / 60
-    motions = {title: _motion(plan, first, (search.swing, theta), s, speed) for title, theta in angles.items()}
+    motions = {title: _motion((plan, op.tool), first, (search.swing, theta), s, speed) for title, theta in angles.items()}
     axes_picture(motions, speed, name).savefig(folder / f"{op.name}-motion.png")
 
 
@@ -72,14 +73,15 @@ def _clearance(op: Operation) -> float:
     return CLEARANCES[min(len(refused), len(CLEARANCES) - 1)] if refused else CLEARANCE
 
 
-def _motion(plan: Plan, one: ScheduledLayer, turned: tuple[SwivelAxis, Array], s: Array, speed: float) -> AxisMotion:
+def _motion(done: tuple[Plan, Tool], one: ScheduledLayer, turned: tuple[SwivelAxis, Array], s: Array, speed: float) -> AxisMotion:
     """What the machine's axes do with tool angles along a section."""
+    plan, tool = done
     swing, theta = turned
     assert plan.machine is not None
     x, y = swing.plane
     flat = SmoothSection(one.section).points(s)
     axis = swing.axes(theta)
-    tips = flat[:, :1] * x + flat[:, 1:] * y - plan.tool.corner_radius * axis
+    tips = flat[:, :1] * x + flat[:, 1:] * y - tool.corner_radius * axis
     path = ToolPath(tips, tips, axis, axis, np.zeros(len(s), dtype=np.int8), np.array([0, len(s)]))
     return axis_motion(plan.machine.machine, path, s, speed, plan.machine.table_from_part)
 

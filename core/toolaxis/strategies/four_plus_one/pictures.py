@@ -58,7 +58,7 @@ def turning_of(plan: Plan, op: Operation) -> FreeAxisMotion | None:
     mounting, path = plan.machine, op.path
     if mounting is None or path is None or len(mounting.machine.rotary) != 2:
         return None
-    along = following(mounting.machine, path, mounting.table_from_part, float(plan.tool.gauge_length or 0.0))
+    along = following(mounting.machine, path, mounting.table_from_part, float(op.tool.gauge_length or 0.0))
     rotary = along.rotary[np.searchsorted(along.arrival, np.arange(len(path.cl)), side="right") - 1]
     which = int(np.argmin(np.ptp(rotary, axis=0)))
     if np.ptp(rotary[:, which]) > _STILL:

@@ -50,7 +50,7 @@ def draw_fixed_axis(plan: Plan, op: Operation, task: FaceProblem, folder: Path) 
         hemisphere_picture(op.orientation.map, op.face.area, _mean_normal(op.face), marks,
                            op.name).savefig(folder / f"{op.name}-axes.png")
     if op.done:
-        widths_picture(width_lines(plan, op, task), (op.face, plan.tool),
+        widths_picture(width_lines(plan, op, task), (op.face, op.tool),
                        op.name).savefig(folder / f"{op.name}-widths.png")
     if op is studied and op.orientation.pattern == ISO:  # the estimate is one of passes along parameters
         _draw_study(plan, op, task, folder)
@@ -116,14 +116,14 @@ def width_lines(plan: Plan, op: Operation, job: FaceProblem) -> list[tuple[Array
         uv = uv[_reach(uv)]
         if len(uv) > 1:
             along = placed.chart.feed_at(uv)
-            width = strip_width(op.face, plan.tool, uv, axis, plan.inputs.scallop, along).sum(axis=1)
+            width = strip_width(op.face, op.tool, uv, axis, plan.inputs.scallop, along).sum(axis=1)
             lines.append((op.face.evaluate(uv).point, width))
     return lines
 
 
 def _draw_study(plan: Plan, op: Operation, job: FaceProblem, folder: Path) -> None:
     assert op.orientation.axis is not None
-    study = width_study(op.face, plan.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed,
+    study = width_study(op.face, op.tool, op.orientation.axis, plan.inputs.scallop, op.orientation.feed,
                         usable=lambda axis: job.feasibility.witness(axis) is None)
     if len(study.angle) > 1:
         study_picture(study, op.name).savefig(folder / f"{op.name}-estimate.png")

@@ -137,7 +137,7 @@ def path_cut(plan: Plan, op: Operation) -> tuple[MovingCut[PathAxes], Array, Arr
     axis = op.orientation.axis
     assert axis is not None
     axes = PathAxes(feed, np.array([one[0] for one in passes]), tuple(one[1] for one in passes))
-    cut = MovingCut(plan.tool, axis, plan.inputs.scallop, plan.inputs.allowance, field=axes)
+    cut = MovingCut(op.tool, axis, plan.inputs.scallop, plan.inputs.allowance, field=axes)
     return cut, uv, path.axis[rows]
 
 
@@ -153,7 +153,7 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
     face, feed, ra = op.face, op.orientation.feed, plan.inputs.roughness
     cut, uv, axes = path_cut(plan, op)
     thin = slice(None, None, max(len(uv) // _POINTS, 1))
-    wide = section_width(face, plan.tool, uv[thin], axes[thin], plan.inputs.scallop, feed,
+    wide = section_width(face, op.tool, uv[thin], axes[thin], plan.inputs.scallop, feed,
                          plan.inputs.allowance).sum(axis=1)
     seen = spots(face, feed, evaluation_length(ra))
     rough = roughness_at(face, cut, cut.field.steps, seen, evaluation_length(ra))
@@ -169,7 +169,7 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
         names = tuple(axis.name for axis in plan.machine.machine.rotary)
         speeds = _velocities(plan, op, cut)
     return RoughnessStudy(points[0], wide, points[1], 1000 * rough,
-                          expect_widths(plan.tool, NOMINAL, plan.inputs.scallop), 1000 * ra, speeds, names)
+                          expect_widths(op.tool, NOMINAL, plan.inputs.scallop), 1000 * ra, speeds, names)
 
 
 def _velocities(plan: Plan, op: Operation, cut: MovingCut[PathAxes]) -> dict[str, tuple[Array, Array]]:
@@ -185,7 +185,7 @@ def _velocities(plan: Plan, op: Operation, cut: MovingCut[PathAxes]) -> dict[str
     found = {}
     for title, axes in (("planned", cut.axes(op.face, uv)), ("20° lead", axis_from_lead_tilt(
             contact_frame(op.face, uv, cut.feed), radians(20.0), 0.0))):
-        tip = place(op.face, plan.tool, uv, axes, plan.inputs.allowance)
+        tip = place(op.face, op.tool, uv, axes, plan.inputs.allowance)
         path = ToolPath(point, tip, axes, normal, np.full(200, Motion.CUT, dtype=np.int8),
                         np.array([0, 200], dtype=np.int64))
         try:

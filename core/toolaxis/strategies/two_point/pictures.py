@@ -39,7 +39,7 @@ def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
     if not len(some):
         return
     d = op.face.evaluate(uv)
-    setting = ContactSet(op.face, plan.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
+    setting = ContactSet(op.face, op.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
                          plan.inputs.allowance, plan.inputs.tolerance)
     stand = stand_of(setting, op.path.cl[some], op.path.axis[some])
     sides = np.abs(rings(setting, stand).sides).max(axis=1)

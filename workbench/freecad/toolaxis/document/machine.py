@@ -97,7 +97,7 @@ def keep_angles(operation, plan, op):
         if "RotaryAngles" in operation.PropertiesList and not op.done:
             operation.RotaryAngles = []
         return
-    mounted = replace(plan.machine, tool_length=plan.tool.gauge_length)
+    mounted = replace(plan.machine, tool_length=op.tool.gauge_length)
     ensure(operation, _ANGLES)
     if op.orientation.lead is not None:
         assign(operation, RotaryAngles=ranges_along(mounted, op.path))

@@ -191,13 +191,13 @@ def keep_figures(thing, plan):
     from toolaxis.plan.document import orientation_from
     from toolaxis.plan.operation import Operation
 
-    found, face = [], plan.operations[0].face
+    found, face, tool = [], plan.operations[0].face, plan.tools[0]
     for number, one in enumerate(operations_in(thing), 1):
         if one.Motions:
             standing = OperationRecord.of(one)
-            found.append(Operation(number, face, standing.orientation, standing.path, standing.frame))
+            found.append(Operation(number, face, tool, standing.orientation, standing.path, standing.frame))
         else:
-            found.append(Operation(number, face, orientation_from(json.loads(one.AxisMap))))
+            found.append(Operation(number, face, tool, orientation_from(json.loads(one.AxisMap))))
     whole = replace(plan, operations=tuple(found))
     thing.Made = json.dumps({one.Name: one.Label for one in members(thing)})
     needed = [one for one in operations_in(thing) if not one.Motions

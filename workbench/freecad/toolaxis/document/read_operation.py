@@ -88,8 +88,8 @@ class OperationRecord:
         from toolaxis.plan.plan import Plan
 
         part = self.joined(part)
-        made = Operation(1, self.face(part), self.orientation, self.path, self.frame)
-        return Plan(part, tool, inputs, (made,), tuple(bodies), self.frame.origin, "complete")
+        made = Operation(1, self.face(part), tool, self.orientation, self.path, self.frame)
+        return Plan(part, (tool,), inputs, (made,), tuple(bodies), self.frame.origin, "complete")
 
     @property
     def frame(self):

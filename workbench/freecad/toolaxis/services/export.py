@@ -137,11 +137,11 @@ def plan_task(operations):
         part, bodies = source.read(progress)
         for row in rows:
             part = OperationRecord(None, None, None, row[2]).joined(part)
-        made = [_operation(k, part, row[:3]) for k, row in enumerate(rows, 1)]
+        made = [_operation(k, part, tool, row[:3]) for k, row in enumerate(rows, 1)]
         mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
             made = _operations_with_angles(made, mounted, [row[3] for row in rows])
-        return Plan(part, tool, job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
+        return Plan(part, (tool,), job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
 
     return compute
 
@@ -194,7 +194,7 @@ def _number_details(details, before):
     return details | {"face": number, "label": f"{number}{suffix}", "members": members}
 
 
-def _operation(number, part, row):
+def _operation(number, part, tool, row):
     """An operation of the library from what stands in the document."""
     from toolaxis.plan.document import orientation_from
     from toolaxis.plan.operation import Operation
@@ -202,9 +202,9 @@ def _operation(number, part, row):
     standing, axis_map, details = row
     if standing is None:
         lost = OperationRecord(None, None, None, details)
-        return Operation(number, lost.face(part), orientation_from(json.loads(axis_map)))
+        return Operation(number, lost.face(part), tool, orientation_from(json.loads(axis_map)))
     standing = replace(standing, details=details)
-    return Operation(number, standing.face(part), standing.orientation, standing.path, standing.frame)
+    return Operation(number, standing.face(part), tool, standing.orientation, standing.path, standing.frame)
 
 
 def _operations_with_angles(made, mounted, angles):
@@ -271,5 +271,5 @@ def _program(plan, wish, name, verdict):
     from toolaxis.job.output.post import post_plan
     from toolaxis.machine.setup import Mounting
 
-    mounting = Mounting(load_machine(wish.machine), wish.offset, plan.tool.gauge_length) if wish.machine else None
+    mounting = Mounting(load_machine(wish.machine), wish.offset) if wish.machine else None
     return post_plan(plan, wish.dialect, mounting, name=name, verdict=verdict)

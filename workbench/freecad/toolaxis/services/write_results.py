@@ -188,7 +188,7 @@ def _fill(operation, inputs, plan, which):
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
         passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
         show_axes(operation, passes, op.face.diagonal, title)
-        _standing_tool(operation, plan, title)
+        _standing_tool(operation, op, title, len(plan.operations) == 1)
     else:
         remove([one for one in operation.Group if not is_shown(one)])
     show_surface(operation, op, chain_of(thing), colour)
@@ -263,7 +263,7 @@ def _standing_passes(operation, op, frame, title):
     return passes
 
 
-def _standing_tool(operation, plan, title):
+def _standing_tool(operation, op, title, alone):
     document = operation.Document
     standing = child(operation, "Part::FeaturePython")
     passes = child(operation, "Path::Feature")
@@ -272,14 +272,14 @@ def _standing_tool(operation, plan, title):
         ToolOnPasses(standing)
         attach_view(standing)
         if FreeCAD.GuiUp:
-            standing.ViewObject.Visibility = len(plan.operations) == 1  # several would hide what they machine
+            standing.ViewObject.Visibility = alone  # several would hide what they machine
         operation.addObject(standing)
     if standing.Passes != passes:
         standing.Passes = passes
         standing.setExpression("Placement", None)
         standing.setExpression("Placement", f"{passes.Name}.Placement * Station")
     standing.Label = translate("ToolAxis", "Tool {}").format(title)
-    standing.Shape = tool_shape(plan.tool)
+    standing.Shape = tool_shape(op.tool)
     standing.Proxy.execute(standing)
 
 

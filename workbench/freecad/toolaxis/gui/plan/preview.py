@@ -61,7 +61,7 @@ class Preview:
         root.addChild(tool)
         self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
                       *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
-                      *((tool, partial(_revolved, *solid)) for solid in solids(plan.tool))]
+                      *((tool, partial(_revolved, *solid)) for solid in solids(op.tool))]
         self.stations = PreviewStations(op.path)
         self.root, self.view = root, view
         view.getSceneGraph().addChild(root)
