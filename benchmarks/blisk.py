@@ -72,8 +72,9 @@ def told(path: Path, plan: Plan, watch: StageTimes, seconds: float) -> None:
     """Print what was measured of a whole part."""
     own, largest = (resource.getrusage(who).ru_maxrss / 1e3 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     done = sum(op.done for op in plan.operations)
-    print(f"{path.name}, {plan.named_tools}: {seconds:.1f} s with {WORKERS} processes, at most {own:.0f} MB in this one "
-          f"and {largest:.0f} MB in the largest other; {plan.outcome}, {done} of {len(plan.operations)} sub-surfaces")
+    print(f"{path.name}, {plan.named_tools}: {seconds:.1f} s with {WORKERS} processes, at most {own:.0f} MB in this "
+          f"one and {largest:.0f} MB in the largest other; {plan.outcome}, "
+          f"{done} of {len(plan.operations)} sub-surfaces")
     marks = [*sorted(watch.first.items(), key=lambda item: item[1]), ("", seconds)]
     for (stage, start), (_, end) in pairwise(marks):
         print(f"    {stage:20} {end - start:7.1f} s {100 * (end - start) / seconds:5.1f} %")

@@ -52,7 +52,8 @@ def example() -> Plan:
     frame = work_coordinates(axis, np.array([[1.0, 0, 0]]), np.zeros(3), np.ones(3))
     return Plan(part, (BULL_NOSE, BALL),
                 PlanInputs(0.02, tolerance=Tolerance(chord=0.001)),
-                (Operation(1, piece, BULL_NOSE, best, path, frame, (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
+                (Operation(1, piece, BULL_NOSE, best, path, frame,
+                           (Zone((loop[::-1], 0.5 + loop / 10), 12.25, True, 0.125),)),
                  Operation(2, part.faces[1], BALL, Orientation(None, outcome="infeasible", reasons=("no axis",)))),
                 (), np.zeros(3), "incomplete")
 

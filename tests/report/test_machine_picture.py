@@ -33,7 +33,8 @@ def plan(*tilts: float) -> Plan:
         operations.append(Operation(number, FACE, TOOL, Orientation(axis, "u", 1, outcome="feasible"), path,
                                     work_coordinates(axis, np.array([1.0, 0, 0]), np.zeros(3), np.zeros(3)),
                                     rotary=(0.0, tilt)))
-    return Plan(Part((FACE,)), (TOOL,), PlanInputs(0.1), tuple(operations), (), np.zeros(3), "complete", machine=mounting)
+    return Plan(Part((FACE,)), (TOOL,), PlanInputs(0.1), tuple(operations), (), np.zeros(3), "complete",
+                machine=mounting)
 
 
 @pytest.mark.parametrize("body", [

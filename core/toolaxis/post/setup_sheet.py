@@ -143,9 +143,9 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
 def _tool(plan: Plan) -> str:
     tool, inputs = plan.tools[0], plan.inputs
     stickout = "not given" if tool.stickout is None else f"{tool.stickout:.3f}"
-    rows = [[f"T{tool.number or 1}", tool.title or tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}", f"{tool.flute_length:.3f}",
-             stickout, "yes" if "holder" in tool.outlines else "not given", f"{inputs.spindle:.0f}",
-             f"{inputs.feedrate:.0f}"]]
+    rows = [[f"T{tool.number or 1}", tool.title or tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}",
+             f"{tool.flute_length:.3f}", stickout, "yes" if "holder" in tool.outlines else "not given",
+             f"{inputs.spindle:.0f}", f"{inputs.feedrate:.0f}"]]
     return _table(["tool", "name", "diameter", "corner radius", "cutting edge", "stick-out", "holder", "rev/min",
                    "mm/min"], rows) + "\n\nThe tool length is measured to the tip, the lowest point on the axis."
 

@@ -83,7 +83,8 @@ def _post_tool(plan: Plan, found: Dialect, mounting: Mounting, options: Options 
     chosen = Options() if options is None else options
     program = program_of(arranged_for, mounting, found, replace(chosen, angles={**angles, **chosen.angles}), name)
     file = f"program-{dialect}{suffix}{found.suffix}"
-    return {file: program_text(program, found), f"setup-{dialect}{suffix}.md": sheet_text(program, found, file, verdict)}
+    sheet = sheet_text(program, found, file, verdict)
+    return {file: program_text(program, found), f"setup-{dialect}{suffix}.md": sheet}
 
 
 def _choose_angles(plan: Plan, mounting: Mounting) -> Plan:

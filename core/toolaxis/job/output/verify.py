@@ -137,8 +137,8 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
 
 
 def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:
-    """Where an operation ends: tip, axis and rotary angles; None where its axis moves, before another tool, at the start.
-    """
+    """Where an operation ends: tip, axis and rotary angles; None where its axis moves, at the start, and before another
+    tool."""
     if op is None or op.path is None or not op.rotary or op.orientation.lead is not None or op.tool != tool:
         return None
     return op.path.cl[-1], op.path.axis[-1], op.rotary

@@ -66,10 +66,12 @@ def with_refused(first: Plan, pattern: Pattern, share: BladeFaces) -> Plan:
     """
     faces = [(pattern.face(number), "infeasible", why) for number, why in share.refused.items()]
     faces += [(pattern.face(number), "not_found", why) for number, why in share.left.items()]
-    made = tuple(Operation(len(first.operations) + k, face, first.tools[0], Orientation(None, outcome=outcome, reasons=(why,)),
-                           zones=(Zone(face.outline, face.area),) if face.number in share.left else ())
-                 for k, (face, outcome, why) in enumerate(faces, 1))
-    return replace(first, operations=first.operations + made)
+    made = []
+    for number, (face, outcome, why) in enumerate(faces, len(first.operations) + 1):
+        none = Orientation(None, outcome=outcome, reasons=(why,))
+        zones = (Zone(face.outline, face.area),) if face.number in share.left else ()
+        made.append(Operation(number, face, first.tools[0], none, zones=zones))
+    return replace(first, operations=(*first.operations, *made))
 
 
 def append_operations(plan: Plan, other: Plan) -> Plan:

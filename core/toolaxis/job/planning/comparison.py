@@ -61,8 +61,8 @@ def compare_methods(made: Plan, faces: Sequence[Face], again: Callable[[str, Seq
         except Cancelled:
             break
         except Exception as reason:
-            rows.append(Baseline(method, made.tools[0].name, len(pieces), 0, 0, 0, 0.0, 0.0, 0.0, fault(reason).sentence,
-                                 title_of(method)))
+            why = fault(reason).sentence
+            rows.append(Baseline(method, made.named_tools, len(pieces), 0, 0, 0, 0.0, 0.0, 0.0, why, title_of(method)))
             continue
         if other.outcome == "cancelled":
             break
@@ -81,6 +81,6 @@ def baseline(method: str, made: Plan) -> Baseline:
     done = [op for op in made.operations if op.done]
     refused = [op for op in made.operations if not op.done]
     reason = f"face {refused[0].face.label}: {next(iter(refused[0].orientation.reasons), '')}" if refused else ""
-    return Baseline(method, made.tools[0].name, len(made.operations), len(done), made.orientations,
+    return Baseline(method, made.named_tools, len(made.operations), len(done), made.orientations,
                     sum(op.orientation.passes for op in done), made.length, made.travel, made.seconds, reason,
                     title_of(method))

@@ -49,11 +49,11 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     op : Operation
     progress : Progress
     """
+    feeds = feeds_of(plan.inputs.at_rates_of(op.tool))
     return task(op.face, op.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
                 part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
-                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds_of(plan.inputs.at_rates_of(op.tool)),
-                progress=progress)
+                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds, progress=progress)
 
 
 def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:

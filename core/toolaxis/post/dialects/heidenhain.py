@@ -32,7 +32,8 @@ class Heidenhain(Dialect):
 
     def start(self, program: ProgramContext) -> Lines:
         """Plane off, tool, spindle, retract."""
-        return ["PLANE RESET STAY", f"TOOL CALL {program.tool_number} Z S{program.inputs.spindle:.0f}", "L M3", "L M140 MB MAX"]
+        called = f"TOOL CALL {program.tool_number} Z S{program.inputs.spindle:.0f}"
+        return ["PLANE RESET STAY", called, "L M3", "L M140 MB MAX"]
 
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane."""

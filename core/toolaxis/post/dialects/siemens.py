@@ -37,8 +37,8 @@ class Siemens(Dialect):
 
     def start(self, program: ProgramContext) -> Lines:
         """Modes, swivel frames deleted, straight rapids, tool, spindle."""
-        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", f"T{program.tool_number} D1", "M6", "G54",
-                f"S{program.inputs.spindle:.0f} M3"]
+        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()",
+                f"T{program.tool_number} D1", "M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
 
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
@@ -95,8 +95,8 @@ class SiemensTip(TipControl):
 
     def start(self, program: ProgramContext) -> Lines:
         """Modes, transformations and frames off, tool, spindle, retract."""
-        return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF", f"T{program.tool_number} D1", "M6", "G54",
-                f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
+        return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF",
+                f"T{program.tool_number} D1", "M6", "G54", f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
 
     def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then the transformation and its work offset."""

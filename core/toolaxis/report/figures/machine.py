@@ -103,7 +103,8 @@ def orientations_of(plan: Plan) -> list[list[Operation]]:
     groups: list[list[Operation]] = []
     for op in plan.operations:
         if op.done and (op.rotary or plan.machine is None or not plan.machine.machine.rotary):
-            same = next((some for some in groups if some[0].tool == op.tool and np.allclose(some[0].rotary, op.rotary, atol=1e-6)), None)
+            same = next((some for some in groups if some[0].tool == op.tool
+                         and np.allclose(some[0].rotary, op.rotary, atol=1e-6)), None)
             if same is None:
                 groups.append([op])
             else:

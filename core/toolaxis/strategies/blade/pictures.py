@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.feed.axis_motion import AxisMotion, axis_motion
+from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, figure
@@ -62,7 +63,8 @@ def draw_blade(plan: Plan, op: Operation, job: FaceProblem, folder: Path, curve:
         return
     angles = {**others, **{title: one.curve.at(s)[0] for title, one in curves.items()}}
     speed = plan.inputs.feedrate / 60
-    motions = {title: _motion((plan, op.tool), first, (search.swing, theta), s, speed) for title, theta in angles.items()}
+    setting = plan.machine, op.tool
+    motions = {title: _motion(setting, first, (search.swing, theta), s, speed) for title, theta in angles.items()}
     axes_picture(motions, speed, name).savefig(folder / f"{op.name}-motion.png")
 
 
@@ -73,17 +75,17 @@ def _clearance(op: Operation) -> float:
     return CLEARANCES[min(len(refused), len(CLEARANCES) - 1)] if refused else CLEARANCE
 
 
-def _motion(done: tuple[Plan, Tool], one: ScheduledLayer, turned: tuple[SwivelAxis, Array], s: Array, speed: float) -> AxisMotion:
+def _motion(setting: tuple[Mounting, Tool], one: ScheduledLayer, turned: tuple[SwivelAxis, Array], s: Array,
+            speed: float) -> AxisMotion:
     """What the machine's axes do with tool angles along a section."""
-    plan, tool = done
+    mounting, tool = setting
     swing, theta = turned
-    assert plan.machine is not None
     x, y = swing.plane
     flat = SmoothSection(one.section).points(s)
     axis = swing.axes(theta)
     tips = flat[:, :1] * x + flat[:, 1:] * y - tool.corner_radius * axis
     path = ToolPath(tips, tips, axis, axis, np.zeros(len(s), dtype=np.int8), np.array([0, len(s)]))
-    return axis_motion(plan.machine.machine, path, s, speed, plan.machine.table_from_part)
+    return axis_motion(mounting.machine, path, s, speed, mounting.table_from_part)
 
 
 def angles_picture(curves: Mapping[str, ScheduledLayer], others: Mapping[str, tuple[Array, Array]],
