@@ -144,6 +144,7 @@ def test_a_cutter_is_one_module(add, sheet: str, tmp_path: Path, capsys: pytest.
     add("Add a cutter", "button")
     tool = ta.Tool.parse("button:12x2", stickout=60)
     assert (tool.kind, tool.name, tool.radius, tool.corner_radius) == ("button", "button:12x2", 6.0, 2.0)
+    assert tool.shop_name == "Round inserts D12 R2, 60 out"
     with pytest.raises(ta.InvalidInput, match="up to a quarter of the diameter"):
         ta.Tool.parse("button:12x4")
     (tmp_path / "mine.toml").write_text('kind = "button"\ndiameter = 12\ncorner_radius = 2\n')

@@ -22,7 +22,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copy(ROOT / name, source / name)
     shutil.copytree(ROOT / "core" / "toolaxis", source / "core" / "toolaxis",
                     ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("tools", "machines"):
+    for name in ("tools", "racks", "machines"):
         shutil.copytree(ROOT / "resources" / name, source / "resources" / name)
     subprocess.run([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir",
                     str(folder), str(source)], check=True, capture_output=True)
@@ -35,6 +35,7 @@ def test_what_is_in_it(wheel: Path) -> None:
     assert "toolaxis/plan/plan.schema.json" in names and "toolaxis/py.typed" in names
     assert "toolaxis/messages/german.toml" in names
     assert any(name.endswith("data/share/toolaxis/tools/torus-12x1.toml") for name in names)
+    assert any(name.endswith("data/share/toolaxis/racks/general-rack.toml") for name in names)
     assert any(name.endswith("data/share/toolaxis/machines/mikron-ucp-710.toml") for name in names)
     for file in ("page.html.j2", "batch.html.j2", "page.css", "page.js"):
         assert f"toolaxis/report/html/{file}" in names
@@ -50,6 +51,8 @@ def test_the_tool_library_works_from_where_a_wheel_puts_it(wheel: Path, tmp_path
             f"assert toolaxis.__file__.startswith({str(tmp_path)!r}), toolaxis.__file__\n"
             "from toolaxis.job.inputs.tool_file import library, load_tool\n"
             "assert len(library()) >= 6 and load_tool('torus-12x1').stickout == 60\n"
+            "from toolaxis.job.inputs.tool_library import load_tools\n"
+            "assert load_tools()[2].title == 'Bull nose D12 R1, ER20, 60 out'\n"
             "from toolaxis.machine import library\n"
             "assert len(library.library()) >= 7 and library.load_machine('mikron-ucp-710').kind == 'table-table'\n"
             "from toolaxis.plan.schema import schema\n"

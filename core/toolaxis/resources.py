@@ -11,14 +11,15 @@ def find_files(kind: str, *suffixes: str) -> dict[str, Path]:
     Parameters
     ----------
     kind : str
-        Name of the folder: "tools" or "machines".
+        Name of the folder: "tools", "racks" or "machines".
     *suffixes : str
         Endings that count, such as ".toml".
 
     Returns
     -------
     dict of str to Path
-        A folder of one's own, in the environment variable TOOLAXIS_TOOLS or TOOLAXIS_MACHINES, comes first.
+        A folder of one's own, in the environment variable TOOLAXIS_TOOLS, TOOLAXIS_RACKS or
+        TOOLAXIS_MACHINES, comes first.
     """
     own = os.environ.get(f"TOOLAXIS_{kind.upper()}")
     folders = [Path(own)] if own else []

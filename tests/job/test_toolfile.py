@@ -63,7 +63,8 @@ def test_wrong_tools(text: str, said: str) -> None:
     ("", "kind None"),
     ("kind = 'torus'\ndiameter = 12", "has no corner_radius"),
     ("kind = 'ball'\ndiameter = 12\ncorner_radius = 1", "unknown 'corner_radius'"),
-    ("kind = 'ball'\ndiameter = 'x'", "could not convert"),
+    ("kind = 'ball'\ndiameter = 'x'", "diameter is 'x': it must be a number of mm"),
+    ("kind = 'ball'\ndiameter = 8\nfeed_per_tooth = 0.1\nspindle = 9000", "without teeth"),
     ("kind = ", "not valid TOML"),
     ("kind = 'ball'\ndiameter = 8\nstickout = 40\nholder = [[-1, 0], [5, 10]]", "thinner than nothing"),
 ])

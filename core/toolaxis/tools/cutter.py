@@ -29,7 +29,7 @@ class Cutter(Protocol):
     bits : tuple of (str, str)
         FreeCAD's tool bits for it, shape and type: the first one that FreeCAD has is taken.
     read_from : tuple of str
-        Shapes of FreeCAD's tool bits that are read as this cutter.
+        What FreeCAD's tool bits and the tool tables of CAM systems call it, in lower case, letters only.
     """
 
     name: str
@@ -54,6 +54,20 @@ class Cutter(Protocol):
             When they make no such cutter.
         """
         ...
+
+    def shop_name(self, diameter: float, corner_radius: float, half_angle_deg: float) -> str:
+        """What a shop calls it: "Bull nose D12 R1".
+
+        Parameters
+        ----------
+        diameter, corner_radius : float
+            mm
+        half_angle_deg : float
+            Inclination of the side from the axis, degrees.
+        """
+        corner = f" R{corner_radius:.6g}" if "corner_radius" in self.sizes else ""
+        side = f" {half_angle_deg:.6g} deg" if "half_angle_deg" in self.sizes else ""
+        return f"{self.title} D{diameter:.6g}{corner}{side}"
 
     def sizes_of_bit(self, bit: Mapping[str, float | None]) -> dict[str, float | None]:
         """Sizes from those of a tool bit of FreeCAD.

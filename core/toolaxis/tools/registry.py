@@ -32,14 +32,15 @@ def cutter_named(kind: str) -> Cutter:
 
 
 def cutter_of_bit(shape: str) -> Cutter | None:
-    """The kind as which a tool bit of FreeCAD is read; None where it can be planned with as none.
+    """The kind as which a tool bit of FreeCAD or a tool of a CAM system's table is read; None for drills and the like.
 
     Parameters
     ----------
     shape : str
-        In lower case, without blanks.
+        Such as "Ballend", "ball end mill" or "Ball-nose".
     """
-    return next((one for one in cutters().values() if shape in one.read_from), None)
+    word = "".join(letter for letter in shape.lower() if letter.isalpha())
+    return next((one for one in cutters().values() if word in one.read_from), None)
 
 
 def short_forms(last: str = "or") -> str:

@@ -278,6 +278,14 @@ class Tool:
         return f"{self.kind}:" + "x".join(size.removesuffix(".0") for size in sizes)
 
     @property
+    def shop_name(self) -> str:
+        """Its title; "Bull nose D12 R1, 60 out", from sizes and stick-out, where it has none."""
+        if self.title:
+            return self.title
+        cutter = cutter_named(self.kind).shop_name(2 * self.radius, self.corner_radius, degrees(self.half_angle))
+        return cutter if self.stickout is None else f"{cutter}, {self.stickout:.6g} out"
+
+    @property
     def outlines(self) -> dict[str, Array]:
         """Polylines (radius, z from the tip) of the components that are known: shank above the flutes, and holder.
 

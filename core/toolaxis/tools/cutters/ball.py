@@ -15,7 +15,7 @@ class Ball(Cutter):
     example = "ball:8"
     rank = 1
     bits = (("ballend", "Ballend"),)
-    read_from = ("ballend",)
+    read_from = ("ballend", "ball", "ballendmill", "ballnose", "ballnoseendmill", "ballmill", "kugelfräser")
 
     def radii(self, *sizes: Any) -> tuple[float, float, float]:
         """Half the diameter, twice."""

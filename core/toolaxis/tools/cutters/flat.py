@@ -14,7 +14,7 @@ class Flat(Cutter):
     sizes = ("diameter",)
     example = "flat:20"
     rank = 2
-    read_from = ("endmill",)
+    read_from = ("endmill", "flat", "flatendmill", "squareendmill", "schaftfräser")
 
     def radii(self, *sizes: Any) -> tuple[float, float, float]:
         """Half the diameter, and no corner."""

@@ -18,7 +18,8 @@ class Tapered(Cutter):
     example = "tapered:6x3x4"
     rank = 3
     bits = (("taperedballnose", "TaperedBallNose"), ("ballend", "Ballend"))
-    read_from = ("taperedballnose",)
+    read_from = ("taperedballnose", "tapered", "taperedmill", "taperedball", "taperedballend", "taperedballendmill",
+                 "taperedendmill")
 
     def radii(self, *sizes: Any) -> tuple[float, float, float]:
         """Half the diameter, the corner radius, which may be zero, and the angle."""
@@ -29,6 +30,12 @@ class Tapered(Cutter):
         if corner < 0:
             raise InvalidInput(f"corner radius is {corner} mm: it must be zero or more")
         return positive("diameter", diameter) / 2, corner, radians(angle)
+
+    def shop_name(self, diameter: float, corner_radius: float, half_angle_deg: float) -> str:
+        """A tapered ball by its diameter, any other one by its corner too; the angle is that of a side."""
+        if 2 * corner_radius == diameter:
+            return f"Tapered ball D{diameter:.6g} {half_angle_deg:.6g} deg"
+        return super().shop_name(diameter, corner_radius, half_angle_deg)
 
     def sizes_of_bit(self, bit: Mapping[str, float | None]) -> dict[str, float | None]:
         """FreeCAD's has a ball at its end and tells the whole angle."""

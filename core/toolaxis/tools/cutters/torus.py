@@ -17,7 +17,7 @@ class Torus(Cutter):
     example = "torus:12x1"
     rank = 0
     bits = (("bullnose", "Bullnose"),)
-    read_from = ("bullnose", "torus")
+    read_from = ("bullnose", "torus", "bullnoseendmill", "bullnosemill", "cornerradiusendmill", "torusfräser")
 
     def radii(self, *sizes: Any) -> tuple[float, float, float]:
         """Half the diameter, and the corner radius above zero."""
