@@ -10,7 +10,7 @@ from typing import NoReturn
 from toolaxis import __version__
 from toolaxis.cli.stopping import StopSignals
 from toolaxis.errors import Cancelled, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry, fault
-from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES
+from toolaxis.plan.choices import DIRECTIONS, ISO, OBJECTIVES, PASSES, SCALLOP
 from toolaxis.strategies.registry import strategies, strategy_named
 from toolaxis.strategies.strategy import INDEXED, SPHERE
 from toolaxis.tools.registry import short_forms
@@ -72,10 +72,14 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                               description="Find the best fixed tool axis for each face, with its passes. "
                                           "Lengths in mm, angles in degrees.")
     sub.add_argument("part", metavar="PART.step")
-    sub.add_argument("--tool", required=True, metavar="TOOL",
+    sub.add_argument("--tool", action="append", default=[], metavar="TOOL",
                      help=f"{short_forms('')} (diameter x corner radius x degrees), a TOML or .fctb file, or a name "
-                          "from resources/tools")
-    sub.add_argument("--scallop", required=True, type=float, metavar="MM", help="greatest scallop height")
+                          "from resources/tools; may be repeated (default: the general rack)")
+    sub.add_argument("--tools", action="append", default=[], metavar="FILE|FOLDER|NAME",
+                     help="tools to choose from: a TOML, .fctl, .csv or .json library, a folder of tool files, or a "
+                          "name from resources/racks; may be repeated")
+    sub.add_argument("--scallop", default=SCALLOP, type=float, metavar="MM",
+                     help=f"greatest scallop height (default: {SCALLOP:g})")
     sub.add_argument("--tolerance", type=float, metavar="MM",
                      help="machining tolerance: how far the finished surface may be cut too deep (default: 0.01)")
     sub.add_argument("--faces", metavar="LIST",
@@ -112,8 +116,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "same radius along the mean normal)")
     sub.add_argument("--compare", action="store_true",
                      help="also plan the same faces by the other methods: a table of passes, lengths and times")
-    sub.add_argument("--objective", default="length", choices=OBJECTIVES,
-                     help="what is least: cutting length (default), number of passes, or the time that --machine takes")
+    sub.add_argument("--objective", choices=OBJECTIVES,
+                     help="what is least: cutting length, number of passes, or the time that --machine takes (default: "
+                          "length; time with several tools on a machine that states the limits of its axes)")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
     sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
     sub.add_argument("--passes", default=ISO, choices=PASSES,
@@ -127,10 +132,11 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           f"axis that moves is allowed {MOVING:.0f} times that (default: {LIMIT:.0f}, about half a "
                           "minute on one core)")
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
-    sub.add_argument("--feedrate", type=float, default=1000.0, metavar="MM/MIN")
+    sub.add_argument("--feedrate", type=float, metavar="MM/MIN",
+                     help="for all tools (default: each tool's own, else 1000)")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
                      help="rate of rapid traverse where no machine states its own, for times only (default: 10000)")
-    sub.add_argument("--spindle", type=float, default=10000.0, metavar="RPM")
+    sub.add_argument("--spindle", type=float, metavar="RPM", help="for all tools (default: each tool's own, else 10000)")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     default, known = " (default)", strategies().values()

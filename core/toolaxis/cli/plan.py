@@ -10,8 +10,10 @@ from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec
+from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
+from toolaxis.plan.choices import FEEDRATE, OBJECTIVES, SPINDLE
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
@@ -19,6 +21,7 @@ from toolaxis.progress import Progress
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
+from toolaxis.tools.tool import Tool
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -36,9 +39,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         0 where every sub-surface has an axis, 1 where one has none, 130 where the user stopped it.
     """
     spec = _spec(given)
-    tool = spec.resolved_tool()
-    check_strategy(given.strategy, Asked(tool, load_machine(spec.machine) if spec.machine else None, given.method,
-                                         given.objective, _roughness(given), given.orientations, passes=given.passes))
+    tool = _tools(given, spec)
+    one = tool if isinstance(tool, Tool) else None
+    check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
+                                         given.objective or OBJECTIVES[0], _roughness(given), given.orientations, passes=given.passes))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -46,10 +50,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         with compiling_ahead(), show_progress(asked) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
-                        objective=spec.inputs.objective, allowance=spec.inputs.allowance,
+                        objective=given.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, passes=spec.inputs.passes,
                         obstacles=list(spec.obstacles), method=spec.inputs.method, strategy=given.strategy,
-                        roughness=_roughness(given), feedrate=spec.inputs.feedrate, spindle=spec.inputs.spindle,
+                        roughness=_roughness(given), feedrate=given.feedrate, spindle=given.spindle,
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
@@ -69,16 +73,33 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
-    inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective, given.direction, given.limits,
-                        given.feedrate, given.spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
+    inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
+                        given.limits, given.feedrate or FEEDRATE, given.spindle or SPINDLE, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
                         passes=given.passes)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""
-    spec = Spec(given.part, given.tool, inputs, faces, given.holder or "", given.stickout,
+    spec = Spec(given.part, " ".join(given.tool), inputs, faces, given.holder or "", given.stickout,
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
     return spec
+
+
+def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:
+    """The tool, or the tools to choose from, the general rack unless some are named."""
+    for name in ("holder", "stickout"):
+        if getattr(given, name) is not None:
+            if len(given.tool) == 1 and not given.tools:
+                return spec.resolved_tool()
+            raise InvalidInput(f"--{name} belongs to one tool and several are given: let each tool have its own in its "
+                               "file or library")
+    found = load_library([*given.tool, *given.tools] or None)
+    for warning in found.warnings:
+        say(f"toolaxis: warning: {warning}")
+    if len(found.tools) == 1:
+        spec.inputs.check_tool(found.tools[0])
+        return found.tools[0]
+    return found.tools
 
 
 def _roughness(given: Namespace) -> float | None:

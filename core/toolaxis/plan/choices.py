@@ -10,3 +10,5 @@ DIRECTIONS = ("zigzag", "climb", "conventional")
 ISO, PLANES, FIELD, AUTO = "iso", "planes", "field", "auto"
 PATTERNS = (ISO, PLANES, FIELD)
 PASSES = (*PATTERNS, AUTO)
+#: What is planned with unless given: scallop height, mm, feed rate, mm/min, and spindle speed, rev/min.
+SCALLOP, FEEDRATE, SPINDLE = 0.02, 1000.0, 10000.0

@@ -17,6 +17,7 @@ from toolaxis.plan.choices import ISO
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
+from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.plan.timing import MachiningTime, Order
@@ -139,6 +140,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
             "label": op.face.label, "tool": 1 + plan.tools.index(op.tool),
+            "rest": op.rest,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
@@ -148,6 +150,17 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
             "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
             "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
             "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
+
+
+def account_document(found: PartAccount) -> Document:
+    """How much of its faces a plan machines, mm^2 and mm; null for what is not known.
+
+    Parameters
+    ----------
+    found : PartAccount
+    """
+    return {"area": found.area, "machined": found.machined, "unreachable": found.unreachable, "open": found.open,
+            "length": found.length, "bound": found.bound or None, "gap": found.gap}
 
 
 def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
@@ -173,7 +186,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit,
                  "faces": len((plan.part.original or plan.part).faces), "warnings": list(plan.part.warnings),
                  "joined": [list(face.numbers) for face in plan.part.faces if face.members],
-                 "seams": [seam.document for seam in (plan.part.original or plan.part).seams]},
+                 "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
+                 **account_document(plan.account)},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
         "inputs": asdict(plan.inputs),
@@ -221,7 +235,7 @@ def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Too
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
     rotary = document.get("rotary") or [()]
     return Operation(document["number"], face, tools[document["tool"] - 1], orientation_from(document["orientation"]),
-                     path, axes, zones, known, tuple(rotary[0]))
+                     path, axes, zones, known, tuple(rotary[0]), document["rest"])
 
 
 def _order_from(document: Mapping[str, Any] | None) -> Order | None:

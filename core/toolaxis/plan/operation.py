@@ -36,6 +36,8 @@ class Operation:
         What the plan's machine takes, where it states the limits of its axes.
     rotary : tuple of float
         Where the rotary axes of the plan's machine stand, rad; empty without one.
+    rest : bool
+        Whether it machines what operations before it left.
     traceback : str
         Where the program failed on it, of the exception; plan.json names the file that has it.
     """
@@ -49,6 +51,7 @@ class Operation:
     zones: tuple[Zone, ...] = ()
     time: MachiningTime | None = None
     rotary: tuple[float, ...] = ()
+    rest: bool = False
     traceback: str = ""
 
     @property

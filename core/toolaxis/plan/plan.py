@@ -11,9 +11,10 @@ from toolaxis.errors import Fault, InvalidInput
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
-from toolaxis.plan.choices import DIRECTIONS, FIELD, ISO, OBJECTIVES, PASSES, PLANES
+from toolaxis.plan.choices import DIRECTIONS, FEEDRATE, FIELD, ISO, OBJECTIVES, PASSES, PLANES, SPINDLE
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
 from toolaxis.shape.part import Part
@@ -80,8 +81,8 @@ class PlanInputs:
     objective: str = "length"
     direction: str = "zigzag"
     limits: str = ""
-    feedrate: float = 1000.0
-    spindle: float = 10000.0
+    feedrate: float = FEEDRATE
+    spindle: float = SPINDLE
     tolerance: Tolerance = field(default_factory=Tolerance)
     rapid: float = 10000.0
     roughness: float = 0.0
@@ -256,6 +257,11 @@ class Plan:
         """One line: all paths written out are thousands."""
         done = sum(op.done for op in self.operations)
         return f"<Plan of {len(self.operations)} operations, {done} with a path: {self.outcome}>"
+
+    @property
+    def account(self) -> PartAccount:
+        """How much of its faces it machines."""
+        return PartAccount.of(self.operations)
 
     @property
     def used_tools(self) -> tuple[Tool, ...]:

@@ -158,8 +158,17 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
                         *(f"between operations: {why}" for why in plan.in_the_way),
                         *(f"the plan: {why.sentence}" for why in plan.faults)],
-            "not_checked": list(not_judged(plan, verdict)),
+            "not_checked": list(not_judged(plan, verdict)), "part": _account(plan, verdict),
             "operations": [_operation_document(op) for op in verdict.operations]}
+
+
+def _account(plan: Plan, verdict: Verdict) -> dict[str, float]:
+    """How much of the faces that were asked for passed, mm^2."""
+    area = plan.account.area
+    passed = sum(op.area - op.declared for op in verdict.operations if op.passed)
+    verified = min(float(passed), area)
+    return {"area": area, "verified": verified, "unreachable": plan.account.unreachable,
+            "open": max(area - verified - plan.account.unreachable, 0.0)}
 
 
 def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:

@@ -13,12 +13,13 @@ from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.inputs.spec import choose_faces, with_joined, with_rings
-from toolaxis.job.inputs.tool_file import load_tool
+from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import find_pattern
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.parallel import check_workers
-from toolaxis.job.planning.planner import PlanningJob, went_on
+from toolaxis.job.planning.planner import DIVIDED, PlanningJob, went_on
+from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
 from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
@@ -26,7 +27,7 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
-from toolaxis.plan.choices import ISO
+from toolaxis.plan.choices import FEEDRATE, ISO, SCALLOP, SPINDLE
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -46,30 +47,33 @@ from toolaxis.work import LIMIT
 WIDE = 4.0
 
 
-def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | None = None,
+def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scallop: float = SCALLOP, *,
+         machine: MachineLike | None = None,
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
-         objective: str = "length", strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
-         passes: str = ISO, obstacles: Any = None, method: str = "sphere", feedrate: float = 1000.0,
-         spindle: float = 10000.0, tolerance: ToleranceLike = None,
+         objective: str | None = None, strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
+         passes: str = ISO, obstacles: Any = None, method: str = "sphere",
+         feedrate: float | None = None, spindle: float | None = None, tolerance: ToleranceLike = None,
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
-    """Plan the machining of a part's faces, each with the fixed axis that needs least cutting.
+    """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
     Parameters
     ----------
     part : Part or anything that `toolaxis.load` takes
-    tool : Tool or str
-        A tool, or its short form, file or name.
+    tool : Tool, str, path, or sequence of these, optional
+        A tool, its short form, file or name, or several; a tool library, its file or name; the general rack that comes
+        with the program unless given.  With several tools it is chosen which of them begin on which face; what they
+        leave goes to smaller ones.
     scallop : float
         Greatest scallop height, mm.
     machine : Machine, Mounting, AxisLimits or str, optional
         A machine, its name in resources/machines or its file: every axis is one that it can hold in its steps, and no
         motion leaves its travel.  Limits of the axis and their short form ("cone:0,0,1,45") are taken here too.
     faces : sequence of int, "all", "skins" or text such as "3,5-8", optional
-        The sculptured faces unless given.  Faces that continue each other smoothly are machined, or divided, as one
+        The sculptured faces unless given; with several tools joined to skins.  Faces that continue each other smoothly are machined, or divided, as one
         where their numbers stand together: [(3, 4), 7], or "3+4,7"; "skins" joins all that can be joined, see
         `toolaxis.join`.
     regions : int or "auto", optional
@@ -84,9 +88,10 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     strategy : str
         "indexed": every sub-surface has one fixed axis; the others move it while it cuts.  Their names, what they do
         and what they need are listed by `toolaxis plan --help` and in the manual, resources/manual/strategies.md.
-    objective : str
+    objective : str, optional
         "length", "passes" or "time": what each sub-surface's axis makes least; time needs a machine that states the
-        limits of its axes. Faces are divided by time too where that is asked for, else by cutting length.
+        limits of its axes, and is what is taken with several tools on such a machine, length otherwise.  Faces are
+        divided by time too where that is asked for, else by cutting length.  Which tools begin is chosen by time.
     allowance : float
         Stock left on the faces, mm.
     direction : str
@@ -102,8 +107,8 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
         sectors) or "jerk" (the rotary angles at which the machine's linear axes together have most jerk along the
         passes); for comparison "roman" (Roman's rule), "normal" (the mean normal), "one" (one axis for all
         sub-surfaces) and "ball" (a ball end of the tool's radius takes its place, along the mean normal).
-    feedrate, spindle : float
-        mm/min and rev/min, for the CL files.
+    feedrate, spindle : float, optional
+        mm/min and rev/min for all tools; each tool's own unless given, 1000 and 10000 where it states none.
     tolerance : float or Tolerance, optional
         The machining tolerance, mm: how far the finished surface may be cut too deep, 0.01 unless given; or all
         tolerances.  The straight motions of the passes take a share of it and of the scallop height, see
@@ -147,31 +152,77 @@ def plan(part: Any, tool: Tool | str, scallop: float, *, machine: MachineLike | 
     check_count(regions)
     check_count(orientations, "orientations")
     mounting, allowed = _machine(machine, limits, offset)
-    cutter = load_tool(tool) if isinstance(tool, str) else tool
+    rack = _rack(tool, float(scallop), (feedrate, spindle))
+    cutter = rack.tools[0]
+    if objective is None:
+        timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
+        objective = "time" if timed else "length"
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
     chosen = check_strategy(strategy, Asked(
-        cutter if isinstance(cutter, Tool) else None, None if mounting is None else mounting.machine, method, objective,
+        cutter, None if mounting is None else mounting.machine, method, objective,
         None if roughness is None else float(roughness), orientations, held_in(given), passes=passes))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
-    inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words, float(feedrate),
-                        float(spindle), Tolerance.of(tolerance), float(rapid),
+    inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words,
+                        FEEDRATE if feedrate is None else float(feedrate),
+                        SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes)
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
+    if len(rack.tools) > 1:
+        _check_for_rack(chosen.moves, method, regions, orientations, given, compare)
+        faces = "skins" if faces is None else faces
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER,
-                                 WIDE * cutter.radius)
+                                 WIDE * rack.tools[len(rack.tools) // 2].radius)
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
-    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given))
+    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given),
+                                  *rack.warnings)
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
+    if len(rack.tools) > 1:
+        return _order_operations(_plan_rack(job, rack.tools, choose_faces(loaded, numbers), progress), progress)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
+
+
+def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,
+          rates: tuple[float | None, float | None]) -> ToolLibrary:
+    """The tools in the order in which they are used, the large ones first, at the rates that are given for all."""
+    found = load_library(tool)
+    feedrate, spindle = rates
+    tools = [replace(one, feedrate=one.feedrate if feedrate is None else None,
+                     spindle=one.spindle if spindle is None else None) for one in found.tools]
+    small = [one for one in tools if scallop >= one.radius]
+    left = tuple(f"{one.shop_name} is left out: its radius is not above the scallop height, {scallop:g} mm"
+                 for one in small)
+    if len(small) == len(tools):  # what is wrong is said of the inputs
+        small, left = [], ()
+    kept = [one for one in tools if one not in small]
+    kept.sort(key=lambda one: (-one.radius, one.corner_radius, one.half_angle, one.number))
+    return ToolLibrary(tuple(kept), (*found.warnings, *left))
+
+
+def _check_for_rack(moves: bool, method: str, regions: Any, orientations: Any, given: Any, compare: bool) -> None:
+    """Refuse what is planned with one tool only."""
+    asked = {"a moving axis": moves, f"the method {method}": not moves and method not in DIVIDED,
+             "regions": regions is not None, "orientations": orientations is not None,
+             "a division by hand": bool(given), "a comparison": compare}
+    for name, is_asked in asked.items():
+        if is_asked:
+            raise InvalidInput(f"{name} is planned with one tool and several are given: name one tool")
+
+
+def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], progress: Progress) -> Plan:
+    """The plan of a job with several tools."""
+    with activate_progress(progress):
+        if job.workers > 1:
+            _in_cells(job, progress)
+        return RackPlanner([replace(job, tool=tool) for tool in tools]).plan(faces, progress)
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:

@@ -137,6 +137,8 @@ class PlanningJob:
     machine : Mounting or None
     division : tuple of SubSurface
         Sub-surfaces given by hand; faces that have some are not divided otherwise.
+    kept : frozenset of int
+        Numbers of skins that stay as they are, whatever of them has no axis: other tools work on them too.
     """
 
     part: Part
@@ -151,6 +153,7 @@ class PlanningJob:
     whole: tuple[Face, ...] = ()
     machine: Mounting | None = None
     division: tuple[SubSurface, ...] = ()
+    kept: frozenset[int] = frozenset()
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -188,6 +191,17 @@ class PlanningJob:
     def zoned_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces with the clean-up zones of its operations."""
         return went_on(self.carried_out(faces, progress), lambda plan: add_clean_up_zones(plan, self.workers, progress))
+
+    def plan_pieces(self, targets: list[Target], progress: Progress) -> Plan:
+        """The plan for sub-surfaces, with the clean-up zones of its operations.
+
+        Parameters
+        ----------
+        targets : list of Target
+        progress : Progress
+        """
+        return went_on(self._plan_targets(targets, (), progress),
+                       lambda plan: add_clean_up_zones(plan, self.workers, progress))
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
@@ -265,7 +279,8 @@ class PlanningJob:
     def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""
         given = {one.face for one in self.division}
-        skins = [face for face in self.part.faces if face.members and face.number not in given]
+        skins = [face for face in self.part.faces
+                 if face.members and face.number not in given and face.number not in self.kept]
         own = {skin.number: [op for op in plan.operations if op.face.number == skin.number] for skin in skins}
         lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
         if not lost:
@@ -341,7 +356,7 @@ class PlanningJob:
 
         def _division(k: int, inner: Progress) -> Regions | ToolAxisError:
             named = inner.within(f"face {faces[k].label}")
-            standing = distances(faces[k], self.tool, self.part, self._obstacles)
+            standing = distances(faces[k], self.tool, self.part, self.obstacles)
             count = slim if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
             try:
                 return regions_of(self._task(faces[k], inner), count, progress=named, bosses=standing)
@@ -481,15 +496,17 @@ class PlanningJob:
         return strategy_of(self.inputs.method)
 
     @property
-    def _limits(self) -> AxisLimits | None:
+    def axis_limits(self) -> AxisLimits | None:
+        """All limits of the axis, the machine's among them."""
         return intersect_limits(self.machine, self.limits)
 
     @property
-    def _obstacles(self) -> tuple[Face, ...]:
+    def obstacles(self) -> tuple[Face, ...]:
+        """The faces of the further bodies."""
         return tuple(face for body in self.bodies for face in body.faces)
 
     def _task(self, face: Face, progress: Progress) -> FaceProblem:
-        return search_task(face, self.tool, self.inputs.scallop, self._limits, self._obstacles,
+        return search_task(face, self.tool, self.inputs.scallop, self.axis_limits, self.obstacles,
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
                            part=self.part, allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, passes=self.inputs.passes, progress=progress)

@@ -1,0 +1,171 @@
+"""Which tools of a rack machine which faces, one after the other: least time over all faces of a part together."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Tools that follow each other on a face at most.
+MOST = 3
+#: What it costs to leave a mm^2 that some tool could machine, s: more than the smallest tool takes for it.
+OPEN_PRICE = 60.0
+#: Share of a face, and of what a tool before left of it, that a tool must machine to be sent there.
+_WORTH, _WORTH_OF_REST = 0.02, 0.1
+#: Axes that reach less than the best one by no more than this share are told apart by time.
+_AS_GOOD = 0.02
+
+
+class FacePrices(NamedTuple):
+    """What it takes to machine the cells of a face.
+
+    seconds : (tools, axes, cells) s, infinite where a tool does not reach a cell under an axis
+    area : (cells,) mm^2
+    """
+
+    seconds: Array
+    area: Array
+
+
+class ToolChain(NamedTuple):
+    """Tools that machine a face one after the other, each what those before it left.
+
+    tools : numbers of the tools from 0, in their order
+    seconds : cutting time and index moves, s
+    open_area : what none of them reaches and others would, mm^2
+    """
+
+    tools: tuple[int, ...]
+    seconds: float
+    open_area: float
+
+    @property
+    def cost(self) -> float:
+        """Time, with what is left charged, s."""
+        return self.seconds + OPEN_PRICE * self.open_area
+
+
+class ToolChoice(NamedTuple):
+    """The tools for all faces.
+
+    chains : the chain of each face; empty where no tool reaches anything of it
+    tools : numbers of all tools that are used
+    seconds : cutting time, index moves and tool changes, s
+    gap : by what share another choice could be better in this model, at most
+    """
+
+    chains: tuple[ToolChain, ...]
+    tools: tuple[int, ...]
+    seconds: float
+    gap: float
+
+
+class _Step(NamedTuple):
+    """What a tool machines under one axis: (cells,) bool, and its time, s."""
+
+    cells: Bools
+    seconds: float
+
+
+def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolChain, ...]:
+    """The chains for a face of which none is beaten by another one with no further tools.
+
+    Parameters
+    ----------
+    prices : FacePrices
+        Tools in the order in which they are used, the large ones first.
+    index : float
+        Time of an index move, s, counted for each tool and axis.
+    most : int
+        Tools in a chain at most; a tool may follow itself under another axis.
+
+    Returns
+    -------
+    tuple of ToolChain
+        The cheapest first, the empty one the last; each tool machines under the axis under which it reaches most, among
+        those that reach as much under the one that takes least time.
+    """
+    reached = np.isfinite(prices.seconds)
+    possible = float(prices.area[reached.any(axis=(0, 1))].sum())
+    found = [*_chains(prices, reached, index, most), ToolChain((), 0.0, possible)]
+    best: dict[frozenset[int], ToolChain] = {}
+    for one in sorted(found, key=lambda chain: (chain.cost, len(chain.tools), chain.tools)):
+        best.setdefault(frozenset(one.tools), one)
+    kept: list[ToolChain] = []
+    for tools, one in best.items():
+        if not any(frozenset(other.tools) <= tools for other in kept):
+            kept.append(one)
+    return tuple(kept)
+
+
+def _chains(prices: FacePrices, reached: Bools, index: float, most: int) -> Iterator[ToolChain]:
+    area, count = prices.area, len(prices.seconds)
+    possible = np.asarray(reached.any(axis=(0, 1)))
+
+    def _longer(tools: tuple[int, ...], seconds: float, left: Bools) -> Iterator[ToolChain]:
+        remains = float(area[left].sum())
+        least = max(_WORTH * float(area.sum()), _WORTH_OF_REST * remains)
+        for tool in range(tools[-1] if tools else 0, count):
+            step = _best_step(prices, reached[tool], tool, left)
+            if step is None or float(area[step.cells].sum()) < least:
+                continue
+            chain, rest = (*tools, tool), left & ~step.cells
+            spent = seconds + step.seconds + index
+            yield ToolChain(chain, spent, float(area[rest].sum()))
+            if len(chain) < most and rest.any():
+                yield from _longer(chain, spent, rest)
+
+    if possible.any():
+        yield from _longer((), 0.0, possible)
+
+
+def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:
+    """What a tool machines of what is left under its best axis; None where it reaches nothing of it."""
+    held = reached & left
+    area, seconds = held @ prices.area, np.where(held, prices.seconds[tool], 0.0).sum(axis=1)
+    if not area.size or not area.max() > 0:
+        return None
+    good = np.flatnonzero(area >= (1 - _AS_GOOD) * area.max())
+    best = good[int(np.argmin(seconds[good]))]
+    return _Step(held[best], float(seconds[best]))
+
+
+def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float) -> ToolChoice:
+    """The chain of each face with which all faces take least time together, tool changes included.
+
+    Parameters
+    ----------
+    chains : sequence of sequence of ToolChain
+        Of each face, from `chains_of`.
+    change : float
+        Time of a tool change, s.
+
+    Notes
+    -----
+    An integer programme: one chain for each face, and a price on every tool that some chain uses.  It is solved to the
+    end, so that the gap is that of rounding.
+    """
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import coo_array
+
+    rows = [(face, one) for face, some in enumerate(chains) for one in some]
+    tools = sorted({tool for _, one in rows for tool in one.tools})
+    if not tools:
+        return ToolChoice(tuple(some[0] for some in chains), (), 0.0, 0.0)
+    count = len(rows)
+    price = np.array([*(one.cost for _, one in rows), *(change for _ in tools)])
+    one_each = coo_array((np.ones(count), ([face for face, _ in rows], range(count))), (len(chains), len(price)))
+    uses = [(k, count + tools.index(tool)) for k, (_, one) in enumerate(rows) for tool in set(one.tools)]
+    entries = [(row, column, sign) for row, pair in enumerate(uses) for column, sign in zip(pair, (1, -1), strict=True)]
+    line, column, value = (np.array(part) for part in zip(*entries, strict=True))
+    opened = coo_array((value.astype(float), (line, column)), (len(uses), len(price)))
+    found = milp(price, integrality=np.ones(len(price)), bounds=Bounds(0, 1),
+                 constraints=[LinearConstraint(one_each, 1, 1), LinearConstraint(opened, -np.inf, 0)])
+    picked = np.flatnonzero(found.x[:count] > 0.5)
+    chosen = tuple(rows[k][1] for k in picked)
+    used = tuple(sorted({tool for one in chosen for tool in one.tools}))
+    seconds = sum(one.seconds for one in chosen) + change * len(used)
+    return ToolChoice(chosen, used, float(seconds), float(max(found.mip_gap, 0.0)))
