@@ -76,6 +76,7 @@ FAULTS = (
     Fault(CORE + "partition/guillotine.py", "feed[better] = first + k, number", "feed[better] = k, number",
           ("partition/test_guillotine.py", "partition/test_regions.py", "partition/test_strips.py",
            "partition/test_times.py")),
+    Fault(CORE + "regions/reach_kernel.py", "value - around >= limit", "value + around >= limit", ("regions",)),
     Fault(CORE + "feasibility/feasibility.py", "np.concatenate([self.cloud, self.learnt])) - self.tolerance.gouge",
           "self.cloud) - self.tolerance.gouge",
           ("orient/test_feasible.py", "orient/test_standing.py", "orient/test_normals.py", "orient/test_proof.py",

@@ -153,7 +153,7 @@ def merge_trees(parts: Sequence[BoundingTree]) -> BoundingTree:
     leaves = np.cumsum([0, *(len(p.leaf) for p in parts)])
     edges = np.cumsum([0, *(len(p.edges) for p in parts)])
     nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
-    top_shape, top_link = _branches(np.stack([p.shape[0] for p in parts]), nodes[:-1])
+    top_shape, top_link = branch_roots(np.stack([p.shape[0] for p in parts]), nodes[:-1])
     top = np.column_stack([top_shape, np.zeros((len(top_shape), 10)), np.full(len(top_shape), np.inf)])
     links = [_shift_link(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
     start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
@@ -191,8 +191,21 @@ def _shift_link(link: Indices, node: int, face: int, leaf: int) -> Indices:
     return moved
 
 
-def _branches(roots: Array, number: Indices) -> tuple[Array, Indices]:
-    """Nodes above the roots: balls halved at the median of their longest direction, the root first."""
+def branch_roots(roots: Array, number: Indices) -> tuple[Array, Indices]:
+    """Nodes above the roots of several trees: balls halved at the median of their longest direction, the root first.
+
+    Parameters
+    ----------
+    roots : (k, 11) array
+        Rows of `BoundingTree.shape`.
+    number : (k,) array of int
+        What the links call them.
+
+    Returns
+    -------
+    (k - 1, 11) and (k - 1, 5) arrays
+        Rows of `BoundingTree.shape` and `BoundingTree.link`.
+    """
     shape, link = np.zeros((len(roots) - 1, 11)), np.full((len(roots) - 1, 5), -1, dtype=np.int64)
     link[:, 4] = 0
     free = iter(range(len(shape)))

@@ -1,0 +1,120 @@
+"""Which cells of a face which tool can cut under which axis: fast, and wrong now and then to either side.
+
+What it says is for choosing; the search and the proof of the passes decide.
+"""
+
+from collections.abc import Sequence
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toolaxis.contact.placement import tips
+from toolaxis.numeric.vectors import angle_between, as_rows, unit
+from toolaxis.progress import breathe
+from toolaxis.regions.cells import FaceCells
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
+from toolaxis.regions.scene import ReachScene
+from toolaxis.tools.tool import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Tips between two moments to stop.
+_AT_ONCE = 4096
+#: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
+_HALF = 1.0001
+
+
+def screen_reach(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scene: ReachScene) -> Bools:
+    """Whether tools may stand at the contacts of cells.
+
+    Parameters
+    ----------
+    cells : FaceCells
+        Of a face of the scene's part, or of a piece of one.
+    tools : sequence of Tool
+    axes : (k, 3) array_like
+        Tool axes, tip to spindle; none outside the limits of the scene reaches anything.
+    scene : ReachScene
+
+    Returns
+    -------
+    (tools, k, n) array of bool
+        True where the axis may touch all of the cell by the angle to its normals, and cutter, shank and holder at the
+        cell's contact keep their distances from everything.
+
+    Notes
+    -----
+    As `toolaxis.feasibility.feasibility.Feasibility.reach` at the same contacts, from the same cells around the faces
+    but without their bounds: a place less than 0.05 mm across may be missed.
+
+    **Properties**: 1. moving part and axes together changes nothing; 2. a tool inside a larger one
+    reaches all that the larger one does.
+    """
+    rows = np.asarray(unit(as_rows(axes, 3, "axes")))
+    found = np.zeros((len(tools), len(rows), len(cells)), dtype=bool)
+    if not len(cells):
+        return found
+    required = scene.required(cells.face)
+    allowed = np.ones(len(rows), dtype=bool) if scene.limits is None else np.asarray(scene.limits.allowed(rows))
+    corners: dict[float, Bools] = {}
+    for number, tool in enumerate(tools):
+        radius = tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
+        if radius not in corners:
+            corners[radius] = _corner_fits(cells, radius, scene, required)
+        seen = seen_cells(cells, tool, rows, scene.tolerance.min_lead) & corners[radius] & allowed[:, None]
+        found[number] = seen
+        found[number][seen] = ~_blocked(cells, tool, rows, seen, (scene, required))
+    return found
+
+
+def seen_cells(cells: FaceCells, tool: Tool, axes: Array, min_lead: float) -> Bools:
+    """Which cells each axis may touch with a cutter, by the angles to their normals alone, (k, n).
+
+    Parameters
+    ----------
+    cells : FaceCells
+    tool : Tool
+    axes : (k, 3) array
+        Unit vectors.
+    min_lead : float
+        Least angle of a flat bottom to any normal, rad.
+    """
+    angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
+    seen = angle <= pi / 2 - tool.half_angle - cells.spread
+    if tool.flat_radius > 0:
+        seen &= angle >= min_lead + cells.spread
+    return np.asarray(seen)
+
+
+def _corner_fits(cells: FaceCells, radius: float, scene: ReachScene, required: Array) -> Bools:
+    """Whether the ball that any cutter of a corner radius holds at its contact keeps off everything, (n,)."""
+    if radius <= 0:
+        return np.ones(len(cells), dtype=bool)
+    ball = np.array([[0.0, radius, 1.0, 0.0, 0.0, _HALF * radius, radius, 0.0]])
+    places = cells.point + scene.allowance * cells.normal
+    return ~_find(scene, ReachTool(ball, required), places, cells.normal)
+
+
+def _blocked(cells: FaceCells, tool: Tool, axes: Array, seen: Bools, around: tuple[ReachScene, Array]) -> Bools:
+    """Whether a tool comes too near to something at cells that are seen, in the order of what is seen."""
+    scene, required = around
+    axis, cell = np.nonzero(seen)
+    places = tips(cells.point[cell], cells.normal[cell], axes[axis], tool, scene.allowance)
+    whole = scene.tool(tool, required)
+    blocked = np.zeros(len(places), dtype=bool)
+    for first in range(0, len(whole.pieces), MOST_PIECES):
+        rest = np.flatnonzero(~blocked)
+        some = whole._replace(pieces=np.ascontiguousarray(whole.pieces[first:first + MOST_PIECES]))
+        blocked[rest] = _find(scene, some, places[rest], axes[axis[rest]])
+    return blocked
+
+
+def _find(scene: ReachScene, tool: ReachTool, places: Array, axes: Array) -> Bools:
+    blocked, room = np.zeros(len(places), dtype=bool), ReachRoom.make()
+    for first in range(0, len(places), _AT_ONCE):
+        breathe()
+        some = slice(first, first + _AT_ONCE)
+        find_blocked(scene.tree, tool, places[some], axes[some], room, blocked[some])
+    return blocked

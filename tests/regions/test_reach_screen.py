@@ -1,0 +1,227 @@
+"""Screening of reach: against the proof's bounds at random postures, dense points, and cases known exactly."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.contact.placement import tips
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import group_surroundings
+from toolaxis.machine.limits import Cone
+from toolaxis.numeric.vectors import angle_between, rotation, unit
+from toolaxis.partition.uv_grid import Lattice
+from toolaxis.regions.cells import FaceCells, screening_axes
+from toolaxis.regions.reach_screen import screen_reach, seen_cells
+from toolaxis.regions.scene import ReachScene
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.tools.tool import COMPONENTS, Tool
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+UP = np.array([0.0, 0.0, 1.0])
+#: Share of wrong answers to either side, at most.
+WRONG = 0.01
+
+
+def compare(part: Part, tools: list[Tool], faces: int) -> np.ndarray:
+    """Counts of random postures by what the bounds say (row: blocked, free) and what the screen says (column)."""
+    rng, count = np.random.default_rng(5), np.zeros((2, 2), dtype=int)
+    scene, some = ReachScene.of(part), part.sculptured
+    for k in rng.choice(len(some), min(faces, len(some)), replace=False):
+        cells = FaceCells.of(some[k], 1.0)
+        axes = rng.permutation(screening_axes([cells]))[:8]
+        drawn = rng.choice(len(cells), min(30, len(cells)), replace=False)
+        free = screen_reach(cells, tools, axes, scene)
+        groups = group_surroundings(some[k], scene.tolerance, part=part)
+        for number, tool in enumerate(tools):
+            judge = Feasibility(some[k], tool, groups, scene.tolerance)
+            seen = seen_cells(cells, tool, axes, scene.tolerance.min_lead)
+            assert not (free[number] & ~seen).any()
+            for a, axis in enumerate(axes):
+                rows = drawn[seen[a, drawn]]
+                truth = judge.reach(cells.uv[rows], axis, itself=True)
+                np.add.at(count, (truth.astype(int), free[number, a, rows].astype(int)), 1)
+    return count
+
+
+def check(count: np.ndarray, least: int) -> None:
+    """Enough of both, and few wrong answers to either side."""
+    blocked, free = count
+    assert blocked.sum() >= least and free.sum() >= least, count
+    assert blocked[1] <= WRONG * blocked.sum() and free[0] <= WRONG * free.sum(), count
+
+
+def test_a_pocket_is_screened_as_the_bounds_say(scenes) -> None:
+    check(compare(scenes.pocket(), scenes.rack(), 3), 400)
+
+
+@pytest.mark.parametrize(("name", "faces"), [("freeform", 1), ("bosses", 2), ("blisk", 5)])
+def test_an_example_is_screened_as_the_bounds_say(scenes, name: str, faces: int) -> None:
+    pytest.importorskip("OCP")
+    check(compare(ta.load(EXAMPLES / f"{name}.step"), scenes.rack(), faces), 150)
+
+
+@pytest.mark.parametrize(("name", "faces"), [("mousecover.step", 6),
+                                             pytest.param("ctc02.stp", 6, marks=pytest.mark.long)])
+def test_a_real_part_is_screened_as_the_bounds_say(scenes, shared_parts: Path, name: str, faces: int) -> None:
+    pytest.importorskip("OCP")
+    if not (shared_parts / name).is_file():
+        pytest.skip(f"{name} is not among the parts made by others")
+    check(compare(ta.load(shared_parts / name), scenes.rack(), faces), 400)
+
+
+def floor_and(*others: Face) -> tuple[Part, FaceCells]:
+    """A plane of 40 x 40 mm with other faces, and its cells."""
+    x, y = np.meshgrid(np.linspace(0, 40, 4), np.linspace(0, 40, 4), indexing="ij")
+    part = Part.from_faces([Face.from_bspline(np.stack([x, y, 0 * x], axis=-1)), *others])
+    return part, FaceCells.of(part.faces[0], 1.0)
+
+
+@pytest.mark.parametrize("tool", [Tool.ball(6), Tool.torus(10, 1), Tool.flat(8)])
+def test_an_upright_tool_keeps_its_distance_from_a_wall(scenes, tool: Tool) -> None:
+    wall = scenes.plate([[30.0, 0, -5], [30, 40, -5], [30, 0, 30], [30, 40, 30]])
+    part, cells = floor_and(wall)
+    scene = ReachScene.of(part)
+    lean = np.radians(1.0)
+    axis = np.array([0.0, np.sin(lean), np.cos(lean)])
+    free = screen_reach(cells, [tool], [axis], scene)[0, 0]
+    tip = tips(cells.point, cells.normal, axis, tool)
+    room = np.abs(30.0 - tip[:, 0]) - tool.radius
+    beside = (tip[:, 1] > 0) & (tip[:, 1] < 38)  # the tool leans towards y, and the wall ends at 40
+    assert (free == (room >= 0.1))[beside & (np.abs(room - 0.1) > 0.005)].all()
+    assert 0.3 < free.mean() < 0.95
+
+
+def test_a_tool_passes_through_a_hole_that_is_trimmed_out_of_a_plate() -> None:
+    turn = np.linspace(0, 2 * np.pi, 61)[:-1]
+    hole = 0.5 + 0.15 * np.stack([np.cos(-turn), np.sin(-turn)], axis=1)  # 6 mm of 40
+    lid = Face.from_bspline(np.array([[[0.0, 0, 15], [0, 40, 15]], [[40, 0, 15], [40, 40, 15]]]), (1, 1),
+                            trims=(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), hole))
+    part, cells = floor_and(lid)
+    tool = Tool.ball(4)
+    free = screen_reach(cells, [tool], [UP], ReachScene.of(part))[0, 0]
+    inside = 6.0 - np.hypot(*(cells.point[:, :2] - 20.0).T) - tool.radius
+    assert (free == (inside >= 0.1))[np.abs(inside - 0.1) > 0.05].all()
+    assert free.sum() > 10
+
+
+def test_what_holds_the_tool_goes_on_upwards() -> None:
+    far = Face.from_bspline(np.array([[[15.0, 15, 90], [15, 25, 90]], [[25, 15, 90], [25, 25, 90]]]), (1, 1))
+    part, cells = floor_and(far)
+    away = np.linalg.norm(np.maximum(np.abs(cells.point[:, :2] - 20) - 5, 0), axis=1) - 2.0
+    for tool, least in ((Tool.ball(4), 0.1), (Tool.ball(4, stickout=20.0), 0.5)):
+        free = screen_reach(cells, [tool], [UP], ReachScene.of(part))[0, 0]
+        assert (free == (away >= least))[np.abs(away - least) > 0.01].all() and not free.all()
+    held = Tool.ball(4, stickout=20.0, holder=[(1.0, 0.0), (3.0, 10.0)])
+    free = screen_reach(cells, [held], [UP], ReachScene.of(part))[0, 0]
+    assert (free == (away >= 2.0))[np.abs(away - 2.0) > 0.01].all()
+    alone = ReachScene.of(Part.from_faces(part.faces[:1]))
+    assert screen_reach(cells, [Tool.ball(4)], [UP], alone).all()
+    assert np.array_equal(screen_reach(cells, [held], [UP], ReachScene.of(alone.part, far))[0, 0], free)
+
+
+def test_dense_points_agree(scenes) -> None:
+    """Nothing shared but the tool's distance: every component at points about 0.6 mm apart on all faces."""
+    part, tools = scenes.pocket(), scenes.rack()[2:5]
+    scene, face = ReachScene.of(part), part.faces[0]
+    cells = FaceCells.of(face, 2.0)
+    axes = unit(np.array([[0.1, 0.2, 1.0], [-0.5, 0.1, 1.0], [0.2, -0.9, 1.0]]))
+    even = np.stack(np.meshgrid(*[np.linspace(0, 1, 81)] * 2), axis=-1).reshape(-1, 2)
+    clouds = [one.evaluate(even[one.contains(even)]).point for one in part.faces]
+    free = screen_reach(cells, tools, axes, scene)
+    some = np.random.default_rng(1).choice(len(cells), 40, replace=False)
+    count = np.zeros(2, dtype=int)
+    for number, tool in enumerate(tools):
+        for a, axis in enumerate(axes):
+            x = unit(np.cross(axis, [1.0, 0, 0]))
+            frame = np.stack([x, np.cross(axis, x), axis], axis=1)
+            for n in some[seen_cells(cells, tool, axes, scene.tolerance.min_lead)[a, some]]:
+                tip = tips(cells.point[n:n + 1], cells.normal[n:n + 1], axis, tool)
+                room = np.inf
+                for k, cloud in enumerate(clouds):
+                    local = (cloud - tip) @ frame
+                    least = [-0.01 if k == 0 else 0.1, 0.5, 1.0]
+                    room = min(room, *(float(tool.distance(local, name).value.min()) - least[c]
+                                       for c, name in enumerate(COMPONENTS)))
+                if free[number, a, n]:
+                    assert room > -0.005
+                else:  # between the points a face may come a little nearer
+                    assert room < 0.05
+                count[int(free[number, a, n])] += 1
+    assert count.min() > 30
+
+
+def test_moving_everything_changes_nothing(scenes) -> None:
+    part, tools = scenes.pocket(), scenes.rack()[:5]
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation([1.0, 2.0, -0.5], 1.1), [30.0, -200.0, 12.0]
+    moved = part.transformed(matrix)
+    axes = screening_axes([FaceCells.of(part.faces[0], 1.0)])[::9]
+    one = screen_reach(FaceCells.of(part.faces[0], 1.0), tools, axes, ReachScene.of(part))
+    other = screen_reach(FaceCells.of(moved.faces[0], 1.0), tools, axes @ matrix[:3, :3].T, ReachScene.of(moved))
+    assert one.shape == other.shape and 0.02 < one.mean() < 0.98
+    assert (one != other).mean() < 1e-3
+
+
+def test_limits_and_stock_count(scenes) -> None:
+    part, tools = scenes.pocket(), scenes.rack()[:4]
+    cells = FaceCells.of(part.faces[0], 1.0)
+    axes = screening_axes([cells])
+    usual = screen_reach(cells, tools, axes, ReachScene.of(part))
+    cone = Cone(UP, np.radians(20))
+    limited = screen_reach(cells, tools, axes, ReachScene.of(part, limits=cone))
+    within = cone.allowed(axes)
+    assert 0 < within.sum() < len(axes) and usual[:, ~within].any()
+    assert not limited[:, ~within].any() and np.array_equal(limited[:, within], usual[:, within])
+    assert len(screening_axes([cells], cone)) == within.sum()
+    # With stock left on the floor a tool stands that much farther off, and reaches no less in the open.
+    thick = screen_reach(cells, tools, axes, ReachScene.of(part, allowance=0.5))
+    assert thick.any() and (thick != usual).any()
+
+
+def test_a_smaller_tool_with_the_same_body_reaches_no_less(scenes) -> None:
+    part = scenes.pocket()
+    cells = FaceCells.of(part.faces[0], 1.0)
+    body = {"flute_length": 8.0, "stickout": 40.0, "holder": [(9.0, 0.0), (9.0, 40.0)]}
+    small, large = screen_reach(cells, [Tool.ball(4, **body), Tool.ball(8, **body)], [UP], ReachScene.of(part))[:, 0]
+    assert not (large & ~small).any() and (small & ~large).any()
+
+
+def test_a_holder_of_many_steps_is_the_holder_that_it_amounts_to(scenes) -> None:
+    part = scenes.pocket()
+    cells = FaceCells.of(part.faces[0], 1.0)
+    axes = screening_axes([cells])[::7]
+    steps = [(9.0, 0.5 * k) for k in range(81)]
+    plain, fine = (Tool.ball(6, stickout=30.0, holder=line) for line in ([(9.0, 0.0), (9.0, 40.0)], steps))
+    assert len(fine.pieces) > 64
+    found = screen_reach(cells, [plain, fine], axes, ReachScene.of(part))
+    assert (found[0] != found[1]).mean() < 1e-3 and 0.02 < found[0].mean() < 0.98
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_all_normals_of_a_seen_cell_are_within_the_angles(scenes, number: int) -> None:
+    tool, face = scenes.rack()[number], scenes.pocket().faces[0]
+    cells = FaceCells.of(face, 4.0)
+    axes = unit(np.random.default_rng(2).normal(size=(400, 3)))
+    lead = np.radians(0.5)
+    seen = seen_cells(cells, tool, axes, lead)
+    lines = Lattice(face, cells.shape).lines
+    for n in np.random.default_rng(3).choice(len(cells), 20, replace=False):
+        (i, j), share = cells.index[n], np.linspace(0, 1, 9)
+        u = lines[0][i] + share * (lines[0][i + 1] - lines[0][i])
+        v = lines[1][j] + share * (lines[1][j + 1] - lines[1][j])
+        dense = face.normal(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2))
+        angle = angle_between(axes[seen[:, n]][:, None], dense[None])
+        slack = 0.1 * cells.spread[n]  # between nine samples normals turn on a little
+        assert angle.max() <= np.pi / 2 - tool.half_angle + slack
+        assert tool.flat_radius == 0 or angle.min() >= lead - slack
+    assert 0.3 < seen.mean() <= 0.5
+
+
+def test_no_tools_and_no_axes_are_no_answers(scenes) -> None:
+    part = scenes.pocket()
+    cells, scene = FaceCells.of(part.faces[0], 4.0), ReachScene.of(part)
+    assert screen_reach(cells, [], [UP], scene).shape == (0, 1, len(cells))
+    assert screen_reach(cells, scenes.rack()[:2], np.empty((0, 3)), scene).shape == (2, 0, len(cells))
