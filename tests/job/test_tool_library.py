@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import re
 import subprocess
 import sys
@@ -326,6 +327,8 @@ def test_units_of_a_table(tmp_path: Path, text: str) -> None:
     ("type,diameter (mm)\n\nball,eight\n", "tools.csv, line 3: diameter (mm) is 'eight': a number is needed"),
     ("type,diameter (mm),name\nball,nan,Mine\n", "tools.csv, line 2 (Mine): diameter is nan mm"),
     ("type,diameter (mm)\nball,\n", "line 2 has no diameter: a ball needs diameter"),
+    ("type,diameter (mm),taper angle\ntapered mill,,3\n", "line 2 has no diameter: a tapered needs diameter"),
+    ("type,diameter (mm),taper angle\ntapered mill,3,\n", "line 2 has no half_angle_deg: a tapered needs diameter"),
     ("type,diameter (mm)\nball,0\n", "line 2: diameter is 0.0 mm"),
     ("type,diameter (mm)\nbull nose,8\n", "line 2 has no corner_radius"),
     ("type,diameter (mm),number\nball,8,1.5\n", "line 2: number is '1.5': a whole number is needed"),
@@ -405,3 +408,54 @@ def test_wrong_fusion_libraries(tmp_path: Path) -> None:
     assert "y.tools cannot be read" in refused(written(tmp_path, "y.tools", "no archive"))
     assert "is not a Fusion tool library" in said("x.json", {"type": "ball end mill", "unit": "inches",
                                                              "geometry": {"DC": "a"}})
+
+
+# Anything.
+
+
+def spoilt(value: Any, rng: random.Random) -> Any:
+    """The same data with one place taken away or replaced by something else."""
+    value = json.loads(json.dumps(value))
+    places: list[tuple[Any, Any]] = []
+    left = [value]
+    while left:
+        node = left.pop()
+        inner = list(node) if isinstance(node, dict) else range(len(node)) if isinstance(node, list) else ()
+        places += [(node, key) for key in inner]
+        left += [node[key] for key in inner]
+    node, key = rng.choice(places)
+    others = [None, 0, -1, 1e300, float("nan"), float("inf"), "", "12 mm", [], {}, [1], True, 2.5, 10**400]
+    if rng.random() < 0.2:
+        del node[key]
+    else:
+        node[key] = rng.choice(others)
+    return value
+
+
+def scrambled(text: str, rng: random.Random) -> str:
+    """A text with a piece of it replaced."""
+    at, length = rng.randrange(len(text)), rng.choice((0, 1, 1, 4))
+    piece = rng.choice(["", "nan", "-1", "[]", "'x'", "true", "\n", "1e400", "{}", '"', ";", "T", "\t", "\0"])
+    return text[:at] + piece + text[at + length:]
+
+
+def test_whatever_is_wrong_in_a_file_is_one_sentence(tmp_path: Path) -> None:
+    rng = random.Random(27)
+    ball = fusion("ball end mill", "Small", 2, DC=2, LCF=3, LB=30, SFDM=6, NOF=2, **{"shoulder-length": 10})
+    ball["shaft"] = {"segments": segments((5, 1.9, 6))}
+    ball["holder"] = {"unit": "millimeters", "gaugeLength": 40, "segments": segments((20, 28, 28), (30, 30, 50))}
+    bullnose = {"name": "x", "shape": "bullnose.fcstd", "parameter": {"Diameter": "6 mm", "CornerRadius": "1 mm",
+                                                                      "Length": "50 mm", "ShankDiameter": "6 mm"}}
+    toml = f"{HOLDERS}{BALL}{TORUS}number = 4\nteeth = 2\ncutting_speed = 200.0\nfeed_per_tooth = 0.1\n"
+    kept = 0
+    for _ in range(300):
+        written(tmp_path, "a.fctb", json.dumps(spoilt(bullnose, rng)))
+        for name, text in (("x.json", json.dumps(spoilt({"data": [ball]}, rng))),
+                           ("x.fctl", json.dumps({"tools": [{"nr": 1, "path": "a.fctb"}]})),
+                           ("y.fctl", json.dumps(spoilt({"tools": [{"nr": 1, "path": "a.fctb"}]}, rng))),
+                           ("x.toml", scrambled(toml, rng)), ("x.csv", scrambled(TABLE, rng))):
+            try:
+                kept += len(load_tools(written(tmp_path, name, text)))
+            except InvalidInput as reason:
+                assert "\n" not in str(reason), reason
+    assert kept > 300
