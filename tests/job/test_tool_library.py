@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import re
 import subprocess
 import sys
@@ -180,8 +181,8 @@ def test_numbers_tell_tools_of_one_name_apart_and_twins_are_left_out(tmp_path: P
     assert [tool.number for tool in other] == [3, 4]
     assert load_library(["ball:8", "ball:8"]).warnings == (
         "ball:8 is the same tool as ball:8: only the first one is used",)
-    longer = [Tool.ball(8, stickout=40), Tool.ball(8, stickout=50)]
-    assert len(load_tools(longer)) == 2
+    held = [Tool.ball(8, stickout=40, holder=[(wide, 0), (wide, 50)], number=wide) for wide in (12, 15)]
+    assert [tool.number for tool in load_tools([*held, Tool.ball(8, stickout=50)])] == [12, 15, 0]
 
 
 @pytest.mark.parametrize("source, said", [
@@ -317,6 +318,27 @@ def test_units_of_a_table(tmp_path: Path, text: str) -> None:
     assert tool.feedrate == pytest.approx(4 * 0.1016 * 152_400 / (12.7 * pi))
 
 
+def test_rows_of_one_tool_for_several_materials_are_one_tool(tmp_path: Path) -> None:
+    """Fusion writes a line for each preset; a rate that is stated counts before cutting data, which are rounded."""
+    rack = load_library(written(tmp_path, "tools.csv", (
+        "number,description,type,diameter (mm),spindle speed,surface speed (m/min),cutting feedrate (mm/min),"
+        "feed per tooth (mm),flutes\n1,Ball,ball end mill,8,8000,201,1600,0.1,2\n"
+        "1,Ball,ball end mill,8,4000,101,800,0.1,2\n"
+        "2,Ball,ball end mill,8,4000,101,800,0.1,2\n")))
+    assert [(tool.number, tool.spindle, tool.feedrate) for tool in rack.tools] == [
+        (1, 8000.0, 1600.0), (2, 4000.0, 800.0)]
+    assert rack.warnings == ("tools.csv, line 3 (Ball) is the same tool as tools.csv, line 2 (Ball): only the first "
+                             "one is used",)
+
+
+def test_a_shoulder_whose_diameter_nobody_states_is_as_wide_as_what_follows(tmp_path: Path) -> None:
+    head = "type,diameter (mm),flute length (mm),stickout (mm),shank diameter (mm),neck length (mm)"
+    bare, = load_tools(written(tmp_path, "a.csv", f"{head}\nball,2,3,30,6,12\n"))
+    assert bare.outlines["shank"].tolist() == [[3, 3], [3, 12], [3, 12], [3, 30]]
+    neck, = load_tools(written(tmp_path, "b.csv", f"{head},neck diameter (mm)\nball,2,3,30,6,12,1.9\n"))
+    assert neck.outlines["shank"].tolist() == [[0.95, 3], [0.95, 12], [3, 12], [3, 30]]
+
+
 @pytest.mark.parametrize("text, said", [
     ("", "tools.csv is empty: a header"),
     ("diameter (mm)\n8\n", "tools.csv has no column 'type': name it in the first line"),
@@ -326,6 +348,8 @@ def test_units_of_a_table(tmp_path: Path, text: str) -> None:
     ("type,diameter (mm)\n\nball,eight\n", "tools.csv, line 3: diameter (mm) is 'eight': a number is needed"),
     ("type,diameter (mm),name\nball,nan,Mine\n", "tools.csv, line 2 (Mine): diameter is nan mm"),
     ("type,diameter (mm)\nball,\n", "line 2 has no diameter: a ball needs diameter"),
+    ("type,diameter (mm),taper angle\ntapered mill,,3\n", "line 2 has no diameter: a tapered needs diameter"),
+    ("type,diameter (mm),taper angle\ntapered mill,3,\n", "line 2 has no half_angle_deg: a tapered needs diameter"),
     ("type,diameter (mm)\nball,0\n", "line 2: diameter is 0.0 mm"),
     ("type,diameter (mm)\nbull nose,8\n", "line 2 has no corner_radius"),
     ("type,diameter (mm),number\nball,8,1.5\n", "line 2: number is '1.5': a whole number is needed"),
@@ -362,6 +386,7 @@ def test_a_fusion_library(tmp_path: Path, ending: str) -> None:
                       "segments": segments((20, 28, 28), (30, 30, 50), (40, 63, 43), (30, 44, 20))}
     inch = fusion("bull nose end mill", "Half inch", 3, "inches", DC=0.5, RE=0.0625, LCF=1, LB=2, SFDM=0.5, NOF=4)
     inch["start-values"]["presets"][0]["v_f"] = 40
+    inch["holder"] = {"unit": "millimeters", "segments": segments((60, 40, 50))}
     taper = fusion("tapered mill", "Blade", 4, DC=3, RE=1.500001, TA=4, LCF=20, LB=40, SFDM=6, NOF=3)
     others = [fusion("tapered mill", "Bull", 5, DC=3, RE=0.5, TA=4), fusion("drill", "D", 6, DC=3, SIG=118),
               fusion("turning general", "L", 7), {"type": "holder", "unit": "millimeters", "segments": []}]
@@ -381,10 +406,12 @@ def test_a_fusion_library(tmp_path: Path, ending: str) -> None:
     assert small.holder is not None
     assert small.holder.tolist() == [[14, 0], [14, 20], [15, 20], [25, 50], [31.5, 50], [26.5, 70]]
     assert (half.radius, half.corner_radius, half.stickout) == pytest.approx((6.35, 1.5875, 50.8))
+    # A holder has a unit of its own.
+    assert half.holder is not None and half.holder.tolist() == [[20, 0], [25, 60]]
     assert half.feedrate == pytest.approx(40 * 25.4) and blade.name == "tapered:3x1.5x4"
     assert rack.warnings == (f"shop{ending}: 3 of 6 tools are left out, since no pass is planned with them: 1 drill, "
                              "1 tapered mill, 1 turning general",
-                             "the holder is not checked of 2 of 3 tools, which have none: Half inch; Blade")
+                             "the holder is not checked of 1 of 3 tools, which have none: Blade")
 
 
 def test_wrong_fusion_libraries(tmp_path: Path) -> None:
@@ -405,3 +432,54 @@ def test_wrong_fusion_libraries(tmp_path: Path) -> None:
     assert "y.tools cannot be read" in refused(written(tmp_path, "y.tools", "no archive"))
     assert "is not a Fusion tool library" in said("x.json", {"type": "ball end mill", "unit": "inches",
                                                              "geometry": {"DC": "a"}})
+
+
+# Anything.
+
+
+def spoilt(value: Any, rng: random.Random) -> Any:
+    """The same data with one place taken away or replaced by something else."""
+    value = json.loads(json.dumps(value))
+    places: list[tuple[Any, Any]] = []
+    left = [value]
+    while left:
+        node = left.pop()
+        inner = list(node) if isinstance(node, dict) else range(len(node)) if isinstance(node, list) else ()
+        places += [(node, key) for key in inner]
+        left += [node[key] for key in inner]
+    node, key = rng.choice(places)
+    others = [None, 0, -1, 1e300, float("nan"), float("inf"), "", "12 mm", [], {}, [1], True, 2.5, 10**400]
+    if rng.random() < 0.2:
+        del node[key]
+    else:
+        node[key] = rng.choice(others)
+    return value
+
+
+def scrambled(text: str, rng: random.Random) -> str:
+    """A text with a piece of it replaced."""
+    at, length = rng.randrange(len(text)), rng.choice((0, 1, 1, 4))
+    piece = rng.choice(["", "nan", "-1", "[]", "'x'", "true", "\n", "1e400", "{}", '"', ";", "T", "\t", "\0"])
+    return text[:at] + piece + text[at + length:]
+
+
+def test_whatever_is_wrong_in_a_file_is_one_sentence(tmp_path: Path) -> None:
+    rng = random.Random(27)
+    ball = fusion("ball end mill", "Small", 2, DC=2, LCF=3, LB=30, SFDM=6, NOF=2, **{"shoulder-length": 10})
+    ball["shaft"] = {"segments": segments((5, 1.9, 6))}
+    ball["holder"] = {"unit": "millimeters", "gaugeLength": 40, "segments": segments((20, 28, 28), (30, 30, 50))}
+    bullnose = {"name": "x", "shape": "bullnose.fcstd", "parameter": {"Diameter": "6 mm", "CornerRadius": "1 mm",
+                                                                      "Length": "50 mm", "ShankDiameter": "6 mm"}}
+    toml = f"{HOLDERS}{BALL}{TORUS}number = 4\nteeth = 2\ncutting_speed = 200.0\nfeed_per_tooth = 0.1\n"
+    kept = 0
+    for _ in range(300):
+        written(tmp_path, "a.fctb", json.dumps(spoilt(bullnose, rng)))
+        for name, text in (("x.json", json.dumps(spoilt({"data": [ball]}, rng))),
+                           ("x.fctl", json.dumps({"tools": [{"nr": 1, "path": "a.fctb"}]})),
+                           ("y.fctl", json.dumps(spoilt({"tools": [{"nr": 1, "path": "a.fctb"}]}, rng))),
+                           ("x.toml", scrambled(toml, rng)), ("x.csv", scrambled(TABLE, rng))):
+            try:
+                kept += len(load_tools(written(tmp_path, name, text)))
+            except InvalidInput as reason:
+                assert "\n" not in str(reason), reason
+    assert kept > 300

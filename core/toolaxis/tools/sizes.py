@@ -23,7 +23,7 @@ def number(name: str, value: Any, unit: str = "mm") -> float:
     """
     try:
         found = float(value)
-    except (TypeError, ValueError) as reason:
+    except (TypeError, ValueError, OverflowError) as reason:
         raise InvalidInput(f"{name} is {value!r}: it must be a number of {unit}") from reason
     if not isfinite(found):
         raise InvalidInput(f"{name} is {found} {unit}: it must be a finite number")

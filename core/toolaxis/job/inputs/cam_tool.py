@@ -85,7 +85,7 @@ def entry_from_cam(where: str, stated: Mapping[str, Any]) -> ToolEntry:
              "spindle", "feedrate")
     sizes = {name: known[name] for name in names if name in known}
     if kind == "tapered":
-        sizes["corner_radius"] = known["diameter"] / 2 if _is_full_ball(known) else 0.0
+        sizes["corner_radius"] = known.get("diameter", 0) / 2 if _is_full_ball(known) else 0.0
     sizes |= _cutting_data(known)
     if known.get("diameter"):
         sizes["shank"] = _shank(where, known) or None

@@ -38,7 +38,7 @@ def read_fusion_library(path: Path) -> list[ToolEntry]:
         return [_entry(path, k, tool) for k, tool in enumerate(tools, 1) if tool["type"] != "holder"]
     except InvalidInput:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as reason:
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError, OverflowError) as reason:
         raise InvalidInput(f"{path.name} is not a Fusion tool library: {reason!r}") from reason
 
 

@@ -100,7 +100,7 @@ def build_tool(where: str, sizes: Mapping[str, Any]) -> Tool:
         tool = Tool.of(kind, *(sizes[name] for name in names), **properties)
         rates = rates_from_cutting_data(2 * tool.radius, sizes)
         return replace(tool, feedrate=rates.get("feedrate"), spindle=rates.get("spindle"))
-    except (TypeError, ValueError) as reason:
+    except (TypeError, ValueError, OverflowError) as reason:
         raise InvalidInput(f"{where}: {reason}") from reason
 
 

@@ -202,12 +202,12 @@ def _read_freecad_library(path: Path) -> list[ToolEntry]:
     """A FreeCAD library, whose tool bits stand in the folder Bit beside its own, or where their paths say."""
     try:
         tools = [(int(tool["nr"]), str(tool["path"])) for tool in json.loads(read_text(path))["tools"]]
-    except (ValueError, KeyError, TypeError) as reason:
+    except (ValueError, KeyError, TypeError, OverflowError) as reason:
         raise InvalidInput(f"{path.name} is not a FreeCAD tool library: {reason!r}") from reason
     entries = []
     for number, name in tools:
         places = (path.parent / name, path.parent.parent / "Bit" / name, path.parent / "Bit" / name)
-        bit = next((place for place in places if place.is_file()), None)
+        bit = next((place for place in places if os.path.isfile(place)), None)
         if bit is None:
             raise InvalidInput(f"{path.name}, tool {number}: the tool bit {name} is missing: put it into the folder "
                                "Bit beside the library's own")

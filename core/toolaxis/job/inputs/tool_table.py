@@ -101,9 +101,7 @@ def _column(header: str) -> TableColumn | None:
     assert parts is not None
     name, bracket = parts[1], (parts[2] or "").strip()
     if "_" in bracket:
-        # Fusion writes "Corner Radius (tool_cornerRadius)", and the same words for holders.
-        if not bracket.startswith("tool_"):
-            return None
+        # Fusion writes "Unit (tool_unit)" and "Unit (holder_unit)": what stands in brackets is unique.
         name, bracket = bracket, ""
     word = re.sub(r"[\s_\-]", "", name.lower()).removeprefix("tool")
     meaning = next((one for one, words in _COLUMNS.items() if word in words), None)
