@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from toolaxis.regions.tool_choice import OPEN_PRICE, FacePrices, ToolChain, chains_of, choose_tools
+from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
 
 
 def prices(rng: np.random.Generator, tools: int, axes: int = 3, cells: int = 8) -> FacePrices:
@@ -32,8 +32,7 @@ def test_no_other_choice_is_cheaper(seed: int, change: float) -> None:
     assert cost == pytest.approx(enumerated(chains, change), rel=1e-9)
     assert found.gap <= 1e-6
     assert found.tools == tuple(sorted({tool for one in found.chains for tool in one.tools}))
-    open_cost = OPEN_PRICE * sum(one.open_area for one in found.chains)
-    assert found.seconds == pytest.approx(cost - open_cost, rel=1e-9)
+    assert found.seconds == pytest.approx(cost - sum(one.charge for one in found.chains), rel=1e-9)
 
 
 def test_one_tool_serves_all_where_changes_cost_more_than_they_save() -> None:
@@ -49,16 +48,16 @@ def test_a_smaller_tool_finishes_what_the_larger_one_left() -> None:
     """The large tool reaches three of four cells, the small one all at three times the time."""
     seconds = np.array([[[1.0, 1.0, 1.0, np.inf]], [[3.0, 3.0, 3.0, 3.0]]])
     chains = chains_of(FacePrices(seconds, np.ones(4)), 0.5)
-    assert chains[0].tools == (0, 1) and chains[0].open_area == 0.0
+    assert chains[0].tools == (0, 1) and chains[0].charge == 0.0
     assert chains[0].seconds == pytest.approx(3 * 1.0 + 3.0 + 2 * 0.5)
-    assert {one.tools for one in chains} == {(0, 1), (1,), (0,), ()}
-    assert next(one for one in chains if one.tools == (0,)).open_area == 1.0
+    assert {one.tools for one in chains} == {(0, 1), (1,), (0,)}
+    assert next(one for one in chains if one.tools == (0,)).charge == pytest.approx(2 * 3.0 + 3 * 0.5)
 
 
 def test_a_tool_follows_itself_under_another_axis() -> None:
     seconds = np.array([[[1.0, 1.0, np.inf, np.inf], [np.inf, np.inf, 1.0, 1.0]]])
     best = chains_of(FacePrices(seconds, np.ones(4)), 0.25)[0]
-    assert best.tools == (0, 0) and best.open_area == 0.0 and best.seconds == pytest.approx(4.5)
+    assert best.tools == (0, 0) and best.charge == 0.0 and best.seconds == pytest.approx(4.5)
 
 
 def test_what_no_tool_reaches_costs_nothing_and_is_no_reason_for_a_tool() -> None:
@@ -66,14 +65,7 @@ def test_what_no_tool_reaches_costs_nothing_and_is_no_reason_for_a_tool() -> Non
     hidden = FacePrices(np.full((2, 1, 3), np.inf), np.ones(3))
     assert chains_of(hidden, 1.0) == (ToolChain((), 0.0, 0.0),)
     half = FacePrices(np.array([[[1.0, np.inf, np.inf]]]), np.ones(3))
-    assert chains_of(half, 1.0)[0].open_area == 0.0
+    assert chains_of(half, 1.0)[0].charge == 0.0
     found = choose_tools([chains_of(hidden, 1.0), chains_of(half, 1.0)], 5.0)
     assert found.tools == (0,) and [one.tools for one in found.chains] == [(), (0,)]
     assert choose_tools([chains_of(hidden, 1.0)], 5.0).tools == ()
-
-
-def test_a_sliver_is_no_reason_for_a_tool_of_its_own() -> None:
-    """One percent of a face is left to a later rest pass, not planned as a step of its own."""
-    area = np.array([99.0, 1.0])
-    seconds = np.array([[[1.0, np.inf]], [[np.inf, 0.1]]])
-    assert all(1 not in one.tools for one in chains_of(FacePrices(seconds, area), 0.0))

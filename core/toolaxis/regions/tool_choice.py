@@ -11,10 +11,8 @@ Bools = NDArray[np.bool_]
 
 #: Tools that follow each other on a face at most.
 MOST = 3
-#: What it costs to leave a mm^2 that some tool could machine, s: more than the smallest tool takes for it.
-OPEN_PRICE = 60.0
-#: Share of a face, and of what a tool before left of it, that a tool must machine to be sent there.
-_WORTH, _WORTH_OF_REST = 0.02, 0.1
+#: What a chain leaves is charged at so many times what the quickest tool takes for it, and with so many index moves.
+_DEARER, _FURTHER = 2.0, 3.0
 #: Axes that reach less than the best one by no more than this share are told apart by time.
 _AS_GOOD = 0.02
 
@@ -35,17 +33,17 @@ class ToolChain(NamedTuple):
 
     tools : numbers of the tools from 0, in their order
     seconds : cutting time and index moves, s
-    open_area : what none of them reaches and others would, mm^2
+    charge : for what none of them reaches and others would, s
     """
 
     tools: tuple[int, ...]
     seconds: float
-    open_area: float
+    charge: float
 
     @property
     def cost(self) -> float:
         """Time, with what is left charged, s."""
-        return self.seconds + OPEN_PRICE * self.open_area
+        return self.seconds + self.charge
 
 
 class ToolChoice(NamedTuple):
@@ -85,12 +83,13 @@ def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolC
     Returns
     -------
     tuple of ToolChain
-        The cheapest first, the empty one the last; each tool machines under the axis under which it reaches most, among
+        The cheapest first; the empty one where no tool reaches anything.  Each tool machines under the axis under which it reaches most, among
         those that reach as much under the one that takes least time.
     """
     reached = np.isfinite(prices.seconds)
-    possible = float(prices.area[reached.any(axis=(0, 1))].sum())
-    found = [*_chains(prices, reached, index, most), ToolChain((), 0.0, possible)]
+    least = prices.seconds.min(axis=(0, 1), initial=np.inf)
+    charges = _Charges(np.where(np.isfinite(least), least, 0.0), np.isfinite(least), index)
+    found = [*_chains(prices, reached, charges, most)] or [ToolChain((), 0.0, 0.0)]
     best: dict[frozenset[int], ToolChain] = {}
     for one in sorted(found, key=lambda chain: (chain.cost, len(chain.tools), chain.tools)):
         best.setdefault(frozenset(one.tools), one)
@@ -101,25 +100,37 @@ def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolC
     return tuple(kept)
 
 
-def _chains(prices: FacePrices, reached: Bools, index: float, most: int) -> Iterator[ToolChain]:
-    area, count = prices.area, len(prices.seconds)
-    possible = np.asarray(reached.any(axis=(0, 1)))
+class _Charges(NamedTuple):
+    """What cells cost that a chain leaves.
 
+    least : (cells,) time of the quickest tool and axis for each cell, s; 0 for what nothing reaches
+    possible : (cells,) bool, what something reaches
+    index : time of an index move, s
+    """
+
+    least: Array
+    possible: Bools
+    index: float
+
+    def of(self, left: Bools) -> float:
+        """The charge for some cells, s."""
+        return float(_DEARER * self.least[left].sum() + _FURTHER * self.index) if left.any() else 0.0
+
+
+def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) -> Iterator[ToolChain]:
     def _longer(tools: tuple[int, ...], seconds: float, left: Bools) -> Iterator[ToolChain]:
-        remains = float(area[left].sum())
-        least = max(_WORTH * float(area.sum()), _WORTH_OF_REST * remains)
-        for tool in range(tools[-1] if tools else 0, count):
+        for tool in range(tools[-1] if tools else 0, len(prices.seconds)):
             step = _best_step(prices, reached[tool], tool, left)
-            if step is None or float(area[step.cells].sum()) < least:
+            if step is None:
                 continue
             chain, rest = (*tools, tool), left & ~step.cells
-            spent = seconds + step.seconds + index
-            yield ToolChain(chain, spent, float(area[rest].sum()))
+            spent = seconds + step.seconds + charges.index
+            yield ToolChain(chain, spent, charges.of(rest))
             if len(chain) < most and rest.any():
                 yield from _longer(chain, spent, rest)
 
-    if possible.any():
-        yield from _longer((), 0.0, possible)
+    if charges.possible.any():
+        yield from _longer((), 0.0, charges.possible)
 
 
 def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:
