@@ -136,7 +136,8 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="for all tools (default: each tool's own, else 1000)")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
                      help="rate of rapid traverse where no machine states its own, for times only (default: 10000)")
-    sub.add_argument("--spindle", type=float, metavar="RPM", help="for all tools (default: each tool's own, else 10000)")
+    sub.add_argument("--spindle", type=float, metavar="RPM",
+                     help="for all tools (default: each tool's own, else 10000)")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     default, known = " (default)", strategies().values()

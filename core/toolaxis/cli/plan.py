@@ -42,7 +42,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     tool = _tools(given, spec)
     one = tool if isinstance(tool, Tool) else None
     check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
-                                         given.objective or OBJECTIVES[0], _roughness(given), given.orientations, passes=given.passes))
+                                         spec.inputs.objective, _roughness(given), given.orientations,
+                                         passes=given.passes))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -73,8 +74,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 def _spec(given: Namespace) -> Spec:
     if given.limits:
         parse_limits(given.limits)
+    feedrate = FEEDRATE if given.feedrate is None else given.feedrate
+    spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
-                        given.limits, given.feedrate or FEEDRATE, given.spindle or SPINDLE, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
+                        given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
                         passes=given.passes)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
@@ -155,7 +158,7 @@ def _print_plan(made: Plan, given: Namespace) -> int:
             outcome = () if op.failed else (f"outcome {op.orientation.outcome}",)
             for reason in (*outcome, *op.orientation.reasons):
                 say(f"toolaxis: face {op.face.label}: {reason}")
-        else:
+        elif op.number not in made.taken_over:
             _say_left_over(op)
     say(f"toolaxis: not checked: {', '.join(made.not_checked)}")
     _of_failures(Path(given.out))

@@ -36,8 +36,8 @@ class Operation:
         What the plan's machine takes, where it states the limits of its axes.
     rotary : tuple of float
         Where the rotary axes of the plan's machine stand, rad; empty without one.
-    rest : bool
-        Whether it machines what operations before it left.
+    rest_of : tuple of int
+        Numbers of the operations with larger tools that left it; empty where it is not such a rest.
     traceback : str
         Where the program failed on it, of the exception; plan.json names the file that has it.
     """
@@ -51,7 +51,7 @@ class Operation:
     zones: tuple[Zone, ...] = ()
     time: MachiningTime | None = None
     rotary: tuple[float, ...] = ()
-    rest: bool = False
+    rest_of: tuple[int, ...] = ()
     traceback: str = ""
 
     @property

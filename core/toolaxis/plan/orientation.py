@@ -102,3 +102,8 @@ class Orientation:
     lead: float | None = None
     pattern: str = ISO
     ideal: float = 0.0
+
+    @property
+    def ideal_of_cut(self) -> float:
+        """The ideal length without the share of the area that is left to a clean-up tool, mm."""
+        return self.ideal * (1 - self.unreached)

@@ -40,9 +40,9 @@ class PartAccount:
         operations : sequence of Operation
         """
         done = [op for op in operations if op.done]
-        area = sum(op.face.area for op in operations if not op.rest)
+        area = sum(op.face.area for op in operations if not op.rest_of)
         machined = sum(op.face.area * (1 - op.orientation.unreached) for op in done)
-        ideals = [op.orientation.ideal for op in done]
+        ideals = [op.orientation.ideal_of_cut for op in done]
         bound = sum(ideals) if all(one > 0 for one in ideals) else 0.0
         return PartAccount(float(area), float(min(machined, area)), 0.0,
                            float(sum(op.orientation.length for op in done)), float(bound))

@@ -259,6 +259,11 @@ class Plan:
         return f"<Plan of {len(self.operations)} operations, {done} with a path: {self.outcome}>"
 
     @property
+    def taken_over(self) -> frozenset[int]:
+        """Numbers of the operations of which smaller tools take over what they leave."""
+        return frozenset(number for op in self.operations for number in op.rest_of)
+
+    @property
     def account(self) -> PartAccount:
         """How much of its faces it machines."""
         return PartAccount.of(self.operations)

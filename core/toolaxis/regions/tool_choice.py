@@ -83,8 +83,8 @@ def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolC
     Returns
     -------
     tuple of ToolChain
-        The cheapest first; the empty one where no tool reaches anything.  Each tool machines under the axis under which it reaches most, among
-        those that reach as much under the one that takes least time.
+        The cheapest first; the empty one where no tool reaches anything.  Each tool machines under the axis under which
+        it reaches most, among those that reach as much under the one that takes least time.
     """
     reached = np.isfinite(prices.seconds)
     least = prices.seconds.min(axis=(0, 1), initial=np.inf)
@@ -105,16 +105,16 @@ class _Charges(NamedTuple):
 
     least : (cells,) time of the quickest tool and axis for each cell, s; 0 for what nothing reaches
     possible : (cells,) bool, what something reaches
-    index : time of an index move, s
+    move : time of an index move, s
     """
 
     least: Array
     possible: Bools
-    index: float
+    move: float
 
     def of(self, left: Bools) -> float:
         """The charge for some cells, s."""
-        return float(_DEARER * self.least[left].sum() + _FURTHER * self.index) if left.any() else 0.0
+        return float(_DEARER * self.least[left].sum() + _FURTHER * self.move) if left.any() else 0.0
 
 
 def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) -> Iterator[ToolChain]:
@@ -124,7 +124,7 @@ def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) ->
             if step is None:
                 continue
             chain, rest = (*tools, tool), left & ~step.cells
-            spent = seconds + step.seconds + charges.index
+            spent = seconds + step.seconds + charges.move
             yield ToolChain(chain, spent, charges.of(rest))
             if len(chain) < most and rest.any():
                 yield from _longer(chain, spent, rest)

@@ -92,27 +92,48 @@ def plan_table(plan: Plan) -> Table:
         shown = [op for op in plan.operations if op.number not in blades.copies]
         rows = [[f"{row[0]} {blades.side_of(op.face.number)}".strip(), *row[1:]]
                 for row, op in zip(rows, shown, strict=True)]
+    columns = [*_COLUMNS]
+    if len(plan.tools) > 1:
+        columns.insert(1, ("tool", "left"))
+        shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
+        rows = [[row[0], op.tool.shop_name, *row[1:]] for row, op in zip(rows, shown, strict=True)]
     moves = any(op.orientation.lead is not None for op in plan.operations)
-    title = (f"{plan.named_tools}, scallop {plan.inputs.scallop:g} mm, tolerance {plan.inputs.tolerance.gouge:g} mm: "
+    title = (f"{_titled(plan)}, scallop {plan.inputs.scallop:g} mm, tolerance {plan.inputs.tolerance.gouge:g} mm: "
              f"cutting length {plan.length:.1f} mm, with links {plan.length + plan.travel:.1f} mm, "
              f"time {clock(plan.seconds)}, " + ("moving axes" if moves else f"different axes {plan.orientations}"))
     if plan.machine is not None:
         names = "/".join(axis.name for axis in plan.machine.machine.rotary)
         shown = [op for op in plan.operations if blades is None or op.number not in blades.copies]
-        rows = [[*row[:2], _angles(plan, op), *row[2:]] for row, op in zip(rows, shown, strict=True)]
+        at = 1 + [name for name, _ in columns].index("axis")
+        rows = [[*row[:at], _angles(plan, op), *row[at:]] for row, op in zip(rows, shown, strict=True)]
         title += f", {plan.machine.machine.name}"
-    columns = [*_COLUMNS, ("over\nideal %", "right"), ("with links\nmm", "right"), ("time\nmin:s", "right"),
-               ("clean-\nup %", "right"), ("outcome", "left")]
+    columns += [("over\nideal %", "right"), ("with links\nmm", "right"), ("time\nmin:s", "right"),
+                ("clean-\nup %", "right"), ("outcome", "left")]
     if plan.machine is not None:
-        columns.insert(2, (f"{names}\ndeg", "left"))
+        columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
+    notes = _of_part(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def _titled(plan: Plan) -> str:
+    """The tools of a plan, for the title of a table."""
+    return plan.named_tools if len(plan.tools) == 1 else f"{len(plan.used_tools)} tools"
+
+
+def _of_part(plan: Plan) -> str:
+    """How much of the faces several tools machine; empty where there is one tool."""
+    if len(plan.tools) == 1:
+        return ""
+    found = plan.account
+    share = 100 * found.machined / found.area if found.area > 0 else 0.0
+    return (f"machined: {found.machined:.1f} of {found.area:.1f} mm2 ({share:.1f} %) with {len(plan.used_tools)} of "
+            f"{len(plan.tools)} tools; open: {found.open:.1f} mm2")
 
 
 def _over_ideal(operations: Sequence[Operation]) -> str:
     """By how many percent cuts are longer than the ideal ones with the same axes; a dash where these are not known."""
-    ideal = sum(op.orientation.ideal for op in operations)
+    ideal = sum(op.orientation.ideal_of_cut for op in operations)
     known = all(op.orientation.ideal > 0 for op in operations) and ideal > 0
     return number(100 * (sum(op.orientation.length for op in operations) / ideal - 1), 1) if known else "-"
 
@@ -123,7 +144,7 @@ def _ideal(plan: Plan) -> str:
     over = _over_ideal(done)
     if over == "-":
         return ""
-    length = sum(op.orientation.ideal for op in done)
+    length = sum(op.orientation.ideal_of_cut for op in done)
     return (f"ideal: {length:.1f} mm with these axes, to which passes tend as the scallop height goes to zero (no "
             f"bound); the cuts are {over} % longer, run-outs included")
 
@@ -280,6 +301,6 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     columns = [*_COLUMNS, ("clean-\nup %", "right"), ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"),
                ("verdict", "left")]
     aside = any(op.declared > 0 for op in verdict.operations)
-    return table(f"{plan.named_tools}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
+    return table(f"{_titled(plan)}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
                  f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows,
                  "scallop left and % within: of the area that is not left to clean-up" if aside else "")

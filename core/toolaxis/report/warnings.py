@@ -92,7 +92,8 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
 
 def _of_clean_up(plan: Plan) -> list[Warning]:
     copies = {} if plan.blades is None else plan.blades.copies
-    zones = [zone for op in plan.operations if op.done and op.number not in copies for zone in op.zones]
+    zones = [zone for op in plan.operations
+             if op.done and op.number not in copies and op.number not in plan.taken_over for zone in op.zones]
     if not zones:
         return []
     area, elsewhere = sum(zone.area for zone in zones), sum(zone.elsewhere for zone in zones)

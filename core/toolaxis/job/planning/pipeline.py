@@ -73,9 +73,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         A machine, its name in resources/machines or its file: every axis is one that it can hold in its steps, and no
         motion leaves its travel.  Limits of the axis and their short form ("cone:0,0,1,45") are taken here too.
     faces : sequence of int, "all", "skins" or text such as "3,5-8", optional
-        The sculptured faces unless given; with several tools joined to skins.  Faces that continue each other smoothly are machined, or divided, as one
-        where their numbers stand together: [(3, 4), 7], or "3+4,7"; "skins" joins all that can be joined, see
-        `toolaxis.join`.
+        The sculptured faces unless given; with several tools joined to skins.  Faces that continue each other smoothly
+        are machined, or divided, as one where their numbers stand together: [(3, 4), 7], or "3+4,7"; "skins" joins all
+        that can be joined, see `toolaxis.join`.
     regions : int or "auto", optional
         Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
         unless given.

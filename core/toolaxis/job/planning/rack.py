@@ -1,8 +1,8 @@
 """A part planned with a rack of tools: which tool begins where, and which finishes what others leave."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from string import ascii_lowercase
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,6 @@ from toolaxis.regions.reach_screen import screen_reach
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
 from toolaxis.shape.face import Face
-from toolaxis.shape.part import Part
 
 Array = NDArray[np.float64]
 
@@ -32,16 +31,22 @@ LEFT_OPEN = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class _Waiting:
-    """A sub-surface for which a tool is chosen that has not been used yet.
+    """What waits for a tool.
 
-    face : Face
-    tool : number of the tool
-    left_by : places in the list of operations of those that left it, the first one first; empty for what none began
+    root : Face
+        The sub-surface that was asked for.
+    loops : tuple of (m, 2) arrays
+        In (u, v) of it, what earlier tools left; empty for the whole of it.
+    tool : int
+        Number of the tool.
+    left_by : frozenset of int
+        Places in the list of operations of those that left it.
     """
 
-    face: Face
+    root: Face
+    loops: tuple[Array, ...]
     tool: int
-    left_by: tuple[int, ...] = ()
+    left_by: frozenset[int] = frozenset()
 
 
 @dataclass(eq=False)
@@ -56,9 +61,10 @@ class RackPlanner:
 
     jobs: list[PlanningJob]
     _done: list[Operation] = field(default_factory=list)
-    _left_by: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    _left_by: dict[int, frozenset[int]] = field(default_factory=dict)
     _waiting: list[_Waiting] = field(default_factory=list)
     _used: set[int] = field(default_factory=set)
+    _steps: Counter[str] = field(default_factory=Counter)
 
     def plan(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces.
@@ -97,45 +103,43 @@ class RackPlanner:
         self._used = set(choice.tools)
         for face, chain in zip(whole, choice.chains, strict=True):
             # Where the screening sees no way, the smallest tool is asked: it tells why.
-            self._waiting.append(_Waiting(face, chain.tools[0] if chain.tools else len(self.jobs) - 1))
+            self._waiting.append(_Waiting(face, (), chain.tools[0] if chain.tools else len(self.jobs) - 1))
 
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan all that waits for a tool; False where the user stopped it."""
-        job = self.jobs[tool]
-        now = [one for one in self._waiting if one.tool == tool]
+        now = {self._name(one): one for one in _merge([one for one in self._waiting if one.tool == tool])}
         self._waiting = [one for one in self._waiting if one.tool != tool]
         if not now:
             return True
-        begun = frozenset(op.face.number for op in self._done)
-        made = replace(job, kept=begun).plan_pieces([Target(one.face) for one in now], progress)
+        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root) for label, one in now.items()]
+        job = replace(self.jobs[tool], kept=frozenset(op.face.number for op in self._done))
+        made = job.plan_pieces(targets, progress)
         if made.part is not job.part:  # a skin was taken apart
-            self._take_part(made.part)
+            self.jobs = [replace(one, part=made.part) for one in self.jobs]
         for op in made.operations:
             self._take_over(op, _origin(op.face, now), tool)
         return made.outcome != "cancelled"
 
-    def _take_part(self, part: Part) -> None:
-        self.jobs = [replace(job, part=part) for job in self.jobs]
-        self._screen = _Screen(self.jobs, [one.face for one in self._waiting] or list(part.faces))
+    def _name(self, one: _Waiting) -> str:
+        """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
+        self._steps[one.root.label] += 1
+        step = self._steps[one.root.label]
+        return f"{one.root.label}.{step}" if one.loops else one.root.label
 
     def _take_over(self, op: Operation, origin: _Waiting, tool: int) -> None:
         """Keep an operation, and send what it leaves to the next tool."""
-        if op.done or op.failed:
-            place = len(self._done)
+        # A piece of a skin that was taken apart is a root of its own.
+        root = origin.root if op.face.numbers == origin.root.numbers else op.face
+        loops, left_by = op.face.trims, origin.left_by
+        if op.done:
+            left_by = origin.left_by | {len(self._done)}
+            loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops)
+        following = None if op.failed or not loops else self._next_tool(root.trimmed(loops), tool)
+        if op.done or following is None:
+            self._left_by[len(self._done)] = origin.left_by
             self._done.append(op)
-            self._left_by[place] = origin.left_by
-            loops = [loop for zone in op.zones if zone.at_wall for loop in zone.loops]
-            if not loops or op.failed:
-                return
-            rest, left_by = op.face.trimmed(tuple(loops), _name_rest(op.face.label)), (*origin.left_by, place)
-        else:
-            rest, left_by = op.face, origin.left_by
-        following = self._next_tool(rest, tool)
         if following is not None:
-            self._waiting.append(_Waiting(rest, following, left_by))
-        elif not op.done:
-            self._left_by[len(self._done)] = left_by
-            self._done.append(op)
+            self._waiting.append(_Waiting(root, loops, following, left_by))
 
     def _next_tool(self, rest: Face, tool: int) -> int | None:
         """The tool that finishes what another one left; None where no smaller one reaches anything of it."""
@@ -152,8 +156,8 @@ class RackPlanner:
         """The plan of all that was done."""
         machined = self._machined_of_rest()
         rows = [self._with_elsewhere(k, op, machined) for k, op in enumerate(self._done)]
-        rows = [replace(op, rest=bool(self._left_by.get(k, ()))) for k, op in enumerate(rows)]
-        numbered = tuple(replace(op, number=number) for number, op in enumerate(rows, 1))
+        numbered = tuple(replace(op, number=k + 1, rest_of=tuple(sorted(one + 1 for one in self._left_by.get(k, ()))))
+                         for k, op in enumerate(rows))
         account = PartAccount.of(numbered)
         if not outcome:
             lost = any(op.failed for op in numbered) or not account.machined
@@ -181,18 +185,23 @@ class RackPlanner:
                                        for zone in op.zones))
 
 
-def _origin(face: Face, some: Sequence[_Waiting]) -> _Waiting:
-    """Of which sub-surface that waited a face is one, or a piece."""
-    own = [one for one in some if set(face.numbers) <= set(one.face.numbers)]
-    named = [one for one in own if not face.label.removeprefix(one.face.label).strip(ascii_lowercase)]
-    return max(named or own, key=lambda one: len(one.face.label))
+def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
+    """What waits for a tool, that of one sub-surface together."""
+    found: dict[int, _Waiting] = {}
+    for one in some:
+        before = found.get(id(one.root))
+        found[id(one.root)] = one if before is None else replace(
+            one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by)
+    return list(found.values())
 
 
-def _name_rest(label: str) -> str:
-    """What the rest of a sub-surface is called: 7, then 7.2, then 7.3."""
-    head, dot, tail = label.partition(".")
-    number = tail.rstrip(ascii_lowercase)
-    return f"{head}.{int(number) + 1 if dot and number.isdigit() else 2}{tail[len(number):]}"
+def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
+    """Of which sub-surface that waited a face is one, or a piece: pieces have letters behind its name."""
+    label = face.label
+    while label not in named and label[-1:].isalpha():
+        label = label[:-1]
+    return named[label] if label in named else next(
+        one for one in named.values() if set(face.numbers) <= set(one.root.numbers))
 
 
 class _Screen:

@@ -5,6 +5,7 @@ from matplotlib import patheffects
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -21,14 +22,17 @@ Array = NDArray[np.float64]
 
 #: With more sub-surfaces than this, arrows are shorter.
 _MANY = 8
+#: How far rests are lifted towards the viewer for each larger tool before, pixels.
+_LIFT = 3
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
 def overview_picture(plan: Plan) -> Figure:
-    """The part with every sub-surface in a colour of its own, its passes, and its numbered axis.
+    """The part with every sub-surface in a colour, its passes, and its numbered axis.
 
-    Neighbours have different colours; a sub-surface without an axis is grey and says so, or is hatched where it is left
-    to clean-up.  Turned copies have the colour of their original, and neither arrow nor passes.
+    Neighbours have different colours; with several tools every tool has one, which the legend names.  A sub-surface
+    without an axis is grey and says so, or is hatched where it is left to clean-up.  Turned copies have the colour of
+    their original, and neither arrow nor passes.
 
     Parameters
     ----------
@@ -50,9 +54,14 @@ def overview_picture(plan: Plan) -> Figure:
     for face in plan.part.faces:
         if face.number not in whole:
             canvas.splat(*face_splats(face, seen), _PART)
-    colours = {op.number: COLOURS[k] for op, k in zip(operations, colour_map(operations), strict=True)}
+    tools = plan.used_tools if len(plan.used_tools) > 1 else ()
+    chosen = [tools.index(op.tool) if op.tool in tools else 0 for op in operations] if tools else colour_map(operations)
+    colours = {op.number: COLOURS[k % len(COLOURS)] for op, k in zip(operations, chosen, strict=True)}
     for op in plan.operations:
-        canvas.splat(*face_splats(op.face, seen), colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
+        points, ways = face_splats(op.face, seen)
+        lift = _LIFT * seen.pixel * len(op.rest_of)  # rests lie on what larger tools left
+        canvas.splat(points + lift * seen.back, ways,
+                     colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
     for faces, size in _left(plan):
         hatch(canvas, faces, 0.01 * size)
@@ -68,21 +77,28 @@ def overview_picture(plan: Plan) -> Figure:
     done = sum(op.done for op in plan.operations)
     ax.set_title(f"{plan.named_tools}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
                  f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
+    named = [Patch(facecolor=COLOURS[k % len(COLOURS)], label=tool.shop_name) for k, tool in enumerate(tools)]
     if any(op.zones or not op.done for op in operations):
-        ax.legend(handles=[hatch_patch()], loc="lower right", fontsize=8, frameon=False)
+        named.append(hatch_patch())
+    if named:
+        ax.legend(handles=named, loc="lower right", fontsize=8, frameon=False)
     scale_bar(ax, seen)
     bare(ax)
     return made
 
 
 def _left(plan: Plan) -> list[tuple[list[Face], float]]:
-    """What is left to clean-up of an operation and its turned copies together, and the size of its sub-surface, mm."""
+    """What is left to clean-up of an operation and its turned copies together, and the size of its sub-surface, mm.
+
+    Not what smaller tools took over: what these leave is their own.
+    """
     copies = {} if plan.blades is None else plan.blades.copies
     found: dict[int, tuple[list[Face], float]] = {}
     for op in plan.operations:
         left = not op.done and outcome_of([op], plan.blades) == "complete"
         together, _ = found.setdefault(copies.get(op.number, op.number), ([], op.face.diagonal))
-        together.extend((op.face,) if left else zone_faces(op))
+        if op.number not in plan.taken_over:
+            together.extend((op.face,) if left else zone_faces(op))
     return list(found.values())
 
 
