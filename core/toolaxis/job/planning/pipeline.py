@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import count
 from math import pi
 from typing import Any
 
@@ -204,7 +205,16 @@ def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,
         small, left = [], ()
     kept = [one for one in tools if one not in small]
     kept.sort(key=lambda one: (-one.radius, one.corner_radius, one.half_angle, one.number))
-    return ToolLibrary(tuple(kept), (*found.warnings, *left))
+    return ToolLibrary(_numbered(kept), (*found.warnings, *left))
+
+
+def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
+    """Tools of which each has a place in the magazine where there are several: those without get free ones."""
+    if len(tools) == 1:
+        return tuple(tools)
+    taken = {one.number for one in tools}
+    free = (number for number in count(1) if number not in taken)
+    return tuple(one if one.number else replace(one, number=next(free)) for one in tools)
 
 
 def _check_for_rack(moves: bool, method: str, regions: Any, orientations: Any, given: Any, compare: bool) -> None:

@@ -57,14 +57,16 @@ def overview_picture(plan: Plan) -> Figure:
     tools = plan.used_tools if len(plan.used_tools) > 1 else ()
     chosen = [tools.index(op.tool) if op.tool in tools else 0 for op in operations] if tools else colour_map(operations)
     colours = {op.number: COLOURS[k % len(COLOURS)] for op, k in zip(operations, chosen, strict=True)}
+    # Rests lie on what larger tools left.
+    lifts = {op.number: _LIFT * seen.pixel * len(op.rest_of) for op in plan.operations}
+    highest = max(lifts.values())
     for op in plan.operations:
         points, ways = face_splats(op.face, seen)
-        lift = _LIFT * seen.pixel * len(op.rest_of)  # rests lie on what larger tools left
-        canvas.splat(points + lift * seen.back, ways,
+        canvas.splat(points + lifts[op.number] * seen.back, ways,
                      colours[copies.get(op.number, op.number)] if op.done else _NO_AXIS)
     canvas.close()
     for faces, size in _left(plan):
-        hatch(canvas, faces, 0.01 * size)
+        hatch(canvas, faces, 0.01 * size + highest)
     made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")

@@ -1,0 +1,177 @@
+"""Plans with a rack of tools: what is chosen, what smaller tools take over, and how that is written, judged and posted.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.errors import InvalidInput
+from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.job.output.post import post_plan
+from toolaxis.machine.setup import Mounting
+from toolaxis.plan.plan import Plan
+from toolaxis.progress import Progress
+from toolaxis.report.tables import plan_table, verdict_table
+from toolaxis.shape.part import Part
+
+#: The small one is so slow that the large one begins, whatever a tool change takes.
+TOOLS = [ta.Tool.ball(10), ta.Tool.ball(3, feedrate=200.0, spindle=12000.0)]
+SCALLOP = 0.1
+UP = "cone:0,0,1,40"
+
+
+def trough(tight: float = 3.0) -> Part:
+    """A gentle sheet, 24 x 24 mm, whose middle has a hollow along it that is too tight for a large cutter."""
+    x, y = np.meshgrid(np.linspace(0, 24, 7), np.linspace(0, 24, 25), indexing="ij")
+    z = 0.01 * (x - 12) ** 2 - 1.6 * np.exp(-(((y - 12) / tight) ** 2))
+    return Part.from_faces([ta.Face.from_bspline(np.stack([x, y, z], axis=-1))])
+
+
+def walled() -> Part:
+    """A gentle sheet, 24 x 24 mm, and a wall along one of its sides."""
+    x, y = np.meshgrid(np.linspace(0, 24, 5), np.linspace(0, 24, 5), indexing="ij")
+    wall = np.array([[[0.0, 0.0, -1.0], [0.0, 0.0, 9.0]], [[24.0, 0.0, -1.0], [24.0, 0.0, 9.0]]])
+    return Part.from_faces([ta.Face.from_bspline(np.stack([x, y, 0.004 * (x - 12) ** 2], axis=-1)),
+                            ta.Face.from_bspline(wall, degree=(1, 1), flip=True)])
+
+
+@pytest.fixture(scope="module")
+def planned() -> Plan:
+    return ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1)
+
+
+def areas(plan: Plan) -> dict[str, float]:
+    return {op.face.label: op.face.area for op in plan.operations}
+
+
+def test_the_smaller_tool_takes_over_what_the_larger_one_leaves(planned: Plan) -> None:
+    first, rest = planned.operations
+    assert first.tool.name == "ball:10" and first.done and not first.rest_of
+    assert rest.tool.name == "ball:3" and rest.done and rest.rest_of == (1,) and rest.face.label == "1.2"
+    left = sum(zone.area for zone in first.zones if zone.at_wall)
+    assert 24 * 2 < left < 24 * 6, "the large ball keeps off the wall by its radius"
+    assert rest.face.area == pytest.approx(left, rel=0.02)
+    assert 0.5 * left < sum(zone.elsewhere for zone in first.zones) < left, "the small one does by its own"
+    assert planned.taken_over == {1} and first.face.label == "1"
+
+
+def test_a_hollow_too_tight_for_the_large_tool_goes_to_the_small_one() -> None:
+    made = ta.plan(trough(), TOOLS, SCALLOP, limits=UP, workers=1)
+    large, small = ([op for op in made.operations if op.tool.name == name] for name in ("ball:10", "ball:3"))
+    assert large and small and made.outcome == "complete"
+    assert all(abs(op.face.evaluate(op.face.grid(9, 9)).point[:, 1].mean() - 12) < 2 for op in small)
+    assert sum(op.face.area for op in small) < 0.6 * made.account.area
+    assert ta.verify(made).passed
+
+
+def test_areas_of_a_part_add_up(planned: Plan) -> None:
+    found = planned.account
+    assert found.area == pytest.approx(planned.part.faces[0].area, rel=1e-9)
+    large, small = planned.operations
+    assert found.machined == pytest.approx(sum(op.face.area * (1 - op.orientation.unreached) for op in (large, small)))
+    assert found.machined + found.open == pytest.approx(found.area, rel=1e-12)
+    assert found.open > 1e-3 * found.area and planned.outcome == "incomplete", "no ball reaches into the corner"
+    assert found.length == pytest.approx(planned.length) and found.gap == pytest.approx(found.length / found.bound - 1)
+
+
+def test_the_judge_passes_each_operation_with_its_own_tool(planned: Plan) -> None:
+    verdict = ta.verify(planned)
+    assert all(op.passed for op in verdict.operations), verdict.reasons
+    assert len(verdict.operations) == len(planned.operations)
+
+
+def test_the_judge_finds_a_plan_whose_tools_were_swapped(planned: Plan) -> None:
+    from dataclasses import replace
+
+    other = {planned.tools[0]: planned.tools[1], planned.tools[1]: planned.tools[0]}
+    wrong = replace(planned, operations=tuple(replace(op, tool=other[op.tool]) for op in planned.operations))
+    assert not all(op.passed for op in ta.verify(wrong).operations)
+
+
+def test_it_is_written_and_read_back(planned: Plan, tmp_path: Path) -> None:
+    with stage_folder(tmp_path / "out") as stage:
+        write_plan(planned, stage.folder)
+        stage.publish()
+    back = read_plan(tmp_path / "out")
+    assert back.tools == planned.tools and [op.tool for op in back.operations] == [op.tool for op in planned.operations]
+    assert [op.rest_of for op in back.operations] == [op.rest_of for op in planned.operations]
+    assert back.account == planned.account and areas(back) == pytest.approx(areas(planned), rel=1e-9)
+    assert "CUTTER/3" in (tmp_path / "out" / f"{planned.operations[1].name}.apt").read_text()
+
+
+def test_tables_name_the_tools_and_what_stays_open(planned: Plan) -> None:
+    made = plan_table(planned)
+    assert [str(column.header) for column in made.columns][1] == "tool"
+    assert list(made.columns[1].cells)[:2] == ["Ball D10", "Ball D3"]
+    assert "2 of 2 tools; open: " in str(made.caption)
+    assert str(verdict_table(planned, ta.verify(planned)).title).startswith("2 tools, ")
+
+
+def test_every_tool_has_a_program_with_its_number(planned: Plan) -> None:
+    files = post_plan(planned, "fanuc", Mounting(ta.load_machine("bc-table-table")))
+    assert sorted(files) == ["program-fanuc-t1.nc", "program-fanuc-t2.nc", "setup-fanuc-t1.md", "setup-fanuc-t2.md"]
+    second = files["program-fanuc-t2.nc"]
+    assert "T2 M6" in second and "G43 H2" in second and "T1 M6" not in second
+    assert "OP01-FACE1)" in files["program-fanuc-t1.nc"] and "OP01-FACE1)" not in second
+    assert "| T2 | ball:3 |" in files["setup-fanuc-t2.md"]
+
+
+def test_the_order_of_the_tools_and_the_number_of_processes_do_not_matter(planned: Plan) -> None:
+    again = ta.plan(walled(), TOOLS[::-1], SCALLOP, faces=[1], limits=UP, workers=2)
+    assert [op.tool.name for op in again.operations] == [op.tool.name for op in planned.operations]
+    assert [op.face.label for op in again.operations] == [op.face.label for op in planned.operations]
+    for one, other in zip(again.operations, planned.operations, strict=True):
+        assert one.path is not None and other.path is not None and np.array_equal(one.path.cl, other.path.cl)
+
+
+def test_a_tool_s_own_feed_counts_unless_one_is_given_for_all(planned: Plan) -> None:
+    files = post_plan(planned, "fanuc", Mounting(ta.load_machine("bc-table-table")))
+    assert "S12000 M3" in files["program-fanuc-t2.nc"] and "F200." in files["program-fanuc-t2.nc"]
+    assert "S10000 M3" in files["program-fanuc-t1.nc"] and "F1000." in files["program-fanuc-t1.nc"]
+    first, rest = planned.operations[0], planned.operations[1]
+    assert rest.seconds(1000.0, 1e9) == pytest.approx(rest.seconds(500.0, 1e9), rel=1e-6)
+    assert first.seconds(1000.0, 1e9) == pytest.approx(first.seconds(500.0, 1e9) / 2, rel=1e-6)
+    alike = ta.plan(trough(40.0), TOOLS, SCALLOP, limits=UP, workers=1, feedrate=800.0)
+    assert {tool.feedrate for tool in alike.tools} == {None} and alike.inputs.feedrate == 800.0
+
+
+def test_a_face_that_one_tool_machines_best_gets_that_one() -> None:
+    """A gentle sheet with next to no hollow: the large ball alone."""
+    gentle = ta.plan(trough(40.0), TOOLS, SCALLOP, limits=UP, workers=1)
+    assert [op.tool.name for op in gentle.operations] == ["ball:10"] and gentle.outcome == "complete"
+
+
+def test_what_no_tool_reaches_stays_open_and_the_plan_incomplete() -> None:
+    made = ta.plan(trough(1.0), TOOLS, SCALLOP, limits=UP, workers=1)
+    assert made.outcome == "incomplete" and made.account.open > 1.0
+    assert all(op.orientation.reasons or op.done for op in made.operations)
+    assert made.account.open == pytest.approx(made.account.area - made.account.machined)
+
+
+def test_stopped_between_tools_it_keeps_what_is_finished() -> None:
+    seen: list[str] = []
+    stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any("Ball D3" in one for one in seen))
+    made = ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1, progress=stopping)
+    assert made.outcome == "cancelled" and [op.tool.name for op in made.operations] == ["ball:10"]
+
+
+@pytest.mark.parametrize("given, said", [
+    ({"regions": 2}, "regions is planned with one tool and several are given"),
+    ({"orientations": 1}, "orientations is planned with one tool"),
+    ({"compare": True}, "a comparison is planned with one tool"),
+    ({"method": "roman"}, "the method roman is planned with one tool"),
+    ({"tool": []}, "the rack is empty"),
+    ({"tool": ["ball:3", "sphere:3"]}, "'sphere:3'"),
+    ({"scallop": 9.0}, "not below the cutter radius"),
+])
+def test_what_a_rack_cannot_do_is_refused_in_one_sentence(given: dict[str, object], said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        ta.plan(**{"part": trough(), "tool": TOOLS, "scallop": SCALLOP, **given})  # type: ignore[arg-type]
+
+
+def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
+    made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
+    assert [tool.name for tool in made.tools] == ["ball:10"]
+    assert any("left out: its radius is not above the scallop height" in why for why in made.part.warnings)
