@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 #: Area below which what a tool leaves is not worth another one, mm^2.
 LEAST_AREA = 0.01
+#: Angle between the axes that are screened, rad, and cells of a face for it, about.
+APART, _CELLS = np.radians(20), 200
 #: Share of the faces that may stay open in a plan that is complete.
 LEFT_OPEN = 1e-3
 
@@ -219,7 +221,10 @@ class _Screen:
         self._jobs = jobs
         self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
                                     first.inputs.allowance)
-        self._axes = screening_axes([FaceCells.of(face, jobs[-1].tool.radius) for face in faces], first.axis_limits)
+        self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
+
+    def _cells(self, face: Face) -> FaceCells:
+        return FaceCells.of(face, max(self._jobs[-1].tool.radius, float(np.sqrt(face.area / _CELLS))))
 
     def chains(self, face: Face, begin: int) -> tuple[ToolChain, ...]:
         """Chains of tools for a face, from a tool on.
@@ -232,7 +237,7 @@ class _Screen:
         jobs = self._jobs[begin:]
         inputs = jobs[0].inputs
         tools = [job.tool for job in jobs]
-        cells = FaceCells.of(face, tools[-1].radius)
+        cells = self._cells(face)
         axes = self._axes[(cells.normal @ self._axes.T > 0).any(axis=0)]
         if not len(axes) or not len(cells):
             return (ToolChain((), 0.0, 0.0),)
