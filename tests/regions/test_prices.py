@@ -50,6 +50,26 @@ def test_widths_are_the_widest_exact_strips(scenes) -> None:
     assert 0.97 < low and abs(middle - 1) < 0.005 and high < 1.03
 
 
+@pytest.mark.parametrize(("lean", "least"), [(1.0, 0.85), (2.0, 0.94), (5.0, 0.98), (12.0, 0.99)])
+def test_near_the_normal_a_flat_bottom_limits_the_strip(scenes, lean: float, least: float) -> None:
+    """On a dome, whose curvatures differ by four: the second order alone would give strips of any width there."""
+    x = np.array([-20.0, 0.0, 20.0])
+    xx, yy = np.meshgrid(x, x, indexing="ij")
+    square = np.array([400.0, -400.0, 400.0])
+    dome = Face.from_bspline(np.stack([xx, yy, -(square[:, None] / 60 + square / 240)], axis=-1), (2, 2))
+    cells, rng = FaceCells.of(dome, 4.0), np.random.default_rng(4)
+    turns = np.arange(36) * np.pi / 36
+    for tool in scenes.rack()[3:7]:
+        for n in rng.choice(len(cells), 12):
+            left = np.cross(cells.normal[n], cells.tangent[n])
+            way = rng.uniform(0, 2 * np.pi)
+            aside = np.cos(way) * cells.tangent[n] + np.sin(way) * left
+            axis = np.cos(np.radians(lean)) * cells.normal[n] + np.sin(np.radians(lean)) * aside
+            feeds = np.cos(turns)[:, None] * cells.tangent[n] + np.sin(turns)[:, None] * left
+            exact = strip_width(dome, tool, np.tile(cells.uv[n], (36, 1)), axis, SCALLOP, feeds).sum(axis=1).max()
+            assert least <= widths(cells, [tool], [axis], SCALLOP)[0, 0, n] / exact <= 1.005
+
+
 def test_a_hollow_tighter_than_the_cutter_has_no_strip() -> None:
     turn, along = np.meshgrid(np.linspace(-0.8, 0.8, 33), np.linspace(0, 30, 5), indexing="ij")
     trough = Face.from_bspline(np.stack([5 * np.sin(turn), along, -5 * np.cos(turn)], axis=-1))

@@ -17,6 +17,8 @@ from toolaxis.regions.reach_screen import screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
+from toolaxis.skin.find import find_skins
+from toolaxis.skin.join import join
 from toolaxis.tools.tool import COMPONENTS, Tool
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -25,18 +27,25 @@ UP = np.array([0.0, 0.0, 1.0])
 WRONG = 0.01
 
 
-def compare(part: Part, tools: list[Tool], faces: int) -> np.ndarray:
+def some_of(part: Part, count: int) -> list[Face]:
+    """Sculptured faces drawn at random."""
+    faces = part.sculptured
+    drawn = np.random.default_rng(5).choice(len(faces), min(count, len(faces)), replace=False)
+    return [faces[k] for k in drawn]
+
+
+def compare(part: Part, tools: list[Tool], faces: list[Face]) -> np.ndarray:
     """Counts of random postures by what the bounds say (row: blocked, free) and what the screen says (column)."""
     rng, count = np.random.default_rng(5), np.zeros((2, 2), dtype=int)
-    scene, some = ReachScene.of(part), part.sculptured
-    for k in rng.choice(len(some), min(faces, len(some)), replace=False):
-        cells = FaceCells.of(some[k], 1.0)
+    scene = ReachScene.of(part)
+    for face in faces:
+        cells = FaceCells.of(face, 1.0)
         axes = rng.permutation(screening_axes([cells]))[:8]
         drawn = rng.choice(len(cells), min(30, len(cells)), replace=False)
         free = screen_reach(cells, tools, axes, scene)
-        groups = group_surroundings(some[k], scene.tolerance, part=part)
+        groups = group_surroundings(face, scene.tolerance, part=part)
         for number, tool in enumerate(tools):
-            judge = Feasibility(some[k], tool, groups, scene.tolerance)
+            judge = Feasibility(face, tool, groups, scene.tolerance)
             seen = seen_cells(cells, tool, axes, scene.tolerance.min_lead)
             assert not (free[number] & ~seen).any()
             for a, axis in enumerate(axes):
@@ -54,13 +63,28 @@ def check(count: np.ndarray, least: int) -> None:
 
 
 def test_a_pocket_is_screened_as_the_bounds_say(scenes) -> None:
-    check(compare(scenes.pocket(), scenes.rack(), 3), 400)
+    part = scenes.pocket()
+    check(compare(part, scenes.rack(), some_of(part, 3)), 400)
 
 
 @pytest.mark.parametrize(("name", "faces"), [("freeform", 1), ("bosses", 2), ("blisk", 5)])
 def test_an_example_is_screened_as_the_bounds_say(scenes, name: str, faces: int) -> None:
     pytest.importorskip("OCP")
-    check(compare(ta.load(EXAMPLES / f"{name}.step"), scenes.rack(), faces), 150)
+    part = ta.load(EXAMPLES / f"{name}.step")
+    check(compare(part, scenes.rack(), some_of(part, faces)), 150)
+
+
+@pytest.mark.parametrize(("name", "member"), [("skin", 1), ("mousecover", 33)])
+def test_a_skin_is_screened_as_the_bounds_say(scenes, request: pytest.FixtureRequest, name: str, member: int) -> None:
+    """Of six patches whose parameters go together, and of faces that are seen in a plane."""
+    pytest.importorskip("OCP")
+    folder = EXAMPLES if name == "skin" else request.getfixturevalue("shared_parts")
+    part = ta.load(folder / f"{name}.step")
+    (numbers,) = (some for some in find_skins(part).joined if member in some)
+    whole = join(part, numbers)
+    skin = whole.face(numbers[0])
+    assert len(skin.own_faces) > 1 or name == "skin"
+    check(compare(whole, scenes.rack(), [skin]), 30)
 
 
 @pytest.mark.parametrize(("name", "faces"), [("mousecover.step", 6),
@@ -69,7 +93,8 @@ def test_a_real_part_is_screened_as_the_bounds_say(scenes, shared_parts: Path, n
     pytest.importorskip("OCP")
     if not (shared_parts / name).is_file():
         pytest.skip(f"{name} is not among the parts made by others")
-    check(compare(ta.load(shared_parts / name), scenes.rack(), faces), 400)
+    part = ta.load(shared_parts / name)
+    check(compare(part, scenes.rack(), some_of(part, faces)), 400)
 
 
 def floor_and(*others: Face) -> tuple[Part, FaceCells]:

@@ -2,7 +2,8 @@
 
 Every piece of a tool is convex, so its signed distance is a convex function of space: over a cell it is nowhere less
 than the tangent at the cell's centre says.  That leaves out a cell along a contact although the cell is as near to the
-cutter as can be.  What is left of a leaf is halved until a place of the face is too near, or until it is small.
+cutter as can be.  In what is left a few steps lead to the place that is nearest to the piece, where the tangent says
+most; that it is the nearest one of a leaf that bends more than the cutter is not proven.
 """
 
 from typing import NamedTuple
@@ -21,14 +22,21 @@ Bools = NDArray[np.bool_]
 
 MOST_PIECES = 60
 """Pieces of a tool that are looked at together: one bit of a number each."""
+TOGETHER, NEAR = 16, 256
+"""Tips that share a look at what is near, and nodes that are kept of it, at most."""
 DEEP = 128
 """Nodes, and parts of a leaf, that may wait."""
-_SMALL = 0.05
-"""Half length of the parts of a leaf that are not halved any more, mm."""
-_ENOUGH = 400
-"""Parts of a leaf that are looked at, at most: a leaf along a trim edge that nearly touches has many."""
+_STEPS, _CLOSE = 5, 0.1
+"""Steps towards the nearest place of a part of a leaf, and length of a step that ends them, mm."""
+_SMALL, _ENOUGH = 0.05, 200
+"""Half length of parts that are not halved any more, mm, and how many of a leaf are looked at: along a trim edge that
+nearly touches there are many."""
+_CLEAR, _TOO_NEAR, _OPEN = 0, 1, 2
+"""What is known of a part of a leaf."""
 _NO_AXIS = 1e-9
 """Distance from the tool's axis below which there is no direction away from it, mm."""
+_ROUNDING = 1e-6
+"""What is added to distances between tips, mm."""
 
 
 class ReachTree(NamedTuple):
@@ -66,11 +74,13 @@ class ReachRoom(NamedTuple):
     nodes: Indices
     masks: Indices
     parts: Array
+    near: Indices
 
     @staticmethod
     def make() -> "ReachRoom":
         """An empty one."""
-        return ReachRoom(np.empty(DEEP, np.int64), np.empty(DEEP, np.int64), np.empty((DEEP, 4)))
+        return ReachRoom(np.empty(NEAR + DEEP + 2, np.int64), np.empty(NEAR + DEEP + 2, np.int64), np.empty((DEEP, 4)),
+                         np.empty((NEAR, 2), np.int64))
 
 
 @jit_uncounted_inline
@@ -110,84 +120,179 @@ def _row(table: Singles, row: int, first: int) -> Triple:
     return float(table[row, first]), float(table[row, first + 1]), float(table[row, first + 2])
 
 
+class LeafForm(NamedTuple):
+    """A leaf as a tool sees it: w + s a + t b + (s^2 aa + 2 s t ab + t^2 bb) / 2 from the tip, s and t from -1 to 1."""
+
+    w: Triple
+    a: Triple
+    b: Triple
+    aa: Triple
+    ab: Triple
+    bb: Triple
+
+
+class LeafPlace(NamedTuple):
+    """The distance of a place of a leaf from a piece, and how it changes along s and t."""
+
+    value: float
+    slope_s: float
+    slope_t: float
+    bends: Triple
+    """Second derivatives of the face along the gradient: ss, st, tt."""
+    form: Triple
+    """The same with the curvature of the piece."""
+    long_s: float
+    """Length of the change of the place with s, mm, and with t."""
+    long_t: float
+
+
+@jit_uncounted_inline
+def _along_arc(v: Triple, x: Triple, axis: Triple, at: tuple[float, float, float, float]) -> float:
+    """Component of a vector across the gradient in the plane through the tool's axis.
+
+    at : distance from the axis and height of the place, and the slopes of the distance along them.
+    """
+    rho, z, along_rho, along_z = at
+    up = dot(v, axis)
+    return along_rho * up - along_z * (dot(v, x) - z * up) / rho
+
+
 @jit_uncounted
-def _leaf_hit(tree: ReachTree, node: int, piece: Array, limit: float, w: Triple, axis: Triple, parts: Array) -> bool:
+def _look_at(leaf: LeafForm, piece: Array, axis: Triple, s: float, t: float) -> LeafPlace:
+    """The distance of a place of a leaf from a piece."""
+    w, a, b, aa, ab, bb = leaf
+    ps = (a[0] + s * aa[0] + t * ab[0], a[1] + s * aa[1] + t * ab[1], a[2] + s * aa[2] + t * ab[2])
+    pt = (b[0] + s * ab[0] + t * bb[0], b[1] + s * ab[1] + t * bb[1], b[2] + s * ab[2] + t * bb[2])
+    x = (w[0] + 0.5 * (s * (a[0] + ps[0]) + t * (b[0] + pt[0])),
+         w[1] + 0.5 * (s * (a[1] + ps[1]) + t * (b[1] + pt[1])),
+         w[2] + 0.5 * (s * (a[2] + ps[2]) + t * (b[2] + pt[2])))
+    z = dot(x, axis)
+    rho = np.sqrt(max(dot(x, x) - z * z, _NO_AXIS * _NO_AXIS))
+    value, along_rho, along_z, bent = piece_distance(piece, rho, z)
+    out = along_rho / rho
+    up = along_z - out * z
+    g = (out * x[0] + up * axis[0], out * x[1] + up * axis[1], out * x[2] + up * axis[2])
+    bends = (dot(aa, g), dot(ab, g), dot(bb, g))
+    # Half the square of the distance from the piece's centre of curvature, over its radius: its form is one from afar
+    # too.  The piece bends along its arc, and around the axis.
+    around = bent if piece[0] == 0.0 and bent > 0.0 else out
+    place = (rho, z, along_rho, along_z)
+    cs, ct = _along_arc(ps, x, axis, place), _along_arc(pt, x, axis, place)
+    form = (bends[0] + around * dot(ps, ps) + (bent - around) * cs * cs,
+            bends[1] + around * dot(ps, pt) + (bent - around) * cs * ct,
+            bends[2] + around * dot(pt, pt) + (bent - around) * ct * ct)
+    return LeafPlace(value, dot(ps, g), dot(pt, g), bends, form, np.sqrt(dot(ps, ps)), np.sqrt(dot(pt, pt)))
+
+
+@jit_uncounted_inline
+def _lower(at: LeafPlace, most: tuple[float, float, float, float]) -> float:
+    """What the tangent of a convex distance says of a part of a leaf: no place in it is nearer than this.
+
+    most : how far the part goes on down and up in s, and in t
+    """
+    wide_s, wide_t = max(most[0], most[1]), max(most[2], most[3])
+    fall = min(-at.slope_s * most[0], at.slope_s * most[1]) + min(-at.slope_t * most[2], at.slope_t * most[3])
+    sink = (0.5 * (min(at.bends[0], 0.0) * wide_s * wide_s + min(at.bends[2], 0.0) * wide_t * wide_t)
+            - abs(at.bends[1]) * wide_s * wide_t)
+    return float(at.value + fall + sink)
+
+
+@jit_uncounted_inline
+def _step(at: LeafPlace, most: tuple[float, float, float, float]) -> tuple[float, float]:
+    """The step within a part towards the nearest place: Newton's, or to the ends where the form has no lowest place."""
+    ss, st, tt = at.form
+    det = ss * tt - st * st
+    if ss > 0.0 and det > 1e-9 * ss * tt:
+        ds = (st * at.slope_t - tt * at.slope_s) / det
+        dt = (st * at.slope_s - ss * at.slope_t) / det
+    else:
+        ds = -np.inf if at.slope_s > 0.0 else np.inf
+        dt = -np.inf if at.slope_t > 0.0 else np.inf
+    return min(max(ds, -most[0]), most[1]), min(max(dt, -most[2]), most[3])
+
+
+@jit_uncounted
+def _part_state(leaf: LeafForm, piece: Array, limit: float, axis: Triple,
+                part: tuple[float, float, float, float]) -> tuple[int, float, float]:
+    """Whether a part of a leaf is clear of a piece, too near at a place s, t, or open after a few steps.
+
+    part : centre and half widths in s and t
+    """
+    ms, mt, hs, ht = part
+    s, t = ms, mt
+    for _ in range(_STEPS):
+        at = _look_at(leaf, piece, axis, s, t)
+        most = (s - ms + hs, ms + hs - s, t - mt + ht, mt + ht - t)
+        if _lower(at, most) >= limit:
+            return _CLEAR, s, t
+        if at.value < limit:
+            return _TOO_NEAR, s, t
+        ds, dt = _step(at, most)
+        if abs(ds) * at.long_s + abs(dt) * at.long_t < _CLOSE:  # there is nothing nearer around
+            return _CLEAR, s, t
+        s, t = s + ds, t + dt
+    return _OPEN, s, t
+
+
+@jit_uncounted
+def _leaf_hit(tree: ReachTree, node: int, tool: tuple[Array, float], w: Triple, axis: Triple, parts: Array) -> bool:
     """Whether a place of a leaf's face is nearer to a piece than the limit.
 
     Parameters
     ----------
+    tool : array, float
+        The piece, and the limit, mm.
     w : Triple
         The leaf's centre from the tip.
     parts : array
         Room for parts of the leaf: centre and half widths, in halves of the leaf.
     """
     leaf = tree.link[node, 3]
-    a, b = _row(tree.shape, node, 3), _row(tree.shape, node, 6)
-    saa, sab, sbb = _row(tree.bend, leaf, 0), _row(tree.bend, leaf, 3), _row(tree.bend, leaf, 6)
+    form = LeafForm(w, _row(tree.shape, node, 3), _row(tree.shape, node, 6), _row(tree.bend, leaf, 0),
+                    _row(tree.bend, leaf, 3), _row(tree.bend, leaf, 6))
+    size_s, size_t = np.sqrt(dot(form.a, form.a)), np.sqrt(dot(form.b, form.b))
+    u, v, du, dv = tree.rect[leaf, 0], tree.rect[leaf, 1], tree.rect[leaf, 2], tree.rect[leaf, 3]
     trimmed = tree.edge_start[leaf + 1] > tree.edge_start[leaf]
     parts[0, 0], parts[0, 1], parts[0, 2], parts[0, 3] = 0.0, 0.0, 1.0, 1.0
     waiting, looked = 1, 0
     while waiting > 0 and looked < _ENOUGH:
         waiting -= 1
         looked += 1
-        s, t, hs, ht = parts[waiting, 0], parts[waiting, 1], parts[waiting, 2], parts[waiting, 3]
-        # The place, and its change along s and t.
-        ps = (a[0] + s * saa[0] + t * sab[0], a[1] + s * saa[1] + t * sab[1], a[2] + s * saa[2] + t * sab[2])
-        pt = (b[0] + s * sab[0] + t * sbb[0], b[1] + s * sab[1] + t * sbb[1], b[2] + s * sab[2] + t * sbb[2])
-        x = (w[0] + 0.5 * (s * (a[0] + ps[0]) + t * (b[0] + pt[0])),
-             w[1] + 0.5 * (s * (a[1] + ps[1]) + t * (b[1] + pt[1])),
-             w[2] + 0.5 * (s * (a[2] + ps[2]) + t * (b[2] + pt[2])))
-        z = dot(x, axis)
-        rho = np.sqrt(max(dot(x, x) - z * z, 0.0))
-        value, along_rho, along_z, _ = piece_distance(piece, rho, z)
-        out = along_rho / rho if rho > _NO_AXIS else 0.0
-        up = along_z - out * z
-        g = (out * x[0] + up * axis[0], out * x[1] + up * axis[1], out * x[2] + up * axis[2])
-        less = (hs * abs(dot(ps, g)) + ht * abs(dot(pt, g))
-                + 0.5 * (hs * hs * abs(dot(saa, g)) + ht * ht * abs(dot(sbb, g))) + hs * ht * abs(dot(sab, g)))
-        if value - less >= limit and rho > _NO_AXIS:
+        ms, mt, hs, ht = parts[waiting, 0], parts[waiting, 1], parts[waiting, 2], parts[waiting, 3]
+        state, s, t = _part_state(form, tool[0], tool[1], axis, (ms, mt, hs, ht))
+        if state == _CLEAR:
             continue
-        if trimmed:
-            u = tree.rect[leaf, 0] + s * tree.rect[leaf, 2]
-            v = tree.rect[leaf, 1] + t * tree.rect[leaf, 3]
-            inside = _on_face(tree, leaf, u, v)
-            half = (hs * tree.rect[leaf, 2], ht * tree.rect[leaf, 3])
-            if not inside and not _near_edge(tree, leaf, (u, v), half):
-                continue
-            if inside and value < limit:
-                return True
-        elif value < limit:
+        if state == _TOO_NEAR and (not trimmed or _on_face(tree, leaf, u + s * du, v + t * dv)):
             return True
-        long_s, long_t = hs * hs * dot(ps, ps), ht * ht * dot(pt, pt)
-        if max(long_s, long_t) <= _SMALL * _SMALL or waiting + 2 > DEEP:
+        if trimmed and not _near_edge(tree, leaf, (u + ms * du, v + mt * dv), (hs * du, ht * dv)):
+            if not _on_face(tree, leaf, u + ms * du, v + mt * dv):
+                continue
+        if max(hs * size_s, ht * size_t) <= _SMALL or waiting + 2 > DEEP:
             continue
-        if long_s >= long_t:
-            hs *= 0.5
-            parts[waiting, 0], parts[waiting, 1] = s - hs, t
-            parts[waiting + 1, 0], parts[waiting + 1, 1] = s + hs, t
-        else:
-            ht *= 0.5
-            parts[waiting, 0], parts[waiting, 1] = s, t - ht
-            parts[waiting + 1, 0], parts[waiting + 1, 1] = s, t + ht
-        parts[waiting, 2], parts[waiting, 3] = hs, ht
-        parts[waiting + 1, 2], parts[waiting + 1, 3] = hs, ht
-        waiting += 2
+        along = hs * size_s >= ht * size_t
+        hs, ht = (0.5 * hs, ht) if along else (hs, 0.5 * ht)
+        for k in range(2):
+            way = 2.0 * k - 1.0
+            parts[waiting, 0], parts[waiting, 1] = (ms + way * hs, mt) if along else (ms, mt + way * ht)
+            parts[waiting, 2], parts[waiting, 3] = hs, ht
+            waiting += 1
     return False
 
 
 @jit_uncounted
-def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Triple, axis: Triple) -> int:
-    """Which of the pieces of a mask may be too near to a node: a mask of them; -1 where one surely is."""
+def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Triple, axis: Triple,
+                 slack: float) -> int:
+    """Which of the pieces of a mask may be too near to a node: a mask of them; -1 where one surely is.
+
+    slack : how far the tip may be from where it is said to be, mm
+    """
     face = tree.link[node, 2]
     row = face if face >= 0 else tool.limits.shape[0] - 1
-    around, sure = float(tree.shape[node, 10]), tree.link[node, 4] > 0
+    around, sure = float(tree.shape[node, 10]) + slack, tree.link[node, 4] > 0
     z = dot(w, axis)
     rho = np.sqrt(max(dot(w, w) - z * z, 0.0))
-    kept = 0
-    a, b = _row(tree.shape, node, 3), _row(tree.shape, node, 6)
-    za, zb = dot(a, axis), dot(b, axis)
-    inverse = 1.0 / rho if rho > _NO_AXIS else 0.0
-    ra, rb = (dot(w, a) - z * za) * inverse, (dot(w, b) - z * zb) * inverse
+    kept, first = 0, True
+    za, zb, ra, rb, rest = 0.0, 0.0, 0.0, 0.0, 0.0
     for p in range(tool.pieces.shape[0]):
         if mask >> p & 1 == 0:
             continue
@@ -196,30 +301,69 @@ def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Trip
         value, along_rho, along_z, _ = piece_distance(piece, rho, z)
         if value - around >= limit:
             continue
-        if sure and value < limit:
+        if sure and value + slack < limit:
             return -1
-        less = abs(along_rho * ra + along_z * za) + abs(along_rho * rb + along_z * zb) + float(tree.shape[node, 9])
+        if first and rho > _NO_AXIS:
+            a, b = _row(tree.shape, node, 3), _row(tree.shape, node, 6)
+            za, zb = dot(a, axis), dot(b, axis)
+            ra, rb = (dot(w, a) - z * za) / rho, (dot(w, b) - z * zb) / rho
+            first, rest = False, float(tree.shape[node, 9]) + slack
+        less = abs(along_rho * ra + along_z * za) + abs(along_rho * rb + along_z * zb) + rest
         if value - less < limit or rho <= _NO_AXIS:
             kept |= 1 << p
     return kept
 
 
 @jit_uncounted
-def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: ReachRoom, last: int) -> int:
-    """A node with a place that is too near to the tool at a tip, -1 without one; the last one is tried first."""
-    nodes, masks, parts = room
-    every = (1 << tool.pieces.shape[0]) - 1
-    nodes[0], masks[0] = 0, every
-    waiting = 1
-    if last > 0:
-        nodes[1], masks[1] = last, every
-        waiting = 2
+def _gather_near(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, slack: float, room: ReachRoom) -> int:
+    """Nodes that any tip within a distance may be too near to, into the room; how many, or -1 where all surely are."""
+    nodes, masks = room.nodes, room.masks
+    nodes[0], masks[0] = 0, (1 << tool.pieces.shape[0]) - 1
+    waiting, found = 1, 0
+    while waiting > 0:
+        waiting -= 1
+        node, mask = nodes[waiting], masks[waiting]
+        q = _row(tree.shape, node, 0)
+        w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
+        mask = _pieces_near(tree, tool, node, mask, w, axis, slack)
+        if mask == 0:
+            continue
+        if mask < 0:
+            return -1
+        if tree.link[node, 3] >= 0 or float(tree.shape[node, 10]) <= slack:
+            if found == NEAR:  # too many to be of use
+                room.near[0, 0], room.near[0, 1] = 0, (1 << tool.pieces.shape[0]) - 1
+                return 1
+            room.near[found, 0], room.near[found, 1] = node, mask
+            found += 1
+            continue
+        for child in (tree.link[node, 0], tree.link[node, 1]):
+            if child >= 0 and waiting < DEEP:
+                nodes[waiting], masks[waiting] = child, mask
+                waiting += 1
+    return found
+
+
+@jit_uncounted
+def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: ReachRoom,
+             begin: tuple[int, int]) -> int:
+    """A node with a place that is too near to the tool at a tip, -1 without one.
+
+    begin : how many nodes were gathered, and the one that is tried first, -1 for none
+    """
+    nodes, masks, parts = room.nodes, room.masks, room.parts
+    waiting = begin[0]
+    for k in range(waiting):
+        nodes[k], masks[k] = room.near[k, 0], room.near[k, 1]
+    if begin[1] > 0:
+        nodes[waiting], masks[waiting] = begin[1], (1 << tool.pieces.shape[0]) - 1
+        waiting += 1
     while waiting > 0:
         waiting -= 1
         node = nodes[waiting]
         q = _row(tree.shape, node, 0)
         w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
-        mask = _pieces_near(tree, tool, node, masks[waiting], w, axis)
+        mask = _pieces_near(tree, tool, node, masks[waiting], w, axis, 0.0)
         if mask == 0:
             continue
         if mask < 0:
@@ -227,7 +371,7 @@ def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: 
         leaf = tree.link[node, 3]
         if leaf < 0:
             for child in (tree.link[node, 0], tree.link[node, 1]):
-                if child >= 0 and waiting < DEEP:
+                if child >= 0 and waiting < NEAR + DEEP:
                     nodes[waiting], masks[waiting] = child, mask
                     waiting += 1
             continue
@@ -235,16 +379,41 @@ def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: 
         for p in range(tool.pieces.shape[0]):
             if mask >> p & 1:
                 piece = tool.pieces[p]
-                if _leaf_hit(tree, node, piece, tool.limits[row, int(piece[7])], w, axis, parts):
+                if _leaf_hit(tree, node, (piece, tool.limits[row, int(piece[7])]), w, axis, parts):
                     return int(node)
     return -1
 
 
 @jit_uncounted
+def _group_end(tips: Array, axes: Array, first: int) -> int:
+    """Behind the last of the tips from one on that have its axis, so many at most that they go together."""
+    end = first + 1
+    while end < min(tips.shape[0], first + TOGETHER):
+        if axes[end, 0] != axes[first, 0] or axes[end, 1] != axes[first, 1] or axes[end, 2] != axes[first, 2]:
+            break
+        end += 1
+    return end
+
+
+@jit_uncounted
 def find_blocked(tree: ReachTree, tool: ReachTool, tips: Array, axes: Array, room: ReachRoom, blocked: Bools) -> None:
-    """Whether the tool comes nearer to a face than it may, into blocked (n,), at tips (n, 3) with axes (n, 3)."""
-    last = -1
-    for i in range(tips.shape[0]):
-        tip, axis = (tips[i, 0], tips[i, 1], tips[i, 2]), (axes[i, 0], axes[i, 1], axes[i, 2])
-        last = _blocker(tree, tool, tip, axis, room, last)
-        blocked[i] = last >= 0
+    """Whether the tool comes nearer to a face than it may, into blocked (n,), at tips (n, 3) with axes (n, 3).
+
+    Tips beside each other with one axis share a look at what is near to any of them.
+    """
+    last, first = -1, 0
+    while first < tips.shape[0]:
+        end = _group_end(tips, axes, first)
+        x, y, z = 0.0, 0.0, 0.0
+        for i in range(first, end):
+            x, y, z = x + tips[i, 0] / (end - first), y + tips[i, 1] / (end - first), z + tips[i, 2] / (end - first)
+        slack = 0.0
+        for i in range(first, end):
+            slack = max(slack, (tips[i, 0] - x) ** 2 + (tips[i, 1] - y) ** 2 + (tips[i, 2] - z) ** 2)
+        axis = (axes[first, 0], axes[first, 1], axes[first, 2])
+        found = _gather_near(tree, tool, (x, y, z), axis, np.sqrt(slack) + _ROUNDING, room)
+        for i in range(first, end):
+            if found > 0:
+                last = _blocker(tree, tool, (tips[i, 0], tips[i, 1], tips[i, 2]), axis, room, (found, last))
+            blocked[i] = found < 0 or (found > 0 and last >= 0)
+        first = end

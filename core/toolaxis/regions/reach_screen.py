@@ -19,9 +19,12 @@ from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 #: Tips between two moments to stop.
 _AT_ONCE = 4096
+#: Cells along the sides of the blocks that are looked at together.
+_BLOCK = 4
 #: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
 _HALF = 1.0001
 
@@ -64,8 +67,8 @@ def screen_reach(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scene
         if radius not in corners:
             corners[radius] = _corner_fits(cells, radius, scene, required)
         seen = seen_cells(cells, tool, rows, scene.tolerance.min_lead) & corners[radius] & allowed[:, None]
-        found[number] = seen
-        found[number][seen] = ~_blocked(cells, tool, rows, seen, (scene, required))
+        axis, cell = _side_by_side(cells, seen)
+        found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, required))
     return found
 
 
@@ -97,10 +100,19 @@ def _corner_fits(cells: FaceCells, radius: float, scene: ReachScene, required: A
     return ~_find(scene, ReachTool(ball, required), places, cells.normal)
 
 
-def _blocked(cells: FaceCells, tool: Tool, axes: Array, seen: Bools, around: tuple[ReachScene, Array]) -> Bools:
-    """Whether a tool comes too near to something at cells that are seen, in the order of what is seen."""
+def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
+    """Axes and cells of what is seen, an axis after the other, blocks of four by four cells together."""
+    row, column = cells.index.T
+    order = np.lexsort((column, row, column // _BLOCK, row // _BLOCK))
+    axis, place = np.nonzero(seen[:, order])
+    return axis, order[place]
+
+
+def _blocked(cells: FaceCells, tool: Tool, axes: Array, pairs: tuple[Indices, Indices],
+             around: tuple[ReachScene, Array]) -> Bools:
+    """Whether a tool comes too near to something at pairs of an axis and a cell."""
     scene, required = around
-    axis, cell = np.nonzero(seen)
+    axis, cell = pairs
     places = tips(cells.point[cell], cells.normal[cell], axes[axis], tool, scene.allowance)
     whole = scene.tool(tool, required)
     blocked = np.zeros(len(places), dtype=bool)
