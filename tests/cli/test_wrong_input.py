@@ -54,7 +54,7 @@ GOOD = {"--tool": "torus:12x1", "--scallop": "0.02"}
     ("sheet.step", {"--tool": "torus:12x-1"}, "corner radius is -1"),
     ("sheet.step", {"--tool": "ball:0"}, "diameter is 0"),
     ("sheet.step", {"--tool": "ball:-8"}, "diameter is -8"),
-    ("sheet.step", {"--tool": "drill:8"}, "nor one of the library"),
+    ("sheet.step", {"--tool": "drill:8"}, "nor one of the tools"),
     ("sheet.step", {"--holder": "-1,0;-1,40", "--stickout": "40"}, "thinner than nothing"),
     ("sheet.step", {"--holder": "10,0;10,40"}, "without a stick-out"),
     ("sheet.step", {"--holder": "10;0", "--stickout": "40"}, "neither a file nor rows"),
@@ -100,7 +100,7 @@ def test_plan_refuses_in_one_sentence_and_writes_nothing(parts: Path, tmp_path: 
 
 @pytest.mark.parametrize("words, said", [
     ([], "required"), (["nothing"], "invalid choice"), (["plan"], "required"),
-    (["plan", "x.step", "--tool", "ball:8"], "--scallop"), (["inspect"], "required"), (["verify"], "required"),
+    (["plan", "x.step", "--tool", "ball:8", "--scallop"], "--scallop"), (["inspect"], "required"), (["verify"], "required"),
     (["inspect", "nowhere.step"], "nowhere.step"), (["verify", "nowhere"], "nowhere"),
     (["plan", "x.step", "--tool", "ball:8", "--scallop", "0.01", "--colour"], "unrecognized arguments: --colour"),
 ])
