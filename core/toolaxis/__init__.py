@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from toolaxis.errors import ToolAxisError as ToolAxisError
     from toolaxis.errors import UnsupportedGeometry as UnsupportedGeometry
     from toolaxis.job.files.read_cl import read_cl as read_cl
+    from toolaxis.job.inputs.tool_library import load_tools as load_tools
     from toolaxis.job.output.export import export as export
     from toolaxis.job.output.export import to_trimesh as to_trimesh
     from toolaxis.job.output.verify import verify as verify
-    from toolaxis.job.inputs.tool_library import load_tools as load_tools
     from toolaxis.job.planning.pipeline import plan as plan
     from toolaxis.machine.setup import Mounting as Mounting
     from toolaxis.partition.partition import partition as partition
@@ -53,7 +53,8 @@ _HOME = {
     "passes": "path.iso_parametric", "best_axis": "search.fixed_axis", "partition": "partition.partition",
     "plan": "job.planning.pipeline", "verify": "job.output.verify", "ToolAxisError": "errors", "InvalidInput": "errors",
     "UnsupportedGeometry": "errors", "MissingBackend": "errors", "JobError": "errors", "Cancelled": "errors",
-    "load_machine": "cad.machines", "load_tools": "job.inputs.tool_library", "Mounting": "machine.setup", "join": "skin.join",
+    "load_machine": "cad.machines", "load_tools": "job.inputs.tool_library", "Mounting": "machine.setup",
+    "join": "skin.join",
     "batch": "batch.run", "read_cl": "job.files.read_cl", "SubSurface": "plan.sub_surface",
     "export": "job.output.export", "to_trimesh": "job.output.export",
 }

@@ -54,11 +54,11 @@ def test_passes_along_planes_are_planned_and_pass(sheet: Path, tmp_path: Path, c
 def test_passes_in_a_field_are_planned_and_pass(sheet: Path, tmp_path: Path, capsys: Capture) -> None:
     """Tables tell how far the cuts are from the ideal length, and widths are found again from the CL file alone."""
     out = tmp_path / "out"
-    assert main(["plan", str(sheet), *FAST, "--passes=field", "--out", str(out)]) == 0
+    assert main(["plan", str(sheet), *FAST, "--passes=scallop", "--out", str(out)]) == 0
     told = capsys.readouterr().out
     found = _document(out)["operations"][0]["orientation"]
     assert "in a field" in told and f"ideal: {found['ideal']:.1f} mm with these axes" in told
-    assert found["pattern"] == "field" and 0 < found["ideal"] < found["length"]
+    assert found["pattern"] == "scallop" and 0 < found["ideal"] < found["length"]
     plan = read_plan(out)
     widths = np.concatenate([width for _, width in widths_along(plan, plan.operations[0])])
     assert (widths > 0).all()

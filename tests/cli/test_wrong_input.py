@@ -100,7 +100,8 @@ def test_plan_refuses_in_one_sentence_and_writes_nothing(parts: Path, tmp_path: 
 
 @pytest.mark.parametrize("words, said", [
     ([], "required"), (["nothing"], "invalid choice"), (["plan"], "required"),
-    (["plan", "x.step", "--tool", "ball:8", "--scallop"], "--scallop"), (["inspect"], "required"), (["verify"], "required"),
+    (["plan", "x.step", "--tool", "ball:8", "--scallop"], "--scallop"), (["inspect"], "required"),
+    (["verify"], "required"),
     (["inspect", "nowhere.step"], "nowhere.step"), (["verify", "nowhere"], "nowhere"),
     (["plan", "x.step", "--tool", "ball:8", "--scallop", "0.01", "--colour"], "unrecognized arguments: --colour"),
 ])

@@ -123,9 +123,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
     sub.add_argument("--passes", default=ISO, choices=PASSES,
                      help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "
-                          "that contain the tool axis, in the mean direction of that parameter; field, along the "
+                          "that contain the tool axis, in the mean direction of that parameter; scallop, along the "
                           "levels of a field that keeps them as far apart as their strips are wide; auto, the shorter "
-                          "of iso and field for each face (all but iso with fixed axes only)")
+                          "of iso and scallop for each face (all but iso with fixed axes only)")
     sub.add_argument("--limit", type=float, default=LIMIT, metavar="WORK",
                      help="most work for one sub-surface, its axis and the proof of its passes, counted in thousands "
                           "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "

@@ -7,7 +7,7 @@ DIRECTIONS = ("zigzag", "climb", "conventional")
 #: How passes lie: along a parameter of the face, along parallel planes that contain the tool axis, or along the levels
 #: of a field that keeps them as far apart as their strips are wide; or each face whichever of the first and the last is
 #: shorter.
-ISO, PLANES, FIELD, AUTO = "iso", "planes", "field", "auto"
+ISO, PLANES, FIELD, AUTO = "iso", "planes", "scallop", "auto"
 PATTERNS = (ISO, PLANES, FIELD)
 PASSES = (*PATTERNS, AUTO)
 #: What is planned with unless given: scallop height, mm, feed rate, mm/min, and spindle speed, rev/min.

@@ -298,9 +298,9 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
     passes : str
-        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis; "field":
+        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis; "scallop":
         along the levels of a field that keeps them as far apart as their strips are wide; "auto": the shorter of "iso"
-        and "field".
+        and "scallop".
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional

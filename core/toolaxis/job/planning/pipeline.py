@@ -99,7 +99,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         "zigzag", "climb" or "conventional".
     passes : str
         How passes lie: "iso" along a parameter of the face, "planes" along parallel planes that contain the tool axis,
-        in the mean direction of that parameter, "field" along the levels of a field that keeps them as far apart as
+        in the mean direction of that parameter, "scallop" along the levels of a field that keeps them as far apart as
         their strips are wide, "auto" the shorter of the first and the last; all but "iso" with fixed axes only.
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
