@@ -42,7 +42,7 @@ class ReachTree(NamedTuple):
     link: NDArray[np.int32]
     """Left and right child, face, leaf, and whether q is a point of the face, (n, 5)."""
     bend: Singles
-    """A, B and C of every leaf, (m, 9)."""
+    """A, B, C and e' of every leaf, (m, 10)."""
     rect: Array
     """Centre and half widths of every leaf in u and v, a reference point, and whether that is on the face, (m, 7)."""
     edge_start: Indices
@@ -147,6 +147,9 @@ def _leaf_hit(tree: ReachTree, node: int, piece: Array, limit: float, w: Triple,
                 + 0.5 * (hs * hs * abs(dot(saa, g)) + ht * ht * abs(dot(sbb, g))) + hs * ht * abs(dot(sab, g)))
         if value - less >= limit and rho > _NO_AXIS:
             continue
+        # The place is known to Taylor's remainder, which grows with the cube: in contact it must not count as a gouge.
+        reach = max(abs(s), abs(t))
+        surely = limit - float(tree.bend[leaf, 9]) * reach * reach * reach
         if trimmed:
             u = tree.rect[leaf, 0] + s * tree.rect[leaf, 2]
             v = tree.rect[leaf, 1] + t * tree.rect[leaf, 3]
@@ -154,9 +157,9 @@ def _leaf_hit(tree: ReachTree, node: int, piece: Array, limit: float, w: Triple,
             half = (hs * tree.rect[leaf, 2], ht * tree.rect[leaf, 3])
             if not inside and not _near_edge(tree, leaf, (u, v), half):
                 continue
-            if inside and value < limit:
+            if inside and value < surely:
                 return True
-        elif value < limit:
+        elif value < surely:
             return True
         long_s, long_t = hs * hs * dot(ps, ps), ht * ht * dot(pt, pt)
         if max(long_s, long_t) <= _SMALL * _SMALL or waiting + 2 > DEEP:
