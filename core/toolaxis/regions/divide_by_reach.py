@@ -33,7 +33,7 @@ Loops = tuple[Array, ...]
 
 #: Size of cells in radii of the cutter and in mean widths of the face at most, how many a face has at most, and how
 #: much finer those are by which the borders go, and how many.
-_SIZE, _ACROSS, _COARSE, _FINER, _FINE = 0.4, 1 / 3, 1000, 2.5, 6000
+_SIZE, _ACROSS, _COARSE, _FINER, _FINE = 0.4, 1 / 3, 1000, 2.5, 15000
 #: How much deeper the cutter may gouge than the search allows, mm: the search counts what its bounds may be off, too.
 _SLACK = 0.001
 #: Axes that are screened between two moments to stop.
