@@ -77,6 +77,8 @@ FAULTS = (
           ("partition/test_guillotine.py", "partition/test_regions.py", "partition/test_strips.py",
            "partition/test_times.py")),
     Fault(CORE + "regions/reach_kernel.py", "value - around >= limit", "value + around >= limit", ("regions",)),
+    Fault(CORE + "regions/divide_by_reach.py", "held & (reach.depth[number] > _SMALLER)", "held",
+          ("regions/test_divide_by_reach.py",)),
     Fault(CORE + "feasibility/feasibility.py", "np.concatenate([self.cloud, self.learnt])) - self.tolerance.gouge",
           "self.cloud) - self.tolerance.gouge",
           ("orient/test_feasible.py", "orient/test_standing.py", "orient/test_normals.py", "orient/test_proof.py",

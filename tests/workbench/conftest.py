@@ -54,7 +54,7 @@ TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "tes
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
 # What runs outside FreeCAD for longest, which follows: on one process alone it would keep all waiting at the end.
-LONGEST = ("partition/test_by_reach.py", "job/test_run.py", "job/test_failures.py", "orient/test_search.py",
+LONGEST = ("job/test_run.py", "job/test_failures.py", "orient/test_search.py",
            "tests/test_readme.py", "messages/test_german.py", "job/test_pattern.py", "orient/test_best_axis.py",
            "partition/test_times.py", "job/test_left_whole.py", "job/test_abreast.py", "hard/test_domes.py",
            "orient/test_four_plus_one.py", "orient/test_passes_along_planes.py", "job/test_folder_example.py",

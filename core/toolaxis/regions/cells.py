@@ -1,7 +1,7 @@
 """Cells of a face: small pieces, each with one contact that stands for it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ Indices = NDArray[np.int64]
 
 #: Cells each way at least and at most, their size in radii of the smallest cutter, and the turn of normals over each.
 _FEWEST, _MOST, _SIZE, _TURN = 12, 32, 0.8, np.radians(5)
+#: Cells each way at most where most of the lattice is beside the face.
+_MOST_SPARSE = 256
 #: How often cells are halved each way where none of them has a sample on the face.
 _HALVINGS = 3
 #: Places of the samples in a cell, in halves of it from its centre, and the share of the cell that each stands for.
@@ -78,27 +80,55 @@ class FaceCells:
         -----
         **Properties**: 1. areas add up to that of the face; 2. moving the face moves the contacts.
         """
-        shape = _shape_for(face, radius)
-        for halving in range(_HALVINGS + 1):
-            samples = _CellSamples(face, (shape[0] << halving, shape[1] << halving))
-            if samples.inside.any():
-                break
-        return samples.cells()
+        return _cells_of(face, _shape_for(face, _SIZE * radius, _MOST))
+
+    @staticmethod
+    def sized(face: Face, size: float) -> "FaceCells":
+        """Cells of a face in a given size, for faces that fill little of their box too.
+
+        Parameters
+        ----------
+        face : Face
+        size : float
+            Of a cell each way, mm; normals turn by 5 degrees over one, and there are at least 12 and at most 256 each
+            way.
+        """
+        return _cells_of(face, _shape_for(face, size, _MOST_SPARSE))
+
+    def pick(self, rows: Indices) -> "FaceCells":
+        """Some of the cells.
+
+        Parameters
+        ----------
+        rows : (m,) array of int
+        """
+        return replace(self, index=self.index[rows], uv=self.uv[rows], point=self.point[rows],
+                       normal=self.normal[rows], area=self.area[rows], tangent=self.tangent[rows],
+                       form=self.form[rows], spread=self.spread[rows])
 
     def __len__(self) -> int:
         return len(self.uv)
 
 
-def _shape_for(face: Face, radius: float) -> tuple[int, int]:
-    """Cells along u and along v for a smallest cutter."""
+def _cells_of(face: Face, shape: tuple[int, int]) -> FaceCells:
+    """Cells of a lattice, which is made finer where none of them has a sample on the face."""
+    for halving in range(_HALVINGS + 1):
+        samples = _CellSamples(face, (shape[0] << halving, shape[1] << halving))
+        if samples.inside.any():
+            break
+    return samples.cells()
+
+
+def _shape_for(face: Face, size: float, most: int) -> tuple[int, int]:
+    """Cells along u and along v."""
     coarse = Lattice(face, (_FEWEST, _FEWEST))
     counts = []
     for way, lengths in enumerate(coarse.lengths):
         normals = np.moveaxis(coarse.normals, way, 0)
         turn = np.median(np.asarray(angle_between(normals[1:], normals[:-1])).sum(axis=0))
         side = np.median(lengths.sum(axis=way))
-        wanted = max(side / (_SIZE * radius), turn / _TURN)
-        counts.append(int(np.clip(np.ceil(wanted), _FEWEST, _MOST)))
+        wanted = max(side / size, turn / _TURN)
+        counts.append(int(np.clip(np.ceil(wanted), _FEWEST, most)))
     return counts[0], counts[1]
 
 

@@ -50,7 +50,7 @@ class ReachTree(NamedTuple):
     link: NDArray[np.int32]
     """Left and right child, face, leaf, and whether q is a point of the face, (n, 5)."""
     bend: Singles
-    """A, B and C of every leaf, (m, 9)."""
+    """A, B, C and e' of every leaf, (m, 10)."""
     rect: Array
     """Centre and half widths of every leaf in u and v, a reference point, and whether that is on the face, (m, 7)."""
     edge_start: Indices
@@ -212,12 +212,14 @@ def _step(at: LeafPlace, most: tuple[float, float, float, float]) -> tuple[float
 
 
 @jit_uncounted
-def _part_state(leaf: LeafForm, piece: Array, limit: float, axis: Triple,
+def _part_state(leaf: LeafForm, piece: Array, limits: tuple[float, float], axis: Triple,
                 part: tuple[float, float, float, float]) -> tuple[int, float, float]:
     """Whether a part of a leaf is clear of a piece, too near at a place s, t, or open after a few steps.
 
+    limits : least distance, mm, and Taylor's remainder of the leaf
     part : centre and half widths in s and t
     """
+    limit, remainder = limits
     ms, mt, hs, ht = part
     s, t = ms, mt
     for _ in range(_STEPS):
@@ -225,7 +227,9 @@ def _part_state(leaf: LeafForm, piece: Array, limit: float, axis: Triple,
         most = (s - ms + hs, ms + hs - s, t - mt + ht, mt + ht - t)
         if _lower(at, most) >= limit:
             return _CLEAR, s, t
-        if at.value < limit:
+        # The place is known to Taylor's remainder, which grows with the cube: in contact it must not count as a gouge.
+        reach = max(abs(s), abs(t))
+        if at.value < limit - remainder * reach * reach * reach:
             return _TOO_NEAR, s, t
         ds, dt = _step(at, most)
         if abs(ds) * at.long_s + abs(dt) * at.long_t < _CLOSE:  # there is nothing nearer around
@@ -253,13 +257,14 @@ def _leaf_hit(tree: ReachTree, node: int, tool: tuple[Array, float], w: Triple, 
     size_s, size_t = np.sqrt(dot(form.a, form.a)), np.sqrt(dot(form.b, form.b))
     u, v, du, dv = tree.rect[leaf, 0], tree.rect[leaf, 1], tree.rect[leaf, 2], tree.rect[leaf, 3]
     trimmed = tree.edge_start[leaf + 1] > tree.edge_start[leaf]
+    limits = tool[1], float(tree.bend[leaf, 9])
     parts[0, 0], parts[0, 1], parts[0, 2], parts[0, 3] = 0.0, 0.0, 1.0, 1.0
     waiting, looked = 1, 0
     while waiting > 0 and looked < _ENOUGH:
         waiting -= 1
         looked += 1
         ms, mt, hs, ht = parts[waiting, 0], parts[waiting, 1], parts[waiting, 2], parts[waiting, 3]
-        state, s, t = _part_state(form, tool[0], tool[1], axis, (ms, mt, hs, ht))
+        state, s, t = _part_state(form, tool[0], limits, axis, (ms, mt, hs, ht))
         if state == _CLEAR:
             continue
         if state == _TOO_NEAR and (not trimmed or _on_face(tree, leaf, u + s * du, v + t * dv)):

@@ -134,7 +134,7 @@ def merge_reach_trees(trees: Sequence[BoundingTree]) -> ReachTree:
     edges = np.cumsum([0, *(len(tree.edges) for tree in trees)])
     shape = np.empty((nodes[-1], 11), dtype=np.float32)
     link = np.empty((nodes[-1], 5), dtype=np.int32)
-    bend = np.empty((leaves[-1], 9), dtype=np.float32)
+    bend = np.empty((leaves[-1], 10), dtype=np.float32)
     rect = np.empty((leaves[-1], 7))
     if above:
         shape[:above], link[:above] = branch_roots(np.stack([tree.shape[0] for tree in trees]), nodes[:-1])
@@ -146,7 +146,7 @@ def merge_reach_trees(trees: Sequence[BoundingTree]) -> ReachTree:
         link[own, 4] = tree.link[:, 4]
         at = np.flatnonzero(tree.link[:, 3] >= 0)
         place = leaves[k] + tree.link[at, 3]
-        bend[place] = tree.bend[at, :9]
+        bend[place] = tree.bend[at]
         rect[leaves[k]:leaves[k + 1]] = tree.leaf[:, [0, 1, 2, 3, 8, 9, 10]]
     start = np.concatenate([*(tree.edge_start[:-1] + edges[k] for k, tree in enumerate(trees)), edges[-1:]])
     return ReachTree(shape, link, bend, rect, start.astype(np.int64), np.vstack([tree.edges for tree in trees]))

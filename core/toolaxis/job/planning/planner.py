@@ -23,7 +23,9 @@ from toolaxis.job.planning.sub_surfaces import (
     by_axis,
     by_reach,
     lost_face,
+    made_of,
     plan_locked,
+    shrink_refused,
     smooth_pieces,
     targets_of_given,
     with_given,
@@ -32,7 +34,6 @@ from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.bosses import distances
-from toolaxis.partition.by_reach import ReachDivision, divide_by_reach
 from toolaxis.partition.face_division import MOST, Divider, Regions
 from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
@@ -43,6 +44,8 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import Progress
+from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
+from toolaxis.regions.scene import ReachScene
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.fixed_axis import task as search_task
 from toolaxis.search.infeasibility import tight_fillet
@@ -263,16 +266,25 @@ class PlanningJob:
         lost = [k for k, op in enumerate(made) if not op.done and not op.failed and targets[k].ended is None
                 and targets[k].given is None]
         stage = progress.within("division by reach")
-        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, inner), len(lost), self.workers, stage)
+        if not lost:
+            return made, False
+        scene = ReachScene.of(self.part, self.obstacles)
+        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, scene, inner), len(lost), self.workers,
+                        stage)
         if found.cancelled:
             return made, True
-        pieces = {lost[k]: by_reach(targets[lost[k]].face, made[lost[k]], one)
-                  for k, one in found.results.items() if one is not None and one.pieces}
-        done, cancelled = self._operations_of([piece for k in sorted(pieces) for piece in pieces[k]], stage)
+        divisions = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
+        pieces = {k: by_reach(targets[k].face, made[k], one) for k, one in divisions.items()}
+        done, cancelled = self._operations_of([piece for some in pieces.values() for piece in some], stage)
+        if not cancelled:  # what the proof refuses is tried once more, a little smaller
+            pieces = {k: shrink_refused(some, done, made[k], divisions[k]) for k, some in pieces.items()}
+            again = [piece for some in pieces.values() for piece in some if made_of(piece, done) is None]
+            more, cancelled = self._operations_of(again, stage)
+            done = (*done, *more)
         failed = {lost[k]: fail_operation(made[lost[k]], why) for k, why in found.faults.items()}
         rows: list[Operation] = []
         for k, op in enumerate(made):
-            own = [one for one in done if any(one.face is piece.face for piece in pieces.get(k, ()))]
+            own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
             rows += own or [failed.get(k, op)]
         return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
 
@@ -303,15 +315,11 @@ class PlanningJob:
         made = tuple(replace(op, number=k) for k, op in enumerate(rows, 1))
         return replace(plan, part=part, operations=made, outcome=_outcome(made))
 
-    def _reached(self, face: Face, progress: Progress) -> ReachDivision | None:
-        """How a face is divided by what axes reach; None where that takes more work than is allowed, or is no use."""
+    def _reached(self, face: Face, scene: ReachScene, progress: Progress) -> ReachDivision | None:
+        """How a face is divided by what axes reach; None where that is no use."""
         if tight_fillet(face, self.tool):
             return None
-        with limit_work(Budget(self.inputs.limit)):
-            try:
-                return divide_by_reach(self._task(face, progress), progress.within(f"face {face.label}"))
-            except OutOfWork:
-                return None
+        return divide_by_reach(self._task(face, progress), scene, progress.within(f"face {face.label}"))
 
     def _alike(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""

@@ -14,11 +14,11 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Cancelled, Fault, InvalidInput, ToolAxisError, fault
 from toolaxis.job.planning.edit_axis import evaluate_given_axis
 from toolaxis.job.planning.failures import fail_face
-from toolaxis.partition.by_reach import ReachDivision
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
 from toolaxis.plan.zone import Zone
+from toolaxis.regions.divide_by_reach import ReachDivision
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
@@ -70,8 +70,8 @@ def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Targ
     division : ReachDivision
         With a sub-surface at least.
     """
-    targets = [Target(face.trimmed(loops, face.label + letters(k)), axis)
-               for k, (loops, axis) in enumerate(division.pieces)]
+    targets = [Target(face.trimmed(piece.loops, face.label + letters(k)), piece.axis)
+               for k, piece in enumerate(division.pieces)]
     if division.rest:
         every = tuple(loop for loops in division.rest for loop in loops)
         part = face.trimmed(every, face.label + letters(len(targets)))
@@ -80,6 +80,47 @@ def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Targ
         none = Orientation(None, outcome="not_found", reasons=(words, *whole.orientation.reasons))
         targets.append(Target(part, ended=Operation(1, part, whole.tool, none)))
     return targets
+
+
+def made_of(target: Target, operations: Iterable[Operation]) -> Operation | None:
+    """What was made of a target; None where it has not been planned.
+
+    Parameters
+    ----------
+    target : Target
+    operations : iterable of Operation
+    """
+    return next((op for op in operations if op.face is target.face), None)
+
+
+def shrink_refused(targets: Sequence[Target], operations: Sequence[Operation], whole: Operation,
+                   division: ReachDivision) -> list[Target]:
+    """Sub-surfaces of a face with those smaller for which no axis was found, and the rest larger by that.
+
+    Parameters
+    ----------
+    targets : sequence of Target
+        From `by_reach`.
+    operations : sequence of Operation
+        What was made of them.
+    whole : Operation
+        Of the face as a whole, without an axis.
+    division : ReachDivision
+
+    Returns
+    -------
+    list of Target
+        What can not be made smaller, or needs not, stands in it as it was.
+    """
+    refused = []
+    for k, piece in enumerate(division.pieces):
+        op = made_of(targets[k], operations)
+        if op is not None and not op.done and not op.failed and piece.smaller:
+            refused.append(k)
+    if not refused:
+        return list(targets)
+    anew = by_reach(whole.face, whole, division.shrink(refused))
+    return [anew[k] if k in refused or k >= len(division.pieces) else targets[k] for k in range(len(anew))]
 
 
 def read_division(path: str | Path) -> tuple[SubSurface, ...]:

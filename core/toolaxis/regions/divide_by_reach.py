@@ -1,0 +1,500 @@
+"""Faces that no axis reaches whole, divided into what one axis reaches, what another reaches of the rest, and so on."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.feasibility.surroundings import MARGIN, SKIN
+from toolaxis.numeric.clipping import outer_with_holes
+from toolaxis.numeric.contours import contours
+from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
+from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.numeric.simplify_polyline import simplify_loop
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.partition.uv_grid import Lattice
+from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.regions.cells import FaceCells, screening_axes
+from toolaxis.regions.reach_screen import screen_reach, seen_cells
+from toolaxis.regions.scene import ReachScene
+from toolaxis.search.direction_grid import ring
+from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.shape.measure import mean_width
+from toolaxis.tools.tool import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+Loops = tuple[Array, ...]
+
+#: Size of cells in radii of the cutter and in mean widths of the face at most, how many a face has at most, and how
+#: much finer those are by which the borders go, and how many.
+_SIZE, _ACROSS, _COARSE, _FINER, _FINE = 0.4, 1 / 3, 1000, 2.5, 15000
+#: How much deeper the cutter may gouge than the search allows, mm: the search counts what its bounds may be off, too.
+_SLACK = 0.001
+#: Axes that are screened between two moments to stop.
+_TOGETHER = 32
+#: Axes from which others are looked for, the angle between them, and how many are held against each other each time.
+_BEGINNINGS, _APART, _LOOKED_AT = 5, np.radians(25), 8
+#: Axes that are looked at finely for what others leave.
+_FILLED = 4
+#: Angles at which neighbours of an axis are tried, one after the other, rad.
+_NEARER = tuple(np.radians([6.0, 3.0]))
+#: Angle by which axes are kept from the greatest one to a normal, rad, so that their neighbours serve too.
+_ROOM = np.radians(5)
+#: Sub-surfaces at most, and the share of the face that one must hold, and how many squares of the cutter's diameter.
+_PIECES, _WORTH, _SQUARES = 8, 0.03, 0.25
+#: What a coarse cell at the edge of what an axis reaches counts beside others: finer ones may tell that it is beyond.
+_EDGE = 0.8
+#: Share of this least area that a further axis has to bring.
+_PRICE = 0.5
+#: Cells from what an axis does not reach beyond which it counts as any other that reaches the place.
+_APRON = 8.0
+#: Cells from what its axis does not reach at which a smaller sub-surface ends.
+_SMALLER = 2.0
+#: What a piece that another one cuts off holds at least, in shares of the least area of a sub-surface.
+_CRUMB = 0.25
+#: How far values fade at the edge of what is reached, in cells, and what is left of them where it ends: the next is
+#: taken where corners of the border would lie on that of the face.
+_BLUR, _EDGES = 0.8, (0.15, 0.17, 0.13)
+#: Cells by which borders run on into other sub-surfaces, before what these hold is taken off.
+_OVER = 3
+#: How far corners that are left out lie beside the border, in cells.
+_STRAIGHT = 0.3
+#: Share of a polygon's area in u and v below which a part of it is nothing.
+_NOTHING = 1e-6
+
+
+class ReachPiece(NamedTuple):
+    """A sub-surface that one axis reaches.
+
+    loops : its border first, then its holes
+    axis : (3,) unit vector
+    smaller : loops of the same one cell farther from what the axis does not reach; empty where nothing is left
+    margin : loops of what lies between the two
+    """
+
+    loops: Loops
+    axis: Array
+    smaller: Loops = ()
+    margin: Loops = ()
+
+
+class ReachDivision(NamedTuple):
+    """A face divided by what axes reach.
+
+    pieces : the sub-surfaces, the largest first
+    rest : loops of each part that none of the axes reaches
+    tried : how many axes were looked at
+    """
+
+    pieces: tuple[ReachPiece, ...]
+    rest: tuple[Loops, ...]
+    tried: int
+
+    def shrink(self, numbers: Sequence[int]) -> "ReachDivision":
+        """The division with some of its sub-surfaces one cell smaller, and the rest larger by that.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            From 0; those of which nothing would be left stay as they are.
+        """
+        pieces = list(self.pieces)
+        rest: Loops = tuple(loop for loops in self.rest for loop in loops)
+        for k in numbers:
+            piece = pieces[k]
+            if piece.smaller:
+                pieces[k] = ReachPiece(piece.smaller, piece.axis)
+                rest = _unite(rest, piece.margin)
+        return self._replace(pieces=tuple(pieces), rest=tuple(_parts(rest)))
+
+
+def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO_PROGRESS) -> ReachDivision:
+    """Divide a face into sub-surfaces each of which one axis reaches, as the screening of its cells sees it.
+
+    Parameters
+    ----------
+    job : FaceProblem
+        Of the face that no axis reaches whole.
+    scene : ReachScene
+        Of the part that the face belongs to.
+    progress : Progress
+
+    Returns
+    -------
+    ReachDivision
+        Without a sub-surface where no axis reaches enough of the face.
+
+    Raises
+    ------
+    Cancelled
+
+    Notes
+    -----
+    Coarse cells tell which axes are taken: the one that reaches most, then the one that reaches most of the rest, from
+    several beginnings; then each gives way to one that reaches more beside all the others.  Fine cells tell where each
+    ends: one cell before what it does not reach, and where two reach a place, with the one that is farther from what
+    it does not.  Whether an axis serves a sub-surface is for its own search to prove.
+
+    **Properties**: 1. sub-surfaces and rest add up to the face; 2. so they do with some of them smaller.
+    """
+    face, tool = job.worth.face, job.worth.tool
+    kept = _as_searched(job, scene)
+    width = mean_width(face)
+    least = max(_WORTH * face.area, _SQUARES * 2 * tool.radius * min(2 * tool.radius, width))
+    size = min(_SIZE * tool.radius, _ACROSS * width)
+    coarse = _Reach(FaceCells.sized(face, max(size, (face.area / _COARSE) ** 0.5)), tool, kept, least)
+    some = screening_axes([coarse.cells], kept.limits)
+    for first in range(0, len(some), _TOGETHER):
+        progress.report("division by reach", first, len(some))
+        coarse.screen(some[first:first + _TOGETHER])
+    found = _Cover(coarse).find()
+    if not found:
+        return ReachDivision((), tuple(_parts(face.outline)), len(coarse.axes))
+    fine = _Reach(FaceCells.sized(face, max(size / _FINER, (face.area / _FINE) ** 0.5)), tool, kept, least, edges=1)
+    progress.report("division by reach", 1, 2)
+    chosen = _Cover(fine).fill(list(fine.screen(coarse.axes[found])), coarse.axes)
+    return _Borders(fine).divide(chosen, len(coarse.axes))
+
+
+class _Reach:
+    """Which cells of a face a tool reaches under axes.
+
+    Parameters
+    ----------
+    cells : FaceCells
+    tool : Tool
+    scene : ReachScene
+    least : float
+        Area of a sub-surface at least, mm^2.
+    edges : int
+        Cells beside those that are in the way that are left out.
+    """
+
+    def __init__(self, cells: FaceCells, tool: Tool, scene: ReachScene, least: float, edges: int = 0) -> None:
+        self.cells, self.tool, self.scene, self.least, self._edges = cells, tool, scene, least, edges
+        self._place = tuple(cells.index.T)
+        self.axes = np.empty((0, 3))
+        #: What each axis reaches, (k, n).
+        self.reached = np.empty((0, len(cells)), dtype=bool)
+        #: How far that goes on around each cell until the axis does not reach one, in cells, (k, n).
+        self.depth = np.empty((0, len(cells)), dtype=np.float32)
+
+    def screen(self, axes: Array) -> range:
+        """Look at axes; their numbers."""
+        cells, before = self.cells, len(self.axes)
+        free = screen_reach(cells, [self.tool], axes, self.scene)[0]
+        seen = seen_cells(cells, self.tool, axes, self.scene.tolerance.min_lead)
+        angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
+        roomy = angle <= np.pi / 2 - self.tool.half_angle - _ROOM
+        reached = free & roomy
+        if self._edges:
+            reached = np.array([_shrink(self, one, there, self._edges)
+                                for one, there in zip(reached, seen & ~free, strict=True)]).reshape(reached.shape)
+        self.axes = np.concatenate([self.axes, axes])
+        self.reached = np.concatenate([self.reached, reached])
+        self.depth = np.concatenate([self.depth, *(self._depth(one)[None] for one in reached)])
+        return range(before, len(self.axes))
+
+    def _depth(self, reached: Bools) -> NDArray[np.float32]:
+        from scipy.ndimage import distance_transform_edt
+
+        away = self.spread_out(~reached)
+        if not away.any():
+            return np.full(len(reached), np.inf, dtype=np.float32)
+        far = distance_transform_edt(~away)
+        return np.asarray(far[self._place] * reached, dtype=np.float32)
+
+    def spread_out(self, cells: Bools) -> Bools:
+        """Cells on their lattice, (nu, nv), False where there are none.
+
+        Parameters
+        ----------
+        cells : (n,) array of bool
+        """
+        grid = np.zeros(self.cells.shape, dtype=bool)
+        grid[self._place] = cells
+        return grid
+
+    def assign(self, numbers: Sequence[int]) -> Indices:
+        """Which axis each cell goes to, by its place among some; -1 where none of them reaches it, (n,).
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            Of axes, those aside that are looked at first where others are no farther from what they do not reach.
+        """
+        depth = np.minimum(self.depth[list(numbers)], _APRON)
+        for _ in range(len(numbers) + 1):
+            taken = np.where(depth.max(axis=0, initial=0.0) > 0, depth.argmax(axis=0), -1)
+            crumbs = [self._crumbs(taken == place) for place in range(len(numbers))]
+            for place, one in enumerate(crumbs):
+                depth[place, one] = 0.0
+            if not any(one.any() for one in crumbs):
+                break
+        return np.asarray(np.where(depth.max(axis=0, initial=0.0) > 0, depth.argmax(axis=0), -1))
+
+    def count_parts(self, cells: Bools) -> int:
+        """How many connected parts cells have.
+
+        Parameters
+        ----------
+        cells : (n,) array of bool
+        """
+        return int(self._parts(cells).max(initial=0))
+
+    def _parts(self, cells: Bools) -> NDArray[np.int32]:
+        """Numbers of connected parts from 1, 0 beside cells, (n,)."""
+        from scipy.ndimage import label
+
+        parts, _ = label(self.spread_out(cells), structure=np.ones((3, 3)))
+        return np.asarray(parts[self._place])
+
+    def _crumbs(self, cells: Bools) -> Bools:
+        """Connected parts of cells that are smaller than the least area, (n,)."""
+        own = self._parts(cells)
+        areas = np.bincount(own, weights=self.cells.area, minlength=1)
+        return np.asarray(cells & (areas < self.least)[own])
+
+
+def _shrink(reach: _Reach, cells: Bools, missed: Bools, count: int) -> Bools:
+    """Cells, those aside that are no more than some cells from missed ones, (n,)."""
+    from scipy.ndimage import maximum_filter
+
+    near = maximum_filter(reach.spread_out(missed), size=2 * count + 1, mode="constant")
+    return np.asarray(cells & ~near[tuple(reach.cells.index.T)])
+
+
+class _Cover:
+    """Few axes that reach much of a face together.
+
+    Parameters
+    ----------
+    reach : _Reach
+    """
+
+    def __init__(self, reach: _Reach) -> None:
+        self._reach, self._area = reach, reach.cells.area
+
+    def find(self) -> list[int]:
+        """Numbers of the axes."""
+        found: list[int] = []
+        for first in self._beginnings():
+            other = self._extend([first])
+            if self._worth(other) > self._worth(found):
+                found = other
+        if found:
+            found = self._extend(self._exchange(found))
+        return found
+
+    def fill(self, numbers: list[int], axes: Array) -> list[int]:
+        """Axes with further ones for what they leave, as long as each is worth it.
+
+        Parameters
+        ----------
+        numbers : list of int
+        axes : (k, 3) array
+            From which further ones are taken.
+        """
+        reach = self._reach
+        while len(numbers) < _PIECES:
+            left = np.flatnonzero(reach.assign(numbers) < 0)
+            if self._area[left].sum() < _PRICE * reach.least:
+                break
+            some = reach.cells.pick(left[::1 + len(left) // _COARSE])
+            gain = screen_reach(some, [reach.tool], axes, reach.scene)[0] @ some.area
+            best = np.argsort(-gain, kind="stable")[:_FILLED]
+            longer = max(([*numbers, new] for new in reach.screen(axes[best])), key=self._worth)
+            if self._worth(longer) <= self._worth(numbers):
+                break
+            numbers = longer
+        return numbers
+
+    def _worth(self, numbers: Sequence[int]) -> float:
+        """Area of what axes reach together, what is near the edge for less, and less a price on each, mm^2."""
+        if not numbers:
+            return 0.0
+        reach = self._reach
+        goes_to = reach.assign(numbers)
+        depth = reach.depth[np.asarray(numbers)[goes_to], np.arange(len(goes_to))]
+        value = np.where(goes_to >= 0, np.where(depth > 1.5, 1.0, _EDGE), 0.0)
+        count = sum(reach.count_parts(goes_to == place) for place in range(len(numbers)))
+        return float(self._area @ value) - _PRICE * reach.least * count
+
+    def _beginnings(self) -> list[int]:
+        """Axes that reach most, apart from each other."""
+        reach = self._reach
+        found: list[int] = []
+        for k in np.argsort(-(reach.reached @ self._area), kind="stable"):
+            apart = angle_between(reach.axes[k], reach.axes[found]) if found else np.array([np.pi])
+            if np.min(apart) >= _APART:
+                found.append(int(k))
+            if len(found) == _BEGINNINGS:
+                break
+        return found
+
+    def _extend(self, numbers: list[int]) -> list[int]:
+        """Axes with further ones, as long as each is worth it."""
+        while len(numbers) < _PIECES:
+            longer = [*numbers, self._next(numbers)]
+            if self._worth(longer) <= self._worth(numbers):
+                break
+            numbers = longer
+        return numbers
+
+    def _next(self, numbers: Sequence[int], among: Sequence[int] | None = None) -> int:
+        """The axis beside which others together reach most."""
+        reach = self._reach
+        left = ~reach.reached[list(numbers)].any(axis=0)
+        some = np.arange(len(reach.axes)) if among is None else np.asarray(among)
+        most = reach.reached[some] @ (self._area * left)
+        best = some[np.argsort(-most, kind="stable")[:_LOOKED_AT]]
+        return int(max(best, key=lambda k: self._worth([*numbers, int(k)])))
+
+    def _exchange(self, numbers: list[int]) -> list[int]:
+        """Axes, each exchanged for one that reaches more beside all others, its own neighbours among these."""
+        for place in range(len(numbers)):
+            others = [*numbers[:place], *numbers[place + 1:]]
+            number = numbers[place]
+            for one in (self._next(others), *self._near(others, number)):
+                if self._worth([*others[:place], one, *others[place:]]) > self._worth(numbers):
+                    numbers = [*others[:place], one, *others[place:]]
+        return numbers
+
+    def _near(self, others: Sequence[int], number: int) -> Iterator[int]:
+        """The best neighbours of an axis, one after the other nearer to the best so far."""
+        reach = self._reach
+        for angle in _NEARER:
+            near = ring(reach.axes[number], angle)
+            limits = reach.scene.limits
+            near = near if limits is None else near[limits.allowed(near)]
+            if len(near):
+                number = self._next(others, [number, *reach.screen(near)])
+                yield number
+
+
+def _as_searched(job: FaceProblem, scene: ReachScene) -> ReachScene:
+    """A scene with the distances that the search keeps, which are a little larger, and its limits."""
+    own = job.feasibility
+    given, skin = own.tolerance, next((one for one in own.groups if one.role == SKIN), None)
+    gouge = given.gouge if skin is None else own.allowance - float(skin.required[0]) + _SLACK
+    kept = replace(given, gouge=gouge, cutter_clearance=given.cutter_clearance + MARGIN,
+                   shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
+    return replace(scene, tolerance=kept, limits=own.limits, allowance=own.allowance)
+
+
+class _Borders:
+    """Borders around cells that axes reach.
+
+    Parameters
+    ----------
+    reach : _Reach
+    """
+
+    def __init__(self, reach: _Reach) -> None:
+        from scipy.ndimage import distance_transform_edt
+
+        self._reach, self._cells = reach, reach.cells
+        on = reach.spread_out(np.ones(len(reach.cells), dtype=bool))
+        self._nearest = tuple(distance_transform_edt(~on, return_distances=False, return_indices=True))
+        lines = [(line[1:] + line[:-1]) / 2 for line in Lattice(reach.cells.face, reach.cells.shape).lines]
+        self._size = np.array([np.median(np.diff(line)) for line in lines])
+        self._lines = [_longer(line) for line in lines]
+
+    def divide(self, numbers: Sequence[int], tried: int) -> ReachDivision:
+        """The face divided.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            Of the axes of its sub-surfaces.
+        tried : int
+            How many axes were looked at.
+        """
+        reach = self._reach
+        rest: Loops = reach.cells.face.outline
+        pieces: list[ReachPiece] = []
+        goes_to = reach.assign(numbers)
+        for place, number in enumerate(numbers):
+            left = self._inside(rest)
+            held = (goes_to == place) & left
+            core = held & (reach.depth[number] > _SMALLER)
+            found, rest = self._cut_out(rest, held, ~left)
+            for loops in found:
+                inner, margin = self._cut_out(loops, core & self._inside(loops), ~left)
+                smaller = max(inner, key=_area, default=())
+                for other in inner:
+                    margin = margin if other is smaller else _unite(margin, other)
+                pieces.append(ReachPiece(loops, reach.axes[number], smaller, margin))
+        pieces.sort(key=lambda one: -_area(one.loops))
+        return ReachDivision(tuple(pieces), tuple(_parts(rest)), tried)
+
+    def _cut_out(self, loops: Loops, held: Bools, taken: Bools) -> tuple[list[Loops], Loops]:
+        """Pieces of a polygon around cells, and the rest of it, crumbs included."""
+        if not held.any():
+            return [], loops
+        for edge in _EDGES:
+            with suppress(InvalidInput):
+                both, rest = divide_nearly(loops, self._around(held, taken, edge))
+                break
+        else:
+            return [], loops
+        found: list[Loops] = []
+        for one in outer_with_holes(both):
+            if self._cells.area @ self._inside(one) >= _CRUMB * self._reach.least:
+                found.append(one)
+            else:
+                rest = _unite(rest, one)
+        return found, rest
+
+    def _inside(self, loops: Loops) -> Bools:
+        """Cells whose contact lies in a polygon, (n,)."""
+        if not loops:
+            return np.zeros(len(self._cells), dtype=bool)
+        return np.asarray(inside(slabs(loops), self._cells.uv))
+
+    def _around(self, held: Bools, taken: Bools, edge: float) -> Loops:
+        """Loops in u and v around cells; where the face ends there, or others begin, they run beyond it.
+
+        Parameters
+        ----------
+        held : (n,) array of bool
+        taken : (n,) array of bool
+            Cells that belong to other sub-surfaces.
+        edge : float
+            What is left of values, which fade from 1 to -1, at the loops.
+        """
+        from scipy.ndimage import binary_dilation, gaussian_filter
+
+        own = self._reach.spread_out(held)
+        own = binary_dilation(own, iterations=_OVER, mask=self._reach.spread_out(held | taken))
+        value = np.pad(np.where(own, 1.0, -1.0)[self._nearest], 2, mode="edge")
+        loops = contours(gaussian_filter(value, _BLUR, mode="nearest") - edge, (self._lines[0], self._lines[1]))
+        return tuple(loop[simplify_loop(loop / self._size, _STRAIGHT)] for loop in loops)
+
+
+def _longer(line: Array) -> Array:
+    """Parameters with two more on either side."""
+    before, behind = line[1] - line[0], line[-1] - line[-2]
+    return np.concatenate([line[0] - before * np.array([2.0, 1.0]), line, line[-1] + behind * np.array([1.0, 2.0])])
+
+
+def _unite(loops: Loops, beside: Loops) -> Loops:
+    return unite_polygons(loops, beside) if loops and beside else loops or beside
+
+
+def _parts(loops: Loops) -> list[Loops]:
+    """Polygons that hold anything."""
+    if not loops:
+        return []
+    whole = sum(abs(signed_area(loop)) for loop in loops)
+    return [part for part in outer_with_holes(loops) if _area(part) > _NOTHING * whole]
+
+
+def _area(loops: Loops) -> float:
+    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])

@@ -1,0 +1,130 @@
+"""Faces that no axis reaches whole: what one axis reaches is machined, and the rest is told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.job.inputs.tool_file import load_tool
+from toolaxis.job.planning.sub_surfaces import by_reach, shrink_refused
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
+from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
+from toolaxis.regions.scene import ReachScene
+from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+
+
+def grooved(depth: float) -> Face:
+    """A patch of 24 x 10 mm with a groove along y near one end, 2 mm wide."""
+    x, y = np.meshgrid(np.linspace(0, 24, 49), np.linspace(0, 10, 6), indexing="ij")
+    groove = -depth * np.exp(-(((x - 17) / 1.2) ** 2))
+    return Face.from_bspline(np.stack([x, y, 1.5 * np.sin(x / 15) + groove], axis=-1))
+
+
+def vault() -> Face:
+    """Two thirds of a tube of 15 mm radius, 8 mm long, its outer side machined."""
+    turn, along = np.meshgrid(np.linspace(-2.0, 2.0, 25), np.linspace(0, 8, 5), indexing="ij")
+    return Face.from_bspline(np.stack([15 * np.sin(turn), along, 15 * np.cos(turn)], axis=-1), flip=True)
+
+
+def mushroom(plate, gap: float = 2.0) -> Part:
+    """A strip 2 mm wide around a stem of 16 x 16 mm, under a lid that stands out over the stem by 3 mm."""
+    ground = plate([[-20, -20, 0], [-20, 20, 0], [20, -20, 0], [20, 20, 0]])
+    loop = np.array([[-1.0, -1.0], [1, -1], [1, 1], [-1, 1]]) / 40
+    strip = Face(ground.surface, (0.5 + (10 + gap) * loop, 0.5 + (8 + gap) * loop))
+    corners = [(-8, -8), (8, -8), (8, 8), (-8, 8)]
+    stem = [plate([[a, b, -3], [c, d, -3], [a, b, 12], [c, d, 12]])
+            for (a, b), (c, d) in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    lid = plate([[-11, -11, 12], [-11, 11, 12], [11, -11, 12], [11, 11, 12]])
+    return Part.from_faces([strip, *stem, lid])
+
+
+def problem(part: Part, tool: str, number: int = 1) -> tuple[FaceProblem, ReachScene]:
+    """What decides about axes for a face of a part."""
+    return task(part.face(number), load_tool(tool), 0.05, part=part), ReachScene.of(part)
+
+
+def areas_of(face: Face, found: ReachDivision) -> tuple[list[float], float]:
+    """Areas of the sub-surfaces, and of the rest, mm^2."""
+    return [face.trimmed(piece.loops).area for piece in found.pieces], sum(
+        face.trimmed(loops).area for loops in found.rest)
+
+
+@pytest.mark.parametrize(("make", "tool", "least"), [
+    (lambda _: Part.from_faces([grooved(3.0)]), "torus:8x2", 0.65),
+    (lambda _: Part.from_faces([vault()]), "ball:8", 0.999), (mushroom, "ball:3", 0.97)])
+def test_pieces_and_rest_add_up(scenes, make, tool: str, least: float) -> None:
+    part = make(scenes.plate)
+    face = part.face(1)
+    found = divide_by_reach(*problem(part, tool))
+    areas, rest = areas_of(face, found)
+    assert sum(areas) + rest == pytest.approx(face.area, rel=1e-5)
+    assert sum(areas) >= least * face.area and found.tried > 0
+    small = found.shrink(range(len(found.pieces)))
+    smaller, more = areas_of(face, small)
+    assert sum(smaller) + more == pytest.approx(face.area, rel=1e-5)
+    assert all(one <= other for one, other in zip(smaller, areas, strict=True))
+
+
+def test_a_narrow_ring_is_cut_into_few_strips_that_their_axes_reach(scenes) -> None:
+    part = mushroom(scenes.plate)
+    job, scene = problem(part, "ball:3")
+    found = divide_by_reach(job, scene)
+    assert 2 <= len(found.pieces) <= 4
+    for piece in found.pieces:
+        own: Feasibility = job.feasibility
+        strip = part.face(1).trimmed(piece.loops)
+        assert strip.area > 0.1 * part.face(1).area
+        free = own.reach(strip.grid(60, 60), piece.axis, itself=True)
+        assert len(free) > 100 and free.mean() > 0.99
+
+
+def test_a_face_that_no_axis_reaches_is_left_whole(scenes) -> None:
+    part = mushroom(scenes.plate)
+    found = divide_by_reach(*problem(part, "ball:30"))
+    assert not found.pieces and len(found.rest) == 1
+    assert areas_of(part.face(1), found)[1] == pytest.approx(part.face(1).area, rel=1e-6)
+
+
+def test_what_the_proof_refuses_becomes_smaller_and_the_rest_larger(scenes) -> None:
+    part = mushroom(scenes.plate, 1.5)
+    job, scene = problem(part, "ball:3")
+    found = divide_by_reach(job, scene)
+    none = Orientation(None, reasons=("refused",))
+    whole = Operation(1, part.face(1), job.worth.tool, none)
+    targets = by_reach(whole.face, whole, found)
+    tried = [Operation(k, one.face, job.worth.tool, none) for k, one in enumerate(targets, 1)]
+    again = shrink_refused(targets, tried, whole, found)
+    assert [one.face.label for one in again] == [one.face.label for one in targets]
+    assert sum(one.face.area for one in again) == pytest.approx(part.face(1).area, rel=1e-5)
+    assert all(one.face.area < other.face.area for one, other in zip(again[:-1], targets[:-1], strict=True))
+    assert again[-1].ended is not None
+    assert again[-1].face.area > targets[-1].face.area + 0.1 * part.face(1).area
+    assert shrink_refused(targets, [], whole, found) == targets
+
+
+def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(scenes) -> None:
+    part = mushroom(scenes.plate, 1.5)
+    made = ta.plan(part, "ball:3", 0.1, faces=[1], workers=1)
+    done, rest = [op for op in made.operations if op.done], [op for op in made.operations if not op.done]
+    assert made.outcome == "incomplete" and 2 <= len(done) <= 4 and len(rest) == 1
+    assert sum(op.face.area for op in made.operations) == pytest.approx(part.face(1).area, rel=1e-4)
+    assert sum(op.face.area for op in done) > 0.8 * part.face(1).area
+    told = rest[0].orientation.reasons
+    assert told[0].startswith("none of the") and "mm2" in told[0] and "refused for a collision" in told[1]
+    verdict = ta.verify(replace(made, operations=tuple(done)))
+    assert verdict.passed, verdict.reasons
+    again = ta.plan(part, "ball:3", 0.1, faces=[1], workers=2)
+    for one, other in zip(made.operations, again.operations, strict=True):
+        assert (one.path is None) == (other.path is None)
+        assert one.path is None or np.array_equal(one.path.cl, other.path.cl)
+        assert all(map(np.array_equal, one.face.trims, other.face.trims))
+
+
+def test_nobody_is_asked_where_the_division_is_given(scenes) -> None:
+    made = ta.plan(mushroom(scenes.plate), "ball:3", 0.1, faces=[1], regions=1, workers=1)
+    assert made.outcome == "incomplete" and len(made.operations) == 1
