@@ -29,7 +29,7 @@ _COUNTED = {"gouge": "with a gouge", "holder": "with a collision of the holder",
             "normals spread": "(?:on the back of the surface|too far from a normal)"}
 #: Share of its area that a face's operations have, at least, where all of them were made.
 _WHOLE = 0.99
-_STAGE, _JUDGED = re.compile(r"^face (\d+)\S* \(\d+ of \d+\)"), re.compile(r"^(\S+) \(\d+ of \d+\)")
+_STAGE, _JUDGED = re.compile(r"^(?:.*: )?face (\d+)\S* \(\d+ of \d+\)"), re.compile(r"^(\S+) \(\d+ of \d+\)")
 
 
 def kind_of(reasons: Sequence[str]) -> str:

@@ -7,7 +7,8 @@ in address space (``--memory``); six times as much on the clock counts as hung. 
 SIGTERM once: what it finished is judged and counted.  As only the command is run and only what it writes is read, this
 file measures other versions too: name one by PYTHONPATH.
 
-The tool is the same for all faces of a part: `benchmarks._rack` states the rule.  The faces are all sculptured ones, or
+The tool is the same for all faces of a part: `benchmarks._rack` states the rule; ``--tools`` names a rack in its place
+(``general-rack`` is the one that is shipped).  The faces are all sculptured ones, or
 ``--sample`` of them, drawn by ``--seed`` and the name of the file, or ``--faces``.  A face is verified where all its
 operations pass; its area counts without what its plan leaves to clean-up.
 
@@ -46,6 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     made.add_argument("folder", nargs="?", type=Path, metavar="FOLDER|PART|RESULT.json",
                       help=f"default: {FOLDER} (TOOLAXIS_SHARED names another place)")
     made.add_argument("--tool", metavar="SPEC", help="as `toolaxis plan` takes it; by the rule unless given")
+    made.add_argument("--tools", metavar="RACK", help="a rack in place of one tool: a library, its file or its name")
     made.add_argument("--scallop", type=float, metavar="MM", help="goes with the tool unless given")
     made.add_argument("--sample", type=int, metavar="N", help="sculptured faces to draw of each part; all unless given")
     made.add_argument("--seed", type=int, default=1, metavar="S")
@@ -134,6 +136,8 @@ def _measure(path: Path, asked: argparse.Namespace, place: Path) -> dict[str, An
     survey = json.loads(seen.output)
     sculptured = {face["number"]: face["area"] for face in survey["faces"] if face["sculptured"]}
     tool = chosen(survey) if asked.tool is None else given(asked.tool)
+    if asked.tools is not None:
+        tool = tool._replace(name=asked.tools, file=None)
     scallop = tool.scallop if asked.scallop is None else asked.scallop
     numbers = _numbers(asked, path.name, sculptured)
     areas = {face["number"]: face["area"] for face in survey["faces"] if face["number"] in numbers}
@@ -141,7 +145,8 @@ def _measure(path: Path, asked: argparse.Namespace, place: Path) -> dict[str, An
                 unit=survey["unit"], diagonal=survey["diagonal"], warnings=survey["warnings"],
                 tool=tool.name, tool_file=tool.file, scallop=scallop, refused="", reasons=[])
     if areas:
-        part["rows"] = _planned_and_judged(part, path, areas, tool, (bounds, place))
+        words = _tool_words(tool, asked.tools is not None, place)
+        part["rows"] = _planned_and_judged(part, path, areas, words, (bounds, place))
     part["wall"] = time.monotonic() - began
     return part
 
@@ -159,14 +164,22 @@ def _numbers(asked: argparse.Namespace, name: str, sculptured: Mapping[int, floa
     return sorted(sorted(sculptured, key=lambda number: draws[number])[:asked.sample])
 
 
-def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, float], tool: RackTool,
+def _tool_words(tool: RackTool, is_rack: bool, place: Path) -> list[str]:
+    """The command's words for a tool, or a rack."""
+    if is_rack:
+        return ["--tools", tool.name]
+    if tool.file is None:
+        return ["--tool", tool.name]
+    file = place / "tool.toml"
+    file.write_text(tool.file)
+    return ["--tool", str(file)]
+
+
+def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, float], words: list[str],
                         where: tuple[Bounds, Path]) -> list[dict[str, Any]]:
     bounds, place = where
-    folder, spec = place / "plan", tool.name
-    if tool.file is not None:
-        spec = str(place / "tool.toml")
-        Path(spec).write_text(tool.file)
-    planned = run(python(*_COMMAND, "plan", str(path), "--tool", spec, "--scallop", str(part["scallop"]), "--faces",
+    folder = place / "plan"
+    planned = run(python(*_COMMAND, "plan", str(path), *words, "--scallop", str(part["scallop"]), "--faces",
                          ",".join(map(str, areas)), "--out", str(folder), "--workers", "1", "--no-pictures"),
                   bounds, place)
     part["processes"]["plan"] = _process(planned)

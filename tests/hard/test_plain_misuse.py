@@ -25,7 +25,7 @@ def test_from_bspline_refuses_in_one_sentence(given, says):
 
 @pytest.mark.parametrize("given, says", [
     ({"faces": [1.5]}, "face 1.5"), ({"faces": 2}, "face 2 does not exist"), ({"faces": iter(())}, "empty"),
-    ({"faces": [ta.Face]}, "whole numbers"), ({"tool": None}, "tool is None"),
+    ({"faces": [ta.Face]}, "whole numbers"), ({"tool": 12}, "tools are 12"),
     ({"tolerance": "fine"}, "machining tolerance is 'fine'"), ({"tolerance": 1.0}, "machining tolerance is 1.0 mm"),
 ])
 def test_plan_refuses_in_one_sentence(given, says):

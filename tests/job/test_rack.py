@@ -12,6 +12,7 @@ from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
+from toolaxis.post.context import Options
 from toolaxis.progress import Progress
 from toolaxis.report.tables import plan_table, verdict_table
 from toolaxis.shape.part import Part
@@ -109,13 +110,23 @@ def test_tables_name_the_tools_and_what_stays_open(planned: Plan) -> None:
     assert str(verdict_table(planned, ta.verify(planned)).title).startswith("2 tools, ")
 
 
-def test_every_tool_has_a_program_with_its_number(planned: Plan) -> None:
-    files = post_plan(planned, "fanuc", Mounting(ta.load_machine("bc-table-table")))
-    assert sorted(files) == ["program-fanuc-t1.nc", "program-fanuc-t2.nc", "setup-fanuc-t1.md", "setup-fanuc-t2.md"]
-    second = files["program-fanuc-t2.nc"]
-    assert "T2 M6" in second and "G43 H2" in second and "T1 M6" not in second
-    assert "OP01-FACE1)" in files["program-fanuc-t1.nc"] and "OP01-FACE1)" not in second
-    assert "| T2 | ball:3 |" in files["setup-fanuc-t2.md"]
+DIALECTS = {"fanuc": ("T1 M6", "T2 M6", "G43 H2"), "haas-g254": ("T1 M6", "T2 M6", "G43 H2"),
+            "linuxcnc": ("T1 M6", "T2 M6", "G43 H2"), "siemens": ("T1 D1", "T2 D1", "SUPA G0 Z"),
+            "heidenhain": ("TOOL CALL 1 Z S10000", "TOOL CALL 2 Z S12000", "L M140 MB MAX")}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_one_program_changes_the_tools(planned: Plan, dialect: str) -> None:
+    files = post_plan(planned, dialect, Mounting(ta.load_machine("bc-table-table")), Options(retract=400.0))
+    text = next(text for name, text in files.items() if name.startswith("program-"))
+    first, second, word = DIALECTS[dialect]
+    names = [op.name.upper() for op in planned.operations]
+    places = [text.index(one) for one in (first, names[0], second, names[1])]
+    assert places == sorted(places), "each tool is called before its own operation"
+    assert word in text[places[2] - 40:] and text.count(second) == 1
+    sheet = files[f"setup-{dialect}.md"]
+    assert "## Tools" in sheet and "| T1 | ball:10 |" in sheet and "| T2 | ball:3 |" in sheet
+    assert f"| {planned.operations[1].name} | T2 |" in sheet
 
 
 def test_the_order_of_the_tools_and_the_number_of_processes_do_not_matter(planned: Plan) -> None:
@@ -127,9 +138,10 @@ def test_the_order_of_the_tools_and_the_number_of_processes_do_not_matter(planne
 
 
 def test_a_tool_s_own_feed_counts_unless_one_is_given_for_all(planned: Plan) -> None:
-    files = post_plan(planned, "fanuc", Mounting(ta.load_machine("bc-table-table")))
-    assert "S12000 M3" in files["program-fanuc-t2.nc"] and "F200." in files["program-fanuc-t2.nc"]
-    assert "S10000 M3" in files["program-fanuc-t1.nc"] and "F1000." in files["program-fanuc-t1.nc"]
+    text = post_plan(planned, "fanuc", Mounting(ta.load_machine("bc-table-table")))["program-fanuc.nc"]
+    before, after = text.split("T2 M6")
+    assert "S10000 M3" in before and "F1000." in before and "F200." not in before
+    assert "S12000 M3" in after and "F200." in after and "F1000." not in after
     first, rest = planned.operations[0], planned.operations[1]
     assert rest.seconds(1000.0, 1e9) == pytest.approx(rest.seconds(500.0, 1e9), rel=1e-6)
     assert first.seconds(1000.0, 1e9) == pytest.approx(first.seconds(500.0, 1e9) / 2, rel=1e-6)
@@ -175,3 +187,9 @@ def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
     made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
     assert [tool.name for tool in made.tools] == ["ball:10"]
     assert any("left out: its radius is not above the scallop height" in why for why in made.part.warnings)
+
+
+def test_a_part_with_blades_is_refused_unless_faces_are_chosen() -> None:
+    blisk = Path(__file__).parents[2] / "examples" / "blisk.step"
+    with pytest.raises(InvalidInput, match=r"the part has \d+ blades, which are planned with one tool"):
+        ta.plan(blisk, TOOLS, SCALLOP)

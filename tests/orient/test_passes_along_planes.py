@@ -143,7 +143,7 @@ def test_a_trimmed_face_is_found_again_though_its_surface_turns_away_beyond() ->
 @pytest.mark.parametrize("words", [{"passes": "spiral"}, {"passes": PLANES, "strategy": "sturz"},
                                    {"passes": PLANES, "strategy": "two-point"}])
 def test_what_does_not_go_with_planes_is_refused(words: dict[str, str]) -> None:
-    known = r"passes 'spiral' is unknown: use iso, planes, field or auto"
+    known = r"passes 'spiral' is unknown: use iso, planes, scallop or auto"
     with pytest.raises(InvalidInput, match=rf"{known}|need a fixed axis"):
         ta.plan(_fan(), Tool.flat(20) if words.get("strategy") == "two-point" else TOOL, H, **words)
 

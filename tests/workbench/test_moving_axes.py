@@ -125,7 +125,7 @@ def test_jobs_with_fixed_planes_are_refused(planned):
     ({"strategy": "sturz", "orientations": 2}, "leave out the number of orientations"),
     ({"strategy": "sturz", "method": "roman"}, "leave out one of the two"),
     ({"strategy": "sturz", "passes": "planes"}, "leave out one of the two"),
-    ({"passes": "spiral"}, "passes 'spiral' is unknown: use iso, planes, field or auto"),
+    ({"passes": "spiral"}, "passes 'spiral' is unknown: use iso, planes, scallop or auto"),
     ({"method": "jerk"}, "choose a machine among the limits"),
     ({"strategy": "best"}, "use indexed, sturz")])
 def test_what_does_not_go_with_a_strategy_is_told_and_nothing_is_made(document, parts, given, words):

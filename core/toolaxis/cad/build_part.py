@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from toolaxis.cad.material_side import faces_to_turn
 from toolaxis.cad.shape_data import FaceRecord, ShapeRecord
 from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gaps
 from toolaxis.shape.face import Face
@@ -40,11 +41,17 @@ def part_from_record(record: ShapeRecord, source: str = "", sha256: str = "") ->
     faces = tuple(face_from_record(item) for item in record.faces)
     part = Part(faces, (), tuple(record.bodies), source, sha256, record.unit)
     found = match_edges(record.free, part.diagonal) if len(record.free) > 1 else []
+    borders = [*record.borders, *found]
+    turned = faces_to_turn(faces, borders)
+    if turned:
+        faces = tuple(face_from_record(replace(item, flip=not item.flip)) if item.number in turned else face
+                      for item, face in zip(record.faces, faces, strict=True))
+        part = replace(part, faces=faces)
     numbers = {face.number for face in faces}
-    warnings = [*record.warnings, *_gap_warning(part, record), *_sense_warning(part, [*record.borders, *found])]
+    warnings = [*record.warnings, *_gap_warning(part, record), *_turned_warning(turned), *_sense_warning(part, borders)]
     if found:
         warnings.append(f"{len(found)} edges were found by position: faces touch there but share no edge in the file")
-    edges = edges_from_borders(faces, [*record.borders, *found])
+    edges = edges_from_borders(faces, borders)
     warnings += seam_warnings(edges)
     selected = tuple(number for number in record.selected if number in numbers)
     return replace(part, edges=edges, warnings=tuple(warnings), selected=selected)
@@ -60,6 +67,16 @@ def _gap_warning(part: Part, record: ShapeRecord) -> list[str]:
     a, b = record.borders[worst].faces
     return [f"{len(wide)} edges lie off their faces, worst between faces {a} and {b} by {widths[worst]:.3g} mm: "
             "the geometry is damaged or very inaccurate there"]
+
+
+def _turned_warning(turned: frozenset[int]) -> list[str]:
+    """One sentence about faces that were turned over."""
+    if not turned:
+        return []
+    first = min(turned)
+    more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""
+    return [f"face {first}{more}: the file has the material on the other side than the faces around: turned over, with "
+            "the side of the larger area; check that it is the right one"]
 
 
 def _sense_warning(part: Part, borders: list[Border]) -> list[str]:

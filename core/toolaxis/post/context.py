@@ -1,7 +1,7 @@
 """What a program is made from: the machine and the inputs, a plan and its stations, and what a user says about it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.post.indexed_positions import IndexedPosition
+from toolaxis.tools.tool import Tool
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -21,7 +22,7 @@ class ProgramContext:
     ----------
     mounting : Mounting
     inputs : PlanInputs
-        Spindle speed and feed rates.
+        Spindle speed and feed rates, of the tool in the spindle.
     name : str
         Of the program; letters, digits, points, dashes and underscores are kept.
     tool_number : int
@@ -60,6 +61,15 @@ class Program(ProgramContext):
 
     plan: Plan
     stations: tuple[IndexedPosition, ...] = ()
+
+    def with_tool(self, tool: Tool) -> "Program":
+        """The same with a tool of the plan in the spindle, at its feed and speed.
+
+        Parameters
+        ----------
+        tool : Tool
+        """
+        return replace(self, tool_number=tool.number or 1, inputs=self.plan.inputs.at_rates_of(tool))
 
 
 @dataclass(frozen=True)

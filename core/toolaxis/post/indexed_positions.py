@@ -96,9 +96,10 @@ def stations(plan: Plan, mounting: Mounting, angle_digits: int,
     for op in plan.operations:
         if op.path is None or op.frame is None:
             continue
-        given = (chosen or {}).get(op.number)
-        rows = _solutions(op, mounting) if given is None else _check_given_angles(op, given, mounting)
-        rows = _close(_round_angles(rows, mounting.machine, angle_digits), op, plan, mounting)
+        given, length = (chosen or {}).get(op.number), op.tool.gauge_length
+        held = mounting if len(plan.tools) == 1 or length is None else replace(mounting, tool_length=length)
+        rows = _solutions(op, held) if given is None else _check_given_angles(op, given, held)
+        rows = _close(_round_angles(rows, held.machine, angle_digits), op, plan, held)
         stand = rows[0] if given is not None else nearest_turn(mounting.machine, rows, stand)
         number = next((k for k, one in enumerate(known) if _same(one, stand)), len(known))
         known += [stand] if number == len(known) else []

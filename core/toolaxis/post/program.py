@@ -87,6 +87,14 @@ class Dialect(ABC):
         """Blocks of the safe start: modes, plane off, retract, tool, spindle."""
 
     @abstractmethod
+    def call_tool(self, program: ProgramContext) -> Lines:
+        """Blocks that bring the program's tool into the retracted spindle and turn it on."""
+
+    def change_tool(self, program: ProgramContext) -> Lines:
+        """The same behind a station: they retract first where leaving a station does not."""
+        return self.call_tool(program)
+
+    @abstractmethod
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Blocks from a retracted tool to the plane of a station."""
 
@@ -322,12 +330,16 @@ def program_text(program: Program, dialect: Dialect) -> str:
     str
         ASCII, a line for each block.
     """
-    lines = [*dialect.start(program)]
+    lines, tool = list[str](), None
     for station in program.stations:
+        own = program.with_tool(station.operation.tool)
+        if station.operation.tool != tool:
+            lines += dialect.start(own) if tool is None else dialect.change_tool(own)
+            tool = station.operation.tool
         lines += [dialect.comment(station.operation.name.upper())]
-        lines += dialect.orient(program, station)
-        lines += [*dialect.approach(program, station), *_path(program, station, dialect)]
-        lines += dialect.leave(program, station)
+        lines += dialect.orient(own, station)
+        lines += [*dialect.approach(own, station), *_path(own, station, dialect)]
+        lines += dialect.leave(own, station)
     return "\n".join([*dialect.framed([*lines, *dialect.end(program)]), ""])
 
 

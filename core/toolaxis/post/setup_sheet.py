@@ -39,7 +39,8 @@ def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "no
         Markdown; lengths in mm, angles in degrees.
     """
     plan = program.plan
-    parts = [f"# Setup sheet: {program.name}", _general(program, dialect, file, verdict), "## Tool", _tool(plan),
+    tools = "## Tools" if len(plan.used_tools) > 1 else "## Tool"
+    parts = [f"# Setup sheet: {program.name}", _general(program, dialect, file, verdict), tools, _tools(plan),
              "## Work coordinate system", _work(program, dialect),
              "## Orientations", _orientations(program, dialect), "## Operations", _operations(program, dialect),
              "## What to mind", "\n".join(f"- {note}" for note in _notes(program, dialect)), ""]
@@ -70,7 +71,7 @@ def moving_sheet_text(program: Program, control: TipControl, file: str, verdict:
     if program.machine.assumed:
         notes.append(f"Assumed in the machine's file: {', '.join(program.machine.assumed)}.")
     general = _general(program, dialect, file, verdict).replace(dialect.title, control.title)
-    parts = [f"# Setup sheet: {program.name}", general, "## Tool", _tool(program.plan), "## Work coordinate system",
+    parts = [f"# Setup sheet: {program.name}", general, "## Tool", _tools(program.plan), "## Work coordinate system",
              _work(program, dialect), "## Operations", _courses(program), "## What to mind",
              "\n".join(f"- {note}" for note in notes), ""]
     return "\n\n".join(parts)
@@ -140,12 +141,15 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
     return _table(["", ""], rows)
 
 
-def _tool(plan: Plan) -> str:
-    tool, inputs = plan.tools[0], plan.inputs
-    stickout = "not given" if tool.stickout is None else f"{tool.stickout:.3f}"
-    rows = [[f"T{tool.number or 1}", tool.title or tool.name, f"{2 * tool.radius:.3f}", f"{tool.corner_radius:.3f}",
-             f"{tool.flute_length:.3f}", stickout, "yes" if "holder" in tool.outlines else "not given",
-             f"{inputs.spindle:.0f}", f"{inputs.feedrate:.0f}"]]
+def _tools(plan: Plan) -> str:
+    rows = []
+    for tool in plan.used_tools:
+        inputs = plan.inputs.at_rates_of(tool)
+        stickout = "not given" if tool.stickout is None else f"{tool.stickout:.3f}"
+        rows.append([f"T{tool.number or 1}", tool.title or tool.name, f"{2 * tool.radius:.3f}",
+                     f"{tool.corner_radius:.3f}", f"{tool.flute_length:.3f}", stickout,
+                     "yes" if "holder" in tool.outlines else "not given", f"{inputs.spindle:.0f}",
+                     f"{inputs.feedrate:.0f}"])
     return _table(["tool", "name", "diameter", "corner radius", "cutting edge", "stick-out", "holder", "rev/min",
                    "mm/min"], rows) + "\n\nThe tool length is measured to the tip, the lowest point on the axis."
 
@@ -207,10 +211,11 @@ def _operations(program: Program, dialect: Dialect) -> str:
     for station in program.stations:
         op, seconds = station.operation, station.operation.seconds(program.inputs.feedrate, inputs.rapid)
         offset = dialect.offsets[station.orientation if len(dialect.offsets) > 1 else 0]
-        rows.append([op.name, str(station.orientation + 1), offset, str(op.path.passes if op.path else 0),
-                     _vector(station.tips[0], 3), number(float(station.tips[:, 2].min()), 3),
-                     f"{gouge_of(program, dialect, station):.4f}", f"{seconds / 60:.1f}"])
-    return _table(["operation", "orientation", "offset", "passes", "first point in the plane", "lowest Z",
+        rows.append([op.name, f"T{op.tool.number or 1}", str(station.orientation + 1), offset,
+                     str(op.path.passes if op.path else 0), _vector(station.tips[0], 3),
+                     number(float(station.tips[:, 2].min()), 3), f"{gouge_of(program, dialect, station):.4f}",
+                     f"{seconds / 60:.1f}"])
+    return _table(["operation", "tool", "orientation", "offset", "passes", "first point in the plane", "lowest Z",
                    "gouge at most", "min"], rows)
 
 

@@ -144,6 +144,8 @@ def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO
     **Properties**: 1. sub-surfaces and rest add up to the face; 2. so they do with some of them smaller.
     """
     face, tool = job.worth.face, job.worth.tool
+    if not face.area > 0:
+        return ReachDivision((), tuple(_parts(face.outline)), 0)
     kept = _as_searched(job, scene)
     width = mean_width(face)
     least = max(_WORTH * face.area, _SQUARES * 2 * tool.radius * min(2 * tool.radius, width))

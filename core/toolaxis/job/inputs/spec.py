@@ -198,7 +198,7 @@ def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
 
 
 def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None,
-                corner: float = GREATEST_CORNER, width: float = 0.0) -> tuple[Part, Any]:
+                corner: float = GREATEST_CORNER, width: float = 0.0, asked: bool = True) -> tuple[Part, Any]:
     """The part with the faces joined that are asked for as one, and the list of faces that is left for `choose_faces`.
 
     Parameters
@@ -210,6 +210,8 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
         Greatest angle by which iso-parametric lines may turn across joins that are asked for, rad.
     width : float
         Planes, cylinders and cones narrower than that belong to the skins that they continue, mm.
+    asked : bool
+        Whether somebody asked for skins: then it is told where there are none.
 
     Raises
     ------
@@ -221,8 +223,9 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
     if faces == "skins":
         found = find_skins(part, width)
         part = with_skins(part, found.faces)
-        alone = () if found.joined else (f"--faces skins joins nothing: each of the {len(found.single)} sculptured "
-                                         "faces is machined by itself" + _where_apart(found.reasons),)
+        alone = () if found.joined or not asked else (
+            f"--faces skins joins nothing: each of the {len(found.single)} sculptured faces is machined by itself"
+            + _where_apart(found.reasons),)
         return replace(part, selected=()).with_warnings(*alone, *found.reasons), None
     if isinstance(faces, SomeSkins):
         skins = _skins_by_number(part, faces.numbers)

@@ -95,7 +95,7 @@ def load_library(source: ToolSource | Sequence[ToolSource] | None = None) -> Too
     """
     if source is None:
         source = GENERAL_RACK
-    sources: Sequence[ToolSource] = [source] if isinstance(source, ToolSource) else source
+    sources: Sequence[Any] = list(source) if isinstance(source, Iterable) and not isinstance(source, str) else [source]
     if not sources:
         raise InvalidInput("the rack is empty: name at least one tool, library or folder")
     entries: list[ToolEntry] = []

@@ -15,7 +15,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import operation_text
 from toolaxis.post.context import Options
 from toolaxis.post.dialects.registry import APT, dialect_named, tip_control_of
-from toolaxis.post.program import Dialect, bare_program, program_of, program_text
+from toolaxis.post.program import bare_program, program_of, program_text
 from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
 from toolaxis.post.tcp_program import moves, moving_text
 
@@ -40,7 +40,7 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
     Returns
     -------
     dict of str to str
-        Program and setup sheet of each tool; for apt one CL file per operation.
+        Program and setup sheet; for apt one CL file per operation.
 
     Raises
     ------
@@ -52,20 +52,9 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
     found = dialect_named(dialect)
     if mounting is None:
         raise InvalidInput(f"dialect {dialect} writes rotary angles and the plan names no machine: give --machine")
-    every = [one for one in plan.by_tool() if any(op.done for op in one.operations)] or [plan]
-    if len(every) > 1:
-        names = [f"-t{one.tools[0].number or k}" for k, one in enumerate(every, 1)]
-        return {file: text for one, suffix in zip(every, names, strict=True)
-                for file, text in _post_tool(one, found, mounting, options, (name, suffix, verdict)).items()}
-    return _post_tool(every[0], found, mounting, options, (name, "", verdict))
-
-
-def _post_tool(plan: Plan, found: Dialect, mounting: Mounting, options: Options | None,
-               words: tuple[str, str, str]) -> dict[str, str]:
-    """Program and setup sheet of a plan with one tool; its name, what its files are told apart by, and the verdict."""
-    name, suffix, verdict = words
-    dialect = found.name
-    mounting = replace(mounting, tool_length=plan.tools[0].gauge_length)
+    if len(plan.tools) == 1:
+        plan, = plan.by_tool()  # at its feed and speed
+        mounting = replace(mounting, tool_length=plan.tools[0].gauge_length or mounting.tool_length)
     arranged_for = _choose_angles(plan, mounting)
     for op, stood in zip(plan.operations, arranged_for.operations, strict=True):
         if op.done and not stood.done:
@@ -76,15 +65,15 @@ def _post_tool(plan: Plan, found: Dialect, mounting: Mounting, options: Options 
                            "part on the table, or plan again")
     angles = {op.number: op.rotary for op in arranged_for.operations if op.rotary}
     if moves(plan):
-        control, file = tip_control_of(found), f"program-{dialect}{suffix}{found.suffix}"
+        control, file = tip_control_of(found), f"program-{dialect}{found.suffix}"
         text = moving_text(plan, mounting, control, options, name)
         sheet = moving_sheet_text(bare_program(plan, mounting, found, options, name), control, file, verdict)
-        return {file: text, f"setup-{dialect}{suffix}.md": sheet}
+        return {file: text, f"setup-{dialect}.md": sheet}
     chosen = Options() if options is None else options
     program = program_of(arranged_for, mounting, found, replace(chosen, angles={**angles, **chosen.angles}), name)
-    file = f"program-{dialect}{suffix}{found.suffix}"
+    file = f"program-{dialect}{found.suffix}"
     sheet = sheet_text(program, found, file, verdict)
-    return {file: program_text(program, found), f"setup-{dialect}{suffix}.md": sheet}
+    return {file: program_text(program, found), f"setup-{dialect}.md": sheet}
 
 
 def _choose_angles(plan: Plan, mounting: Mounting) -> Plan:
@@ -94,7 +83,9 @@ def _choose_angles(plan: Plan, mounting: Mounting) -> Plan:
         placement(own.table_from_part), placement(mounting.table_from_part))
     if same and all(op.rotary or op.orientation.lead is not None for op in plan.operations if op.done):
         return plan
-    return sequence_operations(replace(plan, machine=mounting))
+    made = [sequence_operations(replace(one, machine=mounting)) for one in plan.by_tool()]
+    return replace(plan, operations=tuple(op for one in made for op in one.operations), machine=mounting,
+                   in_the_way=tuple(why for one in made for why in one.in_the_way))
 
 
 def verdict_of(folder: Path) -> str:

@@ -38,6 +38,7 @@ from toolaxis.search.time_estimate import require_machine_limits
 from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
+from toolaxis.shape.part import Part
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance, ToleranceLike
@@ -172,12 +173,15 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
+    loaded, asked = load(part), faces is not None
     if len(rack.tools) > 1:
         _check_for_rack(chosen.moves, method, regions, orientations, given, compare)
-        faces = "skins" if faces is None else faces
+        if not asked:
+            _refuse_blades(loaded, progress)
+            faces = "skins"
     # Layers are plane sections, to which iso-parametric lines do not matter.
-    loaded, numbers = with_joined(load(part), faces, pi if chosen.in_layers else GREATEST_CORNER,
-                                 WIDE * rack.tools[len(rack.tools) // 2].radius)
+    loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
+                                 WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given),
@@ -225,6 +229,19 @@ def _check_for_rack(moves: bool, method: str, regions: Any, orientations: Any, g
     for name, is_asked in asked.items():
         if is_asked:
             raise InvalidInput(f"{name} is planned with one tool and several are given: name one tool")
+
+
+def _refuse_blades(part: Part, progress: Progress) -> None:
+    """Refuse a part with blades: one of them is planned and copied with one tool, and face by face takes too long."""
+    if part.original or part.selected:
+        return
+    with activate_progress(progress):
+        pattern = None
+        with suppress(Exception):  # then its faces are planned as those of any part, or it is cancelled there
+            pattern, _ = find_pattern(part, progress)
+    if pattern is not None:
+        raise InvalidInput(f"the part has {len(pattern.blades.blades)} blades, which are planned with one tool and "
+                           "several are given: name one tool, or choose faces")
 
 
 def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], progress: Progress) -> Plan:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import Cancelled
+from toolaxis.errors import Cancelled, fault
+from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.plan.operation import Operation
@@ -93,17 +94,25 @@ class RackPlanner:
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
         """Choose the tools for whole faces."""
-        pieces = smooth_pieces(faces, self.jobs[-1].tool)
-        self._done += [target.ended for target in pieces if target.ended is not None]
+        smallest = self.jobs[-1].tool
+        pieces = smooth_pieces(faces, smallest)
         whole = [target.face for target in pieces if target.ended is None]
+        self._done += [target.ended for target in pieces if target.ended is not None]
         self._screen = _Screen(self.jobs, whole)
+        screened: list[Face] = []
         chains: list[tuple[ToolChain, ...]] = []
         for k, face in enumerate(whole):
             progress.report("choice of tools", k, len(whole))
-            chains.append(self._screen.chains(face, 0))
+            try:
+                chains.append(self._screen.chains(face, 0))
+                screened.append(face)
+            except Cancelled:
+                raise
+            except Exception as reason:
+                self._done.append(fail_face(1, face, smallest, fault(reason)))
         choice = choose_tools(chains, CHANGE_SECONDS)
         self._used = set(choice.tools)
-        for face, chain in zip(whole, choice.chains, strict=True):
+        for face, chain in zip(screened, choice.chains, strict=True):
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             self._waiting.append(_Waiting(face, (), chain.tools[0] if chain.tools else len(self.jobs) - 1))
 
@@ -118,6 +127,7 @@ class RackPlanner:
         made = job.plan_pieces(targets, progress)
         if made.part is not job.part:  # a skin was taken apart
             self.jobs = [replace(one, part=made.part) for one in self.jobs]
+            self._screen = _Screen(self.jobs, [op.face for op in made.operations])
         for op in made.operations:
             self._take_over(op, _origin(op.face, now), tool)
         return made.outcome != "cancelled"
@@ -132,7 +142,7 @@ class RackPlanner:
         """Keep an operation, and send what it leaves to the next tool."""
         # A piece of a skin that was taken apart is a root of its own.
         root = origin.root if op.face.numbers == origin.root.numbers else op.face
-        loops, left_by = op.face.trims, origin.left_by
+        loops, left_by = op.face.outline, origin.left_by
         if op.done:
             left_by = origin.left_by | {len(self._done)}
             loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops)
@@ -147,7 +157,12 @@ class RackPlanner:
         """The tool that finishes what another one left; None where no smaller one reaches anything of it."""
         if rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
             return None
-        chains = self._screen.chains(rest, tool + 1)
+        try:
+            chains = self._screen.chains(rest, tool + 1)
+        except Cancelled:
+            raise
+        except Exception:  # what was left stays open, as it is told of the operation that left it
+            return None
         best = min(chains, key=lambda one: one.cost + CHANGE_SECONDS * len(set(one.tools) - self._used))
         if not best.tools:
             return None

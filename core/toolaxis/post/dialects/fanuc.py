@@ -29,7 +29,11 @@ class Fanuc(Dialect):
     def start(self, program: ProgramContext) -> Lines:
         """Number, modes, plane off, Z to its reference point, tool, spindle."""
         return ["%", "O0001", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", *self.cancelled(),
-                *self.retracted(program), f"T{program.tool_number} M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
+                *self.retracted(program), *self.call_tool(program)]
+
+    def call_tool(self, program: ProgramContext) -> Lines:
+        """Tool, work offset, spindle."""
+        return [f"T{program.tool_number} M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
 
     def cancelled(self) -> Lines:
         """The block that cancels the plane."""

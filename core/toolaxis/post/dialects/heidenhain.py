@@ -32,8 +32,11 @@ class Heidenhain(Dialect):
 
     def start(self, program: ProgramContext) -> Lines:
         """Plane off, tool, spindle, retract."""
-        called = f"TOOL CALL {program.tool_number} Z S{program.inputs.spindle:.0f}"
-        return ["PLANE RESET STAY", called, "L M3", "L M140 MB MAX"]
+        return ["PLANE RESET STAY", *self.call_tool(program)]
+
+    def call_tool(self, program: ProgramContext) -> Lines:
+        """Tool, spindle, retract."""
+        return [f"TOOL CALL {program.tool_number} Z S{program.inputs.spindle:.0f}", "L M3", "L M140 MB MAX"]
 
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Index, then the plane."""

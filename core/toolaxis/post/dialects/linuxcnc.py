@@ -29,8 +29,11 @@ class LinuxCnc(Iso):
     def start(self, program: ProgramContext) -> Lines:
         """Modes with the passes' chord tolerance as that of the path, retract, tool, spindle."""
         return ["%", self.comment(program.name), "G21 G17 G40 G49 G80 G90 G94", f"G64 P{program.inputs.chord:.4f}",
-                *self.cancelled(),
-                "G54", *self.retracted(program), f"T{program.tool_number} M6", f"S{program.inputs.spindle:.0f} M3"]
+                *self.cancelled(), "G54", *self.retracted(program), *self.call_tool(program)]
+
+    def call_tool(self, program: ProgramContext) -> Lines:
+        """Tool, spindle."""
+        return [f"T{program.tool_number} M6", f"S{program.inputs.spindle:.0f} M3"]
 
     def retracted(self, program: ProgramContext) -> Lines:
         """Z to the machine coordinate at which rotary axes may turn."""

@@ -21,6 +21,34 @@ from toolaxis.post.program import Dialect, Lines, number
 from toolaxis.post.tcp_program import FIRST_MOTION, TcpPath, TipControl, rotary_words
 
 
+def require_retract(program: ProgramContext) -> None:
+    """Refuse a program without a place to retract to.
+
+    Parameters
+    ----------
+    program : ProgramContext
+
+    Raises
+    ------
+    InvalidInput
+    """
+    if program.retract is None:
+        raise InvalidInput(f"Z of {program.machine.name} has no upper limit to retract to: give --retract, the "
+                           "machine coordinate at which the rotary axes may turn")
+
+
+def retract_block(program: ProgramContext) -> str:
+    """The block that retracts Z in machine coordinates, tool length off.
+
+    Parameters
+    ----------
+    program : ProgramContext
+        With a retract.
+    """
+    assert program.retract is not None
+    return f"SUPA G0 Z{number(program.retract, 3)} D0"
+
+
 class Siemens(Dialect):
     """CYCLE800 with mode 57, turns about X, Y, Z; it retracts Z and turns the axes itself."""
 
@@ -37,8 +65,26 @@ class Siemens(Dialect):
 
     def start(self, program: ProgramContext) -> Lines:
         """Modes, swivel frames deleted, straight rapids, tool, spindle."""
-        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()",
-                f"T{program.tool_number} D1", "M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
+        return [self.comment(program.name), "G710 G17 G40 G90 G94 RTLION", "CYCLE800()", *self.call_tool(program)]
+
+    def call_tool(self, program: ProgramContext) -> Lines:
+        """Tool, work offset, spindle."""
+        return [f"T{program.tool_number} D1", "M6", "G54", f"S{program.inputs.spindle:.0f} M3"]
+
+    def change_tool(self, program: ProgramContext) -> Lines:
+        """Retract, swivel frames deleted, then the tool."""
+        return [retract_block(program), "CYCLE800()", *self.call_tool(program)]
+
+    def check(self, program: Program) -> None:
+        """Refuse tool changes where nobody told a retract.
+
+        Raises
+        ------
+        InvalidInput
+        """
+        super().check(program)
+        if len({station.operation.tool for station in program.stations}) > 1:
+            require_retract(program)
 
     def orient(self, program: Program, station: IndexedPosition) -> Lines:
         """Retract and swivel, the axes that CYCLE800 should reach in a comment."""
@@ -96,7 +142,7 @@ class SiemensTip(TipControl):
     def start(self, program: ProgramContext) -> Lines:
         """Modes, transformations and frames off, tool, spindle, retract."""
         return [self.dialect.comment(program.name), "G710 G17 G40 G90 G94", "TRAFOOF",
-                f"T{program.tool_number} D1", "M6", "G54", f"S{program.inputs.spindle:.0f} M3", self._retract(program)]
+                *self.dialect.call_tool(program), retract_block(program)]
 
     def begin(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Rotary axes to the first axis, then the transformation and its work offset."""
@@ -107,7 +153,7 @@ class SiemensTip(TipControl):
 
     def leave(self, program: ProgramContext, course: TcpPath) -> Lines:
         """Transformation off, retract."""
-        return ["TRAFOOF", self._retract(program)]
+        return ["TRAFOOF", retract_block(program)]
 
     def end(self, program: ProgramContext) -> Lines:
         """Spindle off, end."""
@@ -126,14 +172,7 @@ class SiemensTip(TipControl):
         InvalidInput
         """
         super().check(program)
-        if program.retract is None:
-            raise InvalidInput(f"Z of {program.machine.name} has no upper limit to retract to: give --retract, the "
-                               "machine coordinate at which the rotary axes may turn")
-
-    @staticmethod
-    def _retract(program: ProgramContext) -> str:
-        assert program.retract is not None
-        return f"SUPA G0 Z{number(program.retract, 3)} D0"
+        require_retract(program)
 
 
 DIALECTS = (Siemens(),)

@@ -94,7 +94,7 @@ def page(plan: Plan, beside: PlanFiles, name: str) -> str:
         HTML that fetches nothing; the same for the same plan.
     """
     made = scene(plan, _worst(beside.verdict))
-    tools = {f"tool {k}": charts.tool_chart(tool) for k, tool in enumerate(plan.used_tools, 1)}
+    tools = {f"tool {k}" if k > 1 else "tool": charts.tool_chart(tool) for k, tool in enumerate(plan.used_tools, 1)}
     common = {"scene": PageFigure(made.figure), **tools}
     done = [op for op in plan.operations if op.done]
     copies = {} if plan.blades is None else plan.blades.copies
