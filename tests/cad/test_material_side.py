@@ -55,3 +55,11 @@ def test_a_band_with_one_side_stays_as_it_is() -> None:
 def test_faces_that_do_not_hang_together_do_not_judge_each_other() -> None:
     faces, borders = strips(3, 2, 20, 1)
     assert faces_to_turn(flipped(faces, 1, 2), [borders[0], borders[2]]) == frozenset()
+
+
+def test_the_longer_border_counts_where_two_faces_meet_twice() -> None:
+    """Found: a trailing edge that runs out to nothing, where its normal says nothing."""
+    faces, borders = strips(3, 20)
+    short = Border((1, 2), 0.3 * borders[0].points, *ENDS, True, True)
+    assert faces_to_turn(flipped(faces, 1), [*borders, short]) == {1}
+    assert faces_to_turn(faces, [*borders, short]) == frozenset()

@@ -80,7 +80,7 @@ def test_the_sheet_holds_what_the_operator_needs(folder: Path) -> None:
     assert tool[2:6] == ["12.000", "1.000", "24.000", "60.000"]
     assert np.allclose([float(v) for v in first[6].split(",")], axes_at(load_machine("mikron-ucp-710"), ANGLES[:1],
                                                                         np.eye(3))[0], atol=1e-6)
-    assert "not known" not in first[7] and "| op03-face1 | 2 | G55 |" in text
+    assert "not known" not in first[7] and "| op03-face1 | T1 | 2 | G55 |" in text
 
 
 def test_apt_needs_no_machine_and_is_what_plan_wrote(folder: Path) -> None:

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from toolaxis.cad.material_side import faces_to_turn
+from toolaxis.cad.material_side import agreement, faces_to_turn
 from toolaxis.cad.shape_data import FaceRecord, ShapeRecord
-from toolaxis.shape.adjacency import Border, consistent, edges_from_borders, gaps
+from toolaxis.shape.adjacency import Border, edges_from_borders, gaps
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.edge_matching import match_edges
 from toolaxis.shape.kinks import with_kinks
@@ -81,8 +81,7 @@ def _turned_warning(turned: frozenset[int]) -> list[str]:
 
 def _sense_warning(part: Part, borders: list[Border]) -> list[str]:
     """One sentence where faces that meet have their material on opposite sides."""
-    mixed = sorted({tuple(sorted(border.faces)) for border in borders if border.faces[0] != border.faces[1]
-                    and not consistent(border, *(part.face(number) for number in border.faces))})
+    mixed = sorted(pair for pair, length in agreement(part.faces, borders).items() if length < 0)
     if not mixed:
         return []
     a, b = mixed[0]

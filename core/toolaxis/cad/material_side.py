@@ -3,6 +3,8 @@
 from collections import deque
 from collections.abc import Sequence
 
+import numpy as np
+
 from toolaxis.shape.adjacency import Border, consistent
 from toolaxis.shape.face import Face
 
@@ -27,18 +29,36 @@ def faces_to_turn(faces: Sequence[Face], borders: Sequence[Border]) -> frozenset
     """
     by_number = {face.number: face for face in faces}
     beside: dict[int, list[tuple[int, bool]]] = {face.number: [] for face in faces}
-    for border in borders:
-        a, b = border.faces
-        if a != b:
-            differs = not consistent(border, by_number[a], by_number[b])
-            beside[a].append((b, differs))
-            beside[b].append((a, differs))
+    for (a, b), agreed in agreement(faces, borders).items():
+        beside[a].append((b, agreed < 0))
+        beside[b].append((a, agreed < 0))
     turned: set[int] = set()
     seen: dict[int, bool] = {}
     for face in faces:
         if face.number not in seen:
             turned |= _few_of(by_number, _sides(face.number, beside, seen))
     return frozenset(turned)
+
+
+def agreement(faces: Sequence[Face], borders: Sequence[Border]) -> dict[tuple[int, int], float]:
+    """Along what length two faces have their material on one side, less that along which they do not, mm.
+
+    A face that runs out to nothing between two others says anything there.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+    borders : sequence of Border
+    """
+    by_number = {face.number: face for face in faces}
+    found: dict[tuple[int, int], float] = {}
+    for border in borders:
+        a, b = sorted(border.faces)
+        if a != b:
+            length = float(np.linalg.norm(np.diff(border.points, axis=0), axis=1).sum())
+            agrees = consistent(border, *(by_number[number] for number in border.faces))
+            found[a, b] = found.get((a, b), 0.0) + (length if agrees else -length)
+    return found
 
 
 def _sides(first: int, beside: dict[int, list[tuple[int, bool]]], seen: dict[int, bool]) -> dict[int, bool]:
