@@ -169,6 +169,19 @@ def test_stopped_between_tools_it_keeps_what_is_finished() -> None:
     assert made.outcome == "cancelled" and [op.tool.name for op in made.operations] == ["ball:10"]
 
 
+def test_stopped_within_a_tool_it_keeps_what_that_tool_finished() -> None:
+    """Found: a face without an axis before it would have asked for the next tool, and been stopped there."""
+    sheet, _ = walled().faces
+    hidden = sheet.transformed(np.array([[1.0, 0, 0, 60], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]))
+    turned = hidden.transformed(np.diag([1.0, 1.0, -1.0, 1.0]))
+    again = sheet.transformed(np.array([[1.0, 0, 0, 120], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]))
+    part = Part.from_faces([turned, sheet, again])
+    seen: list[str] = []
+    stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any("face 3 " in one for one in seen))
+    made = ta.plan(part, TOOLS, SCALLOP, limits=UP, workers=1, progress=stopping)
+    assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["2"]
+
+
 @pytest.mark.parametrize("given, said", [
     ({"regions": 2}, "regions is planned with one tool and several are given"),
     ({"orientations": 1}, "orientations is planned with one tool"),

@@ -125,12 +125,17 @@ class RackPlanner:
         targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root) for label, one in now.items()]
         job = replace(self.jobs[tool], kept=frozenset(op.face.number for op in self._done))
         made = job.plan_pieces(targets, progress)
+        if made.outcome == "cancelled":  # what is finished is kept; nothing goes to another tool any more
+            for op in made.operations:
+                self._left_by[len(self._done)] = _origin(op.face, now).left_by
+                self._done.append(op)
+            return False
         if made.part is not job.part:  # a skin was taken apart
             self.jobs = [replace(one, part=made.part) for one in self.jobs]
             self._screen = _Screen(self.jobs, [op.face for op in made.operations])
         for op in made.operations:
             self._take_over(op, _origin(op.face, now), tool)
-        return made.outcome != "cancelled"
+        return True
 
     def _name(self, one: _Waiting) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
