@@ -1,6 +1,7 @@
 """Plans with a rack of tools: what is chosen, what smaller tools take over, and how that is written, judged and posted.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,11 @@ import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
+from toolaxis.job.planning.planner import PlanningJob
+from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
@@ -84,8 +89,6 @@ def test_the_judge_passes_each_operation_with_its_own_tool(planned: Plan) -> Non
 
 
 def test_the_judge_finds_a_plan_whose_tools_were_swapped(planned: Plan) -> None:
-    from dataclasses import replace
-
     other = {planned.tools[0]: planned.tools[1], planned.tools[1]: planned.tools[0]}
     wrong = replace(planned, operations=tuple(replace(op, tool=other[op.tool]) for op in planned.operations))
     assert not all(op.passed for op in ta.verify(wrong).operations)
@@ -169,17 +172,20 @@ def test_stopped_between_tools_it_keeps_what_is_finished() -> None:
     assert made.outcome == "cancelled" and [op.tool.name for op in made.operations] == ["ball:10"]
 
 
-def test_stopped_within_a_tool_it_keeps_what_that_tool_finished() -> None:
-    """Found: a face without an axis before it would have asked for the next tool, and been stopped there."""
-    sheet, _ = walled().faces
-    hidden = sheet.transformed(np.array([[1.0, 0, 0, 60], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]))
-    turned = hidden.transformed(np.diag([1.0, 1.0, -1.0, 1.0]))
-    again = sheet.transformed(np.array([[1.0, 0, 0, 120], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]))
-    part = Part.from_faces([turned, sheet, again])
-    seen: list[str] = []
-    stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any("face 3 " in one for one in seen))
-    made = ta.plan(part, TOOLS, SCALLOP, limits=UP, workers=1, progress=stopping)
-    assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["2"]
+def test_stopped_within_a_tool_it_keeps_what_that_tool_finished(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: a face without an axis asked for the next tool, was stopped there, and took the finished ones with it."""
+    whole, stopped = PlanningJob.plan_pieces, list[bool]()
+
+    def _stopped(job: PlanningJob, targets: list[Target], progress: Progress) -> Plan:
+        made = whole(job, targets, progress)
+        stopped.append(True)
+        lost = Operation(1, made.operations[0].face, job.tool, Orientation(None))
+        return replace(made, operations=(lost, *made.operations), outcome="cancelled")
+
+    monkeypatch.setattr(PlanningJob, "plan_pieces", _stopped)
+    made = ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1,
+                   progress=Progress(None, lambda: bool(stopped)))
+    assert made.outcome == "cancelled" and [op.done for op in made.operations] == [False, True]
 
 
 @pytest.mark.parametrize("given, said", [
