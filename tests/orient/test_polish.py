@@ -18,6 +18,7 @@ from toolaxis.tools.tool import Tool
 
 TOOL = Tool.torus(12, 1)
 H = 0.02
+LITTLE = 5e-5
 
 
 def bumpy(seed, height):
@@ -68,11 +69,11 @@ def test_the_lowest_place_of_a_ring_is_that_of_its_parabola():
         return 0.5 * np.einsum("ni,ij,nj->n", p - low, bend, p - low)
 
     hope = 1 + rise(places) - rise(np.zeros((1, 2)))
-    found = _lowest(middle, axes, hope, step)
+    found = _lowest(middle, axes, hope, step, LITTLE)
     np.testing.assert_allclose([found @ x, found @ y], np.tan(step) * low / np.sqrt(1 + np.tan(step) ** 2 * low @ low),
                                atol=1e-9)
-    assert _lowest(middle, axes, 2 - hope, step) is None
-    assert _lowest(middle, axes, np.where(np.arange(6) == 2, np.inf, hope), step) is None
+    assert _lowest(middle, axes, 2 - hope, step, LITTLE) is None
+    assert _lowest(middle, axes, np.where(np.arange(6) == 2, np.inf, hope), step, LITTLE) is None
 
 
 def test_a_closer_look_proves_the_normals_between_samples_and_the_ledger_heeds_it():

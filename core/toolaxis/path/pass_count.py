@@ -37,6 +37,7 @@ _KRONROD = np.array([0.209482141084727828012999174891714, 0.20443294007529889241
                      0.063092092629978553290700663189204, 0.022935322010529224963732008058970])
 _GAUSS = np.array([0.417959183673469387755102040816327, 0.0, 0.381830050505118944950369775488975, 0.0,
                    0.279705391489276667901467771423780, 0.0, 0.129484966168869693270611432679082, 0.0])
+_POINTS = 2 * len(_NODES) - 1
 
 
 class Count(NamedTuple):
@@ -91,7 +92,7 @@ def count(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "
     return measure(IsoChart(face, feed), Cut(tool, axis, scallop, allowance)).passes  # type: ignore[arg-type]
 
 
-def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
+def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4, most: int | None = None) -> Count:
     """Number and length of the passes over a chart.
 
     Parameters
@@ -100,6 +101,8 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     cut : Cut
     accuracy : float
         Estimated relative error at which refinement ends.
+    most : int, optional
+        How many passes are looked at before it ends in any case, but no fewer than there are.
 
     Returns
     -------
@@ -111,14 +114,17 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4) -> Count:
     if ends.step[0] < ends.step[1]:
         edges, done = np.unique(np.clip(edges, *ends.step)), np.array([1.0, ends.length.mean()])
     low, high = edges[:-1], edges[1:]
+    looked_at = 0
     for level in range(_ROUNDS):
         fine, coarse = _integrals(chart, cut, beyond, low, high)
+        looked_at += _POINTS * len(low)
         if not np.isfinite(fine).all():
             return Count(np.inf, np.inf)
         total = done + fine.sum(axis=0)
         share = accuracy * total / max(len(low), 4)
         good = (np.abs(fine - coarse) <= share).all(axis=1)
-        if good.all() or level == _ROUNDS - 1:
+        enough = most is not None and looked_at >= max(most, total[0])
+        if good.all() or enough or level == _ROUNDS - 1:
             return Count(float(total[0]), float(total[1]))
         done += fine[good].sum(axis=0)
         middle = (low[~good] + high[~good]) / 2

@@ -32,6 +32,8 @@ PassChart: TypeAlias = IsoChart | PlaneChart | LevelChart
 
 #: Places each way whose feed directions make up the mean one.
 _GRID = 16
+#: Passes that are looked at to price an axis: where faces turn much the count is not smooth, and as exact with these.
+_COUNTED = 400
 #: Cells each way, coefficients each way and steps downhill of a field: to price an axis, and to cut.
 _PRICED, _MADE = (13, 8, 25), (26, 14, 60)
 #: Cells each way where narrow places lie between those, which they do from this share of further passes on.
@@ -52,6 +54,9 @@ class PassPattern(Protocol):
 
     def count(self, cut: Cut, feed: str) -> Count:
         """Number and length of the passes with one axis; infinite where there are none of this kind."""
+
+    def weigh(self, axis: Array, feed: str) -> Count:
+        """The same told from fewer places; infinite too where these do not suffice."""
 
     def chart(self, cut: Cut, feed: str) -> PassChart:
         """The chart by which passes with an axis are laid.
@@ -80,7 +85,11 @@ class IsoPasses:
 
     def count(self, cut: Cut, feed: str) -> Count:
         """Number and length of the passes with one axis by exact widths."""
-        return measure(self.chart(cut, feed), cut)
+        return measure(self.chart(cut, feed), cut, most=_COUNTED)
+
+    def weigh(self, axis: Array, feed: str) -> Count:
+        """The same from exact widths at the sample points; infinite too where one of these has none."""
+        return _weigh(self.estimator, axis, feed)
 
     def chart(self, cut: Cut, feed: str) -> IsoChart:
         """The face in its own parameters."""
@@ -101,9 +110,13 @@ class PlanePasses:
     def count(self, cut: Cut, feed: str) -> Count:
         """Number and length of the passes with one axis by exact widths; infinite where planes do not go."""
         try:
-            return measure(self.chart(cut, feed), cut)
+            return measure(self.chart(cut, feed), cut, most=_COUNTED)
         except UnsupportedGeometry:  # told where such passes are made
             return Count(np.inf, np.inf)
+
+    def weigh(self, axis: Array, feed: str) -> Count:
+        """As for passes along parameters."""
+        return _weigh(self.estimator, axis, feed)
 
     def chart(self, cut: Cut, feed: str) -> PlaneChart:
         """The face as seen along the axis."""
@@ -142,6 +155,10 @@ class FieldPasses:
             return Count(np.inf, np.inf)
         return Count(more * found.passes, more * found.length)
 
+    def weigh(self, axis: Array, feed: str) -> Count:
+        """Infinite: lengths of fields differ from the ideal ones by more than these do from axis to axis."""
+        return Count(np.inf, np.inf)
+
     def _price_table(self, cut: Cut) -> DirectionTable:
         """The table of an axis by which it is priced, the same for both feeds: the last one is kept."""
         key = cut.axis.tobytes()
@@ -167,6 +184,11 @@ class FieldPasses:
         face, (_, count, rounds) = self.estimator.face, _MADE
         table = tabulate_directions(face, cut, cells)
         return LevelChart(face, feed, find_field(table, 1 - FEEDS.index(feed), count, rounds))
+
+
+def _weigh(estimator: Estimator, axis: Array, feed: str) -> Count:
+    found, column = estimator.many(axis[None], feed), FEEDS.index(feed)
+    return Count(float(found.passes[0, column]), float(found.length[0, column]))
 
 
 def pattern_names(passes: str) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ next pass goes as far as its strip still reaches back to the front everywhere; t
 strip ends on the border.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +31,12 @@ _NARROW = 1.1
 #: Strips overlap by up to this share of the narrowest one, half as much on average.
 _ACCURACY = 4e-4
 _MOST_PASSES = 20_000
+#: How far from a pass strips on its lines may matter, in radii of the cutter.
+_NEAR = 4.0
+#: Places that are tried for a pass.
+_TRIED = 40
+#: So many passes in a row that together do not get on by as many times this share of the scallop height are none.
+_STUCK, _LEAST = 20, 0.05
 #: Places that are tried for the only pass of a face.
 _PLACES = 65
 
@@ -141,34 +147,71 @@ class Spacing:
 
 
 def _root(function: Callable[[float], float], guess: float, sign: float, tolerance: float) -> float:
-    """Place where a function of slope near `sign` vanishes, from the side on which it is positive."""
+    """Place where a function of slope near `sign` vanishes, or jumps past zero, from the side on which it is positive.
+    """
     place, value, slope = guess, function(guess), sign
-    for _ in range(40):
+    above, below = None, None
+    for _ in range(_TRIED):
         if 0 <= value <= tolerance:
             return place
+        if value > 0:
+            above = place
+        else:
+            below = place
+        if above is not None and below is not None and abs(above - below) <= tolerance:
+            return above
         step = (0.5 * tolerance - value) / slope
         new = place + step
+        if above is not None and below is not None and not min(above, below) < new < max(above, below):
+            new = (above + below) / 2
+            step = new - place
         after = function(new)
         if step:
             slope = sign * min(max(sign * (after - value) / step, 0.3), 3.0)
         place, value = new, after
-    return place
+    return place if above is None or value >= 0 else above
 
 
 class _Strips:
-    """Half widths along passes, remembered for the last place asked for."""
+    """Half widths along passes, remembered for the last place asked for.
+
+    They are zero on lines that have nothing to be covered near the pass: there the surface may go on in any way.
+    """
 
     def __init__(self, chart: Chart, cut: Cut, across: Lines) -> None:
         self.chart, self.cut, self.across = chart, cut, across
         self._step = np.nan
+        _, _, s0, s1 = chart.bounds
+        self._far = _NEAR * cut.tool.radius * (s1 - s0) / extents(chart)[1]
+        self._needed = np.arange(len(across.measured))
+        self._least_advance = _STUCK * _LEAST * cut.scallop * (s1 - s0) / extents(chart)[1]
         self.measured: Array = np.empty((0, 2))
         self.halves: Array = np.empty((0, 2))
+
+    def watch(self, front: Array, step: float) -> Bools:
+        """Measure from now on only where something is to be covered near a pass: on lines (m,) bool, and beside them.
+
+        Parameters
+        ----------
+        front : (m,) array
+            The first place on each line that is to be covered; infinite where there is none.
+        step : float
+            About where the pass will be.
+        """
+        near = front <= max(step, float(front.min())) + self._far
+        needed = np.zeros(len(self.across.measured), dtype=bool)
+        needed[self.across.index[near]] = True
+        needed[1:] |= needed[:-1]
+        needed[:-1] |= needed[1:]
+        self._needed, self._step = np.flatnonzero(needed), np.nan
+        return np.asarray(near)
 
     def at(self, step: float) -> Array:
         """Half widths (m, 2) at one step parameter, on all lines."""
         if step != self._step:
-            along = self.across.measured
-            self.measured = self.chart.half_widths(self.cut, along, np.full(len(along), step))
+            along = self.across.measured[self._needed]
+            self.measured = np.zeros((len(self.across.measured), 2))
+            self.measured[self._needed] = self.chart.half_widths(self.cut, along, np.full(len(along), step))
             self._step, self.halves = step, self.across.spread(self.measured)
         return self.halves
 
@@ -185,18 +228,20 @@ class _Strips:
             raise InvalidInput(f"the axis ({axis}) leaves no usable strip on {self._place(int(bad[0]))}: it gouges "
                                "there, or is normal to the surface; choose another axis")
 
-    def check_progress(self, last: float) -> None:
-        """Refuse the last place asked for if it is no farther than the pass before, as lines with no strip keep it.
+    def check_progress(self, place: float, steps: Sequence[float]) -> None:
+        """Refuse the last place asked for if passes get no farther, as lines with no strip, or next to none, keep them.
 
         Parameters
         ----------
-        last : float
-            Place of the pass before.
+        place : float
+        steps : sequence of float
+            Places of the passes before.
         """
-        if not self._step > last:
-            least = int(np.nan_to_num(self.measured).min(axis=1).argmin())
-            raise InvalidInput(f"passes do not advance on {self._place(least)}: their lines meet there, as in a pole; "
-                               "cut along the other parameter")
+        none = bool(steps) and not place > steps[-1]
+        if none or (len(steps) >= _STUCK and place - steps[-_STUCK] < self._least_advance):
+            least = int(self._needed[np.nan_to_num(self.measured[self._needed]).min(axis=1).argmin()])
+            raise InvalidInput(f"passes do not advance on {self._place(least)}: their lines meet there, as in a pole, "
+                               "or strips are next to nothing; cut along the other parameter")
 
     def _place(self, row: int) -> str:
         """A measured line at the last place asked for, in words."""
@@ -246,7 +291,7 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
         if not steps and unused > 0:
             place = _only_place((max(place, s0), min(greedy, s1)), (greedy + place) / 2, material[active])
         half = strips.at(place)
-        strips.check_progress(steps[-1] if steps else -np.inf)
+        strips.check_progress(place, steps)
         steps.append(place)
         halves.append(strips.measured)
         front = np.where(active, first_from(material, np.maximum(front, place + half[:, 1] * (1 + 1e-9))), np.inf)
@@ -300,14 +345,15 @@ def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lin
 def _next(strips: _Strips, front: Array, top: Array, guess: float) -> tuple[float, float]:
     """Farthest place of the next pass, and where it is put: the same unless it is the last one."""
     active = np.isfinite(front)
+    near = strips.watch(front, guess)
 
     def slack(step: float) -> float:
-        return float((front + strips.at(step)[:, 0] - step)[active].min())
+        return float((front + strips.at(step)[:, 0] - step)[near].min())
 
     def beyond(step: float) -> float:
         return float((step + strips.at(step)[:, 1] - top)[active].min())
 
-    width = strips.at(guess).sum(axis=1)[active]
+    width = strips.at(guess).sum(axis=1)[near]
     tolerance = _ACCURACY * float(np.min(width[width > 0], initial=np.inf))
     if not np.isfinite(tolerance):
         return guess, guess

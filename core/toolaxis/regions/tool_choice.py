@@ -34,11 +34,13 @@ class ToolChain(NamedTuple):
     tools : numbers of the tools from 0, in their order
     seconds : cutting time and index moves, s
     charge : for what none of them reaches and others would, s
+    first : share that the first of them reaches under its axis of what it reaches under any
     """
 
     tools: tuple[int, ...]
     seconds: float
     charge: float
+    first: float = 0.0
 
     @property
     def cost(self) -> float:
@@ -118,19 +120,22 @@ class _Charges(NamedTuple):
 
 
 def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) -> Iterator[ToolChain]:
-    def _longer(tools: tuple[int, ...], seconds: float, left: Bools) -> Iterator[ToolChain]:
+    under_any = reached.any(axis=1) @ prices.area
+
+    def _longer(tools: tuple[int, ...], seconds: float, left: Bools, first: float) -> Iterator[ToolChain]:
         for tool in range(tools[-1] if tools else 0, len(prices.seconds)):
             step = _best_step(prices, reached[tool], tool, left)
             if step is None:
                 continue
             chain, rest = (*tools, tool), left & ~step.cells
             spent = seconds + step.seconds + charges.move
-            yield ToolChain(chain, spent, charges.of(rest))
+            own = first if tools else float(prices.area[step.cells].sum() / under_any[tool])
+            yield ToolChain(chain, spent, charges.of(rest), own)
             if len(chain) < most and rest.any():
-                yield from _longer(chain, spent, rest)
+                yield from _longer(chain, spent, rest, own)
 
     if charges.possible.any():
-        yield from _longer((), 0.0, charges.possible)
+        yield from _longer((), 0.0, charges.possible, 0.0)
 
 
 def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:

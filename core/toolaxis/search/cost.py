@@ -1,6 +1,6 @@
 """What an axis is worth: passes and cutting length of a face, screened or counted exactly."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,9 +10,10 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.path.estimate import Estimates, Estimator
 from toolaxis.path.field.direction_table import tabulate_directions
 from toolaxis.path.parametrization import Cut
+from toolaxis.path.pass_count import Count
 from toolaxis.path.pass_pattern import PassPattern, patterns_of
 from toolaxis.path.sampling import Samples
-from toolaxis.plan.choices import FEEDS, ISO
+from toolaxis.plan.choices import FEEDS, ISO, PLANES
 from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -26,6 +27,9 @@ OBJECTIVES = ("length", "passes", "time")
 #: even by that measure; with 1, a narrow strip of this tool costs no more than the clean-up tool's, which comes with a
 #: seam, so that reachable area would be left.
 CLEAN_UP = 2.0
+#: What is too little to be searched for: cutting length, mm, and time, s; as a share of the value not less than the
+#: first and not more than the second.
+_LITTLE, _LITTLE_TIME, _SHARES = 1.5, 0.1, (5e-5, 1e-3)
 #: Places each way from which the ideal length of an axis is told.
 _IDEAL = 16
 
@@ -65,6 +69,7 @@ class MachiningCost:
     pace: TimeEstimate | None = None
     feed: str | None = None
     passes: str = ISO
+    _of_ball: dict[tuple[str, str], Count] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.objective == "time" and self.pace is None:
@@ -171,9 +176,46 @@ class MachiningCost:
         axis : (3,) array
         feed : str
         """
-        cut = self.cut(axis)
-        found = min((pattern.count(cut, feed) for pattern in self.patterns), key=lambda one: one.length)
+        found = min((self._count(pattern, axis, feed) for pattern in self.patterns), key=lambda one: one.length)
         return found.passes, found.length
+
+    def weighed(self, axis: Array, feed: str) -> Count:
+        """The count told from fewer places; infinite where that is not possible.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : str
+        """
+        if self.tool.flat_radius == 0:
+            return Count(np.inf, np.inf)
+        return min((pattern.weigh(axis, feed) for pattern in self.patterns), key=lambda one: one.length)
+
+    def _count(self, pattern: PassPattern, axis: Array, feed: str) -> Count:
+        """The count of one pattern: for a ball end the first one that was taken, as it is the same for all axes.
+
+        Under some of them the side above the ball cuts too, and wider strips; that is not looked for.
+        """
+        if pattern.name == PLANES or self.tool.flat_radius > 0:  # planes turn with the axis
+            return pattern.count(self.cut(axis), feed)
+        key = pattern.name, feed
+        if key not in self._of_ball:
+            found = pattern.count(self.cut(axis), feed)
+            if not np.isfinite(found.length):
+                return found
+            self._of_ball[key] = found
+        return self._of_ball[key]
+
+    def worthwhile(self, value: float) -> float:
+        """Least share of a value that is worth a further step of a search.
+
+        Parameters
+        ----------
+        value : float
+            What is to be least.
+        """
+        little = {"length": _LITTLE, "time": _LITTLE_TIME, "passes": 0.0}[self.objective]
+        return float(np.clip(little / value, *_SHARES))
 
     def charge(self, length: float, unreached: float) -> float:
         """Factor on passes and length for what is left to a clean-up tool.

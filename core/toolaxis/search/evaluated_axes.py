@@ -11,6 +11,7 @@ from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, Screening
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.numeric.rounding import round_costs, round_significant
 from toolaxis.numeric.vectors import angle_between
+from toolaxis.path.pass_count import Count
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import AxisMap
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -228,11 +229,23 @@ class AxisTable:
             Index in `FEEDS`.
         unreached : float
         """
+        passes, length = self.worth.counted(axis, FEEDS[feed])
+        return self.charged(axis, feed, unreached, Count(passes, length)), passes, length
+
+    def charged(self, axis: Array, feed: int, unreached: float, found: Count) -> float:
+        """Value of a count, charged for what stays, and rounded.
+
+        Parameters
+        ----------
+        axis : (3,) array
+        feed : int
+        unreached : float
+        found : Count
+        """
         self.progress.check()
         self.counts += 1
-        passes, length = self.worth.counted(axis, FEEDS[feed])
-        value = self.worth.value(axis, feed, passes, length)
-        return float(round_costs(value * self.worth.charge(length, unreached))), passes, length
+        value = self.worth.value(axis, feed, found.passes, found.length)
+        return float(round_costs(value * self.worth.charge(found.length, unreached)))
 
     def map(self) -> AxisMap:
         """The axes as the result carries them."""

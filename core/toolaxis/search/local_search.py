@@ -10,19 +10,23 @@ from toolaxis.feasibility.check_points import CheckPoints
 from toolaxis.feasibility.refined_check import closer
 from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import perpendicular, unit
+from toolaxis.path.pass_count import Count
+from toolaxis.plan.choices import FEEDS
 from toolaxis.search.direction_grid import ring
 from toolaxis.search.evaluated_axes import AxisTable
 
 Array = NDArray[np.float64]
 
-#: Last radius of the rings, rad: in front of a border that keeps better axes away, and otherwise.
-FINEST, _FINE = radians(0.02), radians(0.12)
+#: Last radius of the rings in front of a border that keeps better axes away, rad.
+FINEST = radians(0.02)
 #: Axes of a ring.
 _RING = 6
-#: Smallest step that counts as one, as a share of the value; what is gained by walking on must promise more.
-_WORTHWHILE = 5e-5
-#: Axes of a ring that are counted at most, and how far above the best value screening may see them, per rad of step.
-_TRIED, _DOUBT = 2, 0.2
+#: Axes of a ring that are counted at most.
+_TRIED = 2
+#: How far above the best value screening may see an axis that is counted all the same, as a share of it, per rad of
+#: step: within 1 degree the ratio of exact to screened length varies by 0.0006 at most on the examples; and where
+#: screening sees no strip.
+_DOUBT, _UNSEEN = 0.05, 0.2
 #: Counted axes so near, in steps, tell the slope of exact over screening value; how much they resist a slope.
 _NEAR, _STIFF = 2.5, 1.0
 
@@ -106,12 +110,45 @@ def count_row(ledger: AxisTable, row: int, feed: int | None = None) -> CountedAx
 class _LocalSearch:
     """A walk from axis to axis.
 
-    best : the best axis so far;  known : axes that were counted, with exact over screening value.
+    best : the best axis so far;  known : axes that were counted, with exact over screening value;  worthwhile : share
+    of the value that is worth a step;  scale : exact passes and length of the start over those told from fewer places;
+    None where these tell nothing.
     """
 
     ledger: AxisTable
     best: CountedAxis
     known: list[tuple[Array, float]]
+    worthwhile: float
+    scale: Count | None
+
+    @staticmethod
+    def of(ledger: AxisTable, start: CountedAxis) -> "_LocalSearch":
+        """A walk that begins at an axis that is counted exactly."""
+        rough = ledger.worth.weighed(start.axis, FEEDS[start.feed])
+        scale = None
+        if np.isfinite(rough.length) and np.isfinite(start.length):
+            scale = Count(start.passes / rough.passes, start.length / rough.length)
+        return _LocalSearch(ledger, start, [(start.axis, _ratio(ledger, start))],
+                            ledger.worth.worthwhile(start.value), scale)
+
+    def count(self, row: int) -> CountedAxis:
+        """The count of a row, told from fewer places where that is possible."""
+        ledger, feed = self.ledger, self.best.feed
+        axis, unreached = ledger.axes[row], float(ledger.unreached[row])
+        if self.scale is not None:
+            rough = ledger.worth.weighed(axis, FEEDS[feed])
+            if np.isfinite(rough.length):
+                found = Count(rough.passes * self.scale.passes, rough.length * self.scale.length)
+                return CountedAxis(axis, feed, ledger.charged(axis, feed, unreached, found), *found, unreached)
+        return count_row(ledger, row, feed)
+
+    def counted_exactly(self, start: CountedAxis) -> CountedAxis:
+        """The end of the walk with its exact count, or its start where that is no worse."""
+        if self.scale is None or self.best is start:
+            return self.best
+        ledger, best = self.ledger, self.best
+        exact = CountedAxis(best.axis, best.feed, *ledger.count(best.axis, best.feed, best.unreached), best.unreached)
+        return exact if exact.value < start.value else start
 
     def hopes(self, rows: slice, step: float) -> Array:
         """What screening promises of rows, as shares of the best value, corrected by what was counted near.
@@ -140,14 +177,16 @@ class _LocalSearch:
         """Whether a row, in the order of what is hoped for, counts better than the best and is proven: then it is it.
         """
         ledger, best = self.ledger, self.best
-        order = np.argsort(np.where(ledger.reason[rows] == FREE, hope, np.inf), kind="stable")
-        for row, promise in zip((rows.start + order)[:_TRIED], hope[order], strict=False):
-            if ledger.reason[row] != FREE or not promise < 1 + _DOUBT * step:
+        seen = np.isfinite(ledger.values[rows, best.feed])
+        promised = hope - np.where(seen, _DOUBT, _UNSEEN) * step
+        order = np.argsort(np.where(ledger.reason[rows] == FREE, hope, np.inf), kind="stable")[:_TRIED]
+        for row, promise in zip(rows.start + order, promised[order], strict=True):
+            if ledger.reason[row] != FREE or not promise < 1 - self.worthwhile:
                 return False
-            found = count_row(ledger, int(row), best.feed)
+            found = self.count(int(row))
             screened = float(ledger.values[row, best.feed])
             ratio = found.value / screened if np.isfinite(screened) else self.known[-1][1]
-            if found.value < best.value * (1 - _WORTHWHILE) and proven(ledger, int(row)):
+            if found.value < best.value * (1 - self.worthwhile) and proven(ledger, int(row)):
                 self.best = found
                 self.known.append((found.axis, ratio))
                 return True
@@ -157,7 +196,7 @@ class _LocalSearch:
 
 
 def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = FINEST) -> CountedAxis:
-    """Walk to a local optimum by exact counts.
+    """Walk to a local optimum by counts, exact ones at both ends.
 
     Rings, turned from one to the next, go around the best axis; where no axis of a ring counts better, the lowest
     place of the parabola through the ring is tried, and then the ring is halved.  The walk ends early where a ring
@@ -173,31 +212,27 @@ def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = F
     finest : float
         Last one, rad.
     """
-    walk, turn = _LocalSearch(ledger, start, [(start.axis, _ratio(ledger, start))]), 0.0
+    walk, turn = _LocalSearch.of(ledger, start), 0.0
     while step >= finest:
         turn += 2.399963
         rows = ledger.look(ring(walk.best.axis, step, turn, _RING))
         hope = walk.hopes(rows, step)
         if walk.better(rows, hope, step):
             continue
-        lowest = _lowest(walk.best.axis, ledger.axes[rows], walk.hopes(rows, step), step)
+        lowest = _lowest(walk.best.axis, ledger.axes[rows], walk.hopes(rows, step), step, walk.worthwhile)
         if lowest is not None:
             rows = ledger.look(lowest[None])
             if walk.better(rows, walk.hopes(rows, step), step):
                 step /= 2
                 continue
         step /= 2
-        if step < _FINE and _flat(hope):
+        no_better = hope.min() > 1 - walk.worthwhile
+        if no_better and _DOUBT * step < walk.worthwhile:
             break
-    return walk.best
+    return walk.counted_exactly(start)
 
 
-def _flat(hope: Array) -> bool:
-    """Whether a ring, in shares of its middle's value, shows neither a better axis nor a steep rise."""
-    return bool(hope.min() > 1 - _WORTHWHILE)
-
-
-def _lowest(middle: Array, axes: Array, hope: Array, step: float) -> Array | None:
+def _lowest(middle: Array, axes: Array, hope: Array, step: float, worthwhile: float) -> Array | None:
     """The axis where the parabola through a ring and its middle is least, within two steps; None where it has none."""
     if not np.isfinite(hope).all():
         return None
@@ -212,7 +247,7 @@ def _lowest(middle: Array, axes: Array, hope: Array, step: float) -> Array | Non
     size = float(np.linalg.norm(move))
     move *= min(1.0, 2.0 / max(size, 1e-12))
     gain = -(move @ [gx, gy] + 0.5 * move @ [xx * move[0] + xy * move[1], xy * move[0] + yy * move[1]])
-    return None if gain < _WORTHWHILE else unit(middle + np.tan(step) * (move[0] * x + move[1] * y))
+    return None if gain < worthwhile else unit(middle + np.tan(step) * (move[0] * x + move[1] * y))
 
 
 def _ratio(ledger: AxisTable, one: CountedAxis) -> float:

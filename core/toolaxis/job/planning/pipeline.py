@@ -249,7 +249,7 @@ def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], p
     with activate_progress(progress):
         if job.workers > 1:
             _in_cells(job, progress)
-        return RackPlanner([replace(job, tool=tool) for tool in tools]).plan(faces, progress)
+        return RackPlanner([replace(job, tool=tool, one_by_one=False) for tool in tools]).plan(faces, progress)
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:

@@ -43,7 +43,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
-from toolaxis.progress import Progress
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.fixed_axis import FaceProblem
@@ -66,6 +66,8 @@ Array = NDArray[np.float64]
 DIVIDED = ("sphere", "sectors")
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
+#: Why a sub-surface is divided before an axis for all of it is looked for.
+_IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
 
 def went_on(plan: Plan, stage: Callable[[Plan], Plan]) -> Plan:
@@ -140,8 +142,8 @@ class PlanningJob:
     machine : Mounting or None
     division : tuple of SubSurface
         Sub-surfaces given by hand; faces that have some are not divided otherwise.
-    kept : frozenset of int
-        Numbers of skins that stay as they are, whatever of them has no axis: other tools work on them too.
+    one_by_one : bool
+        Whether the faces of a skin of which a part has no axis are planned one by one where they do better.
     """
 
     part: Part
@@ -156,7 +158,7 @@ class PlanningJob:
     whole: tuple[Face, ...] = ()
     machine: Mounting | None = None
     division: tuple[SubSurface, ...] = ()
-    kept: frozenset[int] = frozenset()
+    one_by_one: bool = True
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -193,7 +195,7 @@ class PlanningJob:
 
     def zoned_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces with the clean-up zones of its operations."""
-        return went_on(self.carried_out(faces, progress), lambda plan: add_clean_up_zones(plan, self.workers, progress))
+        return self._with_zones(self.carried_out(faces, progress), progress)
 
     def plan_pieces(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan for sub-surfaces, with the clean-up zones of its operations.
@@ -203,8 +205,15 @@ class PlanningJob:
         targets : list of Target
         progress : Progress
         """
-        return went_on(self._plan_targets(targets, (), progress),
-                       lambda plan: add_clean_up_zones(plan, self.workers, progress))
+        return self._with_zones(self._plan_targets(targets, (), progress), progress)
+
+    def _with_zones(self, plan: Plan, progress: Progress) -> Plan:
+        """A plan with the clean-up zones of its operations; a stopped one with those of what was finished."""
+        if plan.outcome != "cancelled":
+            return went_on(plan, lambda one: add_clean_up_zones(one, self.workers, progress))
+        with activate_progress(NO_PROGRESS):
+            found = went_on(replace(plan, outcome="incomplete"), add_clean_up_zones)
+        return replace(found, outcome="cancelled")
 
     def carried_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
@@ -290,9 +299,11 @@ class PlanningJob:
 
     def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""
+        if not self.one_by_one:
+            return plan
         given = {one.face for one in self.division}
         skins = [face for face in self.part.faces
-                 if face.members and face.number not in given and face.number not in self.kept]
+                 if face.members and face.number not in given]
         own = {skin.number: [op for op in plan.operations if op.face.number == skin.number] for skin in skins}
         lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
         if not lost:
@@ -448,6 +459,8 @@ class PlanningJob:
         face, axis, number = target.face, target.axis, place[0] + 1
         if target.ended is not None:
             return replace(target.ended, number=number)
+        if target.in_pieces:
+            return Operation(number, face, self.tool, Orientation(None, outcome="not_found", reasons=(_IN_PIECES,)))
         inner = progress.within(f"face {face.label} ({number} of {place[1]})")
         inner.report("search for the axis", 0, 1)
         try:

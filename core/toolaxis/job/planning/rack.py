@@ -8,19 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import Cancelled, fault
+from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, Plan
-from toolaxis.progress import Progress
+from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import widths
 from toolaxis.regions.reach_screen import screen_reach
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
 from toolaxis.shape.face import Face
+from toolaxis.skin.join import take_apart
 
 Array = NDArray[np.float64]
 
@@ -28,6 +30,10 @@ Array = NDArray[np.float64]
 LEAST_AREA = 0.01
 #: Angle between the axes that are screened, rad, and cells of a face for it, about.
 APART, _CELLS = np.radians(20), 200
+#: Share of what a tool reaches of a face under any axis that it must reach under one to be asked for the whole face.
+WHOLE = 0.8
+#: Share of a skin's area below which what is machined of it makes its faces be planned one by one.
+APART_BELOW = 0.5
 #: Share of the faces that may stay open in a plan that is complete.
 LEFT_OPEN = 1e-3
 
@@ -44,12 +50,15 @@ class _Waiting:
         Number of the tool.
     left_by : frozenset of int
         Places in the list of operations of those that left it.
+    in_pieces : bool
+        Whether the tool reaches too little of it under one axis to be asked for all of it.
     """
 
     root: Face
     loops: tuple[Array, ...]
     tool: int
     left_by: frozenset[int] = frozenset()
+    in_pieces: bool = False
 
 
 @dataclass(eq=False)
@@ -87,10 +96,14 @@ class RackPlanner:
             self._begin(faces, progress)
             for tool, job in enumerate(self.jobs):
                 if not self._with_tool(tool, progress.within(job.tool.shop_name)):
-                    return self._put_together("cancelled")
+                    break
+            else:
+                self._take_skins_apart(faces, progress.within("faces one by one"))
+                return self._put_together("")
         except Cancelled:
+            pass
+        with activate_progress(NO_PROGRESS):  # what is finished is kept
             return self._put_together("cancelled")
-        return self._put_together("")
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
         """Choose the tools for whole faces."""
@@ -114,7 +127,8 @@ class RackPlanner:
         self._used = set(choice.tools)
         for face, chain in zip(screened, choice.chains, strict=True):
             # Where the screening sees no way, the smallest tool is asked: it tells why.
-            self._waiting.append(_Waiting(face, (), chain.tools[0] if chain.tools else len(self.jobs) - 1))
+            tool = chain.tools[0] if chain.tools else len(self.jobs) - 1
+            self._waiting.append(_Waiting(face, (), tool, in_pieces=0 < chain.first < WHOLE))
 
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan all that waits for a tool; False where the user stopped it."""
@@ -122,17 +136,14 @@ class RackPlanner:
         self._waiting = [one for one in self._waiting if one.tool != tool]
         if not now:
             return True
-        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root) for label, one in now.items()]
-        job = replace(self.jobs[tool], kept=frozenset(op.face.number for op in self._done))
-        made = job.plan_pieces(targets, progress)
+        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, in_pieces=one.in_pieces)
+                   for label, one in now.items()]
+        made = self.jobs[tool].plan_pieces(targets, progress)
         if made.outcome == "cancelled":  # what is finished is kept; nothing goes to another tool any more
             for op in made.operations:
                 self._left_by[len(self._done)] = _origin(op.face, now).left_by
                 self._done.append(op)
             return False
-        if made.part is not job.part:  # a skin was taken apart
-            self.jobs = [replace(one, part=made.part) for one in self.jobs]
-            self._screen = _Screen(self.jobs, [op.face for op in made.operations])
         for op in made.operations:
             self._take_over(op, _origin(op.face, now), tool)
         return True
@@ -145,9 +156,7 @@ class RackPlanner:
 
     def _take_over(self, op: Operation, origin: _Waiting, tool: int) -> None:
         """Keep an operation, and send what it leaves to the next tool."""
-        # A piece of a skin that was taken apart is a root of its own.
-        root = origin.root if op.face.numbers == origin.root.numbers else op.face
-        loops, left_by = op.face.outline, origin.left_by
+        root, loops, left_by = origin.root, op.face.outline, origin.left_by
         if op.done:
             left_by = origin.left_by | {len(self._done)}
             loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops)
@@ -156,10 +165,10 @@ class RackPlanner:
             self._left_by[len(self._done)] = origin.left_by
             self._done.append(op)
         if following is not None:
-            self._waiting.append(_Waiting(root, loops, following, left_by))
+            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, following.first < WHOLE))
 
-    def _next_tool(self, rest: Face, tool: int) -> int | None:
-        """The tool that finishes what another one left; None where no smaller one reaches anything of it."""
+    def _next_tool(self, rest: Face, tool: int) -> ToolChain | None:
+        """The tools that finish what another one left; None where no smaller one reaches anything of it."""
         if rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
             return None
         try:
@@ -172,7 +181,41 @@ class RackPlanner:
         if not best.tools:
             return None
         self._used |= set(best.tools)
-        return best.tools[0]
+        return best
+
+    def _take_skins_apart(self, faces: Sequence[Face], progress: Progress) -> None:
+        """Plan the faces of skins of which little is machined one by one, and keep that where it is better."""
+        part = self.jobs[0].part
+        own = {skin.number: [op for op in self._done if op.face.number == skin.number] for skin in faces
+               if skin.members}
+        lost = [skin for skin in faces if skin.number in own and not any(op.failed for op in own[skin.number])
+                and area_machined(own[skin.number]) < APART_BELOW * skin.area]
+        if not lost:
+            return
+        apart = take_apart(part, [skin.number for skin in lost])
+        other = RackPlanner([replace(job, part=apart) for job in self.jobs])
+        made = other.plan([apart.face(number) for skin in lost for number in skin.numbers], progress)
+        if made.outcome == "cancelled":
+            raise Cancelled("cancelled by the user")
+        for skin in lost:
+            rows = [op for op in other._done if op.face.number in skin.numbers]
+            if is_better(rows, own[skin.number], skin.area):
+                part = take_apart(part, [skin.number]).with_warnings(compare_areas(skin, own[skin.number], rows))
+                self._exchange(skin, other, rows)
+        self.jobs = [replace(job, part=part) for job in self.jobs]
+
+    def _exchange(self, skin: Face, other: "RackPlanner", rows: Sequence[Operation]) -> None:
+        """Put operations of another planner, on the faces of a skin, in the place of those of the skin."""
+        kept = [(op, self._parents(k)) for k, op in enumerate(self._done) if op.face.number != skin.number]
+        new = [(op, other._parents(k)) for k, op in enumerate(other._done) if op in rows]
+        places = {id(op): k for k, (op, _) in enumerate([*kept, *new])}
+        self._done = [op for op, _ in [*kept, *new]]
+        self._left_by = {k: frozenset(places[id(one)] for one in parents)
+                         for k, (_, parents) in enumerate([*kept, *new])}
+
+    def _parents(self, place: int) -> list[Operation]:
+        """The operations that left what the one at a place machines."""
+        return [self._done[k] for k in self._left_by.get(place, ())]
 
     def _put_together(self, outcome: str) -> Plan:
         """The plan of all that was done."""
@@ -213,17 +256,17 @@ def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
     for one in some:
         before = found.get(id(one.root))
         found[id(one.root)] = one if before is None else replace(
-            one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by)
+            one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
+            in_pieces=before.in_pieces or one.in_pieces)
     return list(found.values())
 
 
 def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
     """Of which sub-surface that waited a face is one, or a piece: pieces have letters behind its name."""
     label = face.label
-    while label not in named and label[-1:].isalpha():
+    while label not in named:
         label = label[:-1]
-    return named[label] if label in named else next(
-        one for one in named.values() if set(face.numbers) <= set(one.root.numbers))
+    return named[label]
 
 
 class _Screen:

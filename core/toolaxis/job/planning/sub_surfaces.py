@@ -37,7 +37,8 @@ _FACETS = 16
 
 class Target(NamedTuple):
     """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, the axes
-    that others share, what of it was given by hand, and what became of it where its division failed or was refused."""
+    that others share, what of it was given by hand, what became of it where its division failed or was refused, and
+    whether it is divided by reach before an axis is looked for that reaches all of it."""
 
     face: Face
     axis: Array | None = None
@@ -45,6 +46,7 @@ class Target(NamedTuple):
     others: tuple[Array, ...] = ()
     given: SubSurface | None = None
     ended: Operation | None = None
+    in_pieces: bool = False
 
 
 def by_axis(targets: list[Target]) -> list[Target]:
