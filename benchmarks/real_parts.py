@@ -8,9 +8,10 @@ SIGTERM once: what it finished is judged and counted.  As only the command is ru
 file measures other versions too: name one by PYTHONPATH.
 
 The tool is the same for all faces of a part: `benchmarks._rack` states the rule; ``--tools`` names a rack in its place
-(``general-rack`` is the one that is shipped).  The faces are all sculptured ones, or
-``--sample`` of them, drawn by ``--seed`` and the name of the file, or ``--faces``.  A face is verified where all its
+(``general-rack`` is the one that is shipped), with which the whole part is planned as a user does who names no faces.
+The faces are all sculptured ones, or ``--sample`` of them, drawn by ``--seed`` and the name of the file, or ``--faces``.  A face is verified where all its
 operations pass; its area counts without what its plan leaves to clean-up.
+Of a whole part the areas are those of the verdict.
 
 ``--out`` writes everything as JSON; ``--compare OLD.json`` sets it beside an earlier result and lists what was lost.
 A RESULT.json in the folder's place is printed, and compared, as it is.
@@ -145,8 +146,9 @@ def _measure(path: Path, asked: argparse.Namespace, place: Path) -> dict[str, An
                 unit=survey["unit"], diagonal=survey["diagonal"], warnings=survey["warnings"],
                 tool=tool.name, tool_file=tool.file, scallop=scallop, refused="", reasons=[])
     if areas:
-        words = _tool_words(tool, asked.tools is not None, place)
-        part["rows"] = _planned_and_judged(part, path, areas, words, (bounds, place))
+        words = [str(path), *_tool_words(tool, asked.tools is not None, place), "--scallop", str(scallop)]
+        whole = asked.tools is not None and asked.sample is None and asked.faces is None
+        part["rows"] = _planned_and_judged(part, words, areas, whole, (bounds, place))
     part["wall"] = time.monotonic() - began
     return part
 
@@ -175,13 +177,15 @@ def _tool_words(tool: RackTool, is_rack: bool, place: Path) -> list[str]:
     return ["--tool", str(file)]
 
 
-def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, float], words: list[str],
+def _planned_and_judged(part: dict[str, Any], words: list[str], areas: Mapping[int, float], whole: bool,
                         where: tuple[Bounds, Path]) -> list[dict[str, Any]]:
     bounds, place = where
     folder = place / "plan"
-    planned = run(python(*_COMMAND, "plan", str(path), *words, "--scallop", str(part["scallop"]), "--faces",
-                         ",".join(map(str, areas)), "--out", str(folder), "--workers", "1", "--no-pictures"),
-                  bounds, place)
+    usual = [*_COMMAND, "plan", *words, "--out", str(folder), "--workers", "1", "--no-pictures"]
+    named = [*usual, "--faces", ",".join(map(str, areas))]
+    planned = run(python(*(usual if whole else named)), bounds, place)
+    if whole and planned.code == 2 and any("blades" in reason for reason in last_reasons(planned)):
+        planned = run(python(*named), bounds, place)  # a part with blades is planned with several tools by its faces
     part["processes"]["plan"] = _process(planned)
     plan, judged, verdict = _read(folder / "plan.json"), None, None
     if plan is not None and any(op["cl_file"] for op in plan["operations"]):
@@ -191,6 +195,7 @@ def _planned_and_judged(part: dict[str, Any], path: Path, areas: Mapping[int, fl
         verdict = _read(folder / "verdict.json")
     part["outcome"] = None if plan is None else plan["outcome"]
     part["passed"] = None if verdict is None else verdict["passed"]
+    part["whole"] = None if verdict is None or not whole else verdict.get("part")
     return outcomes(areas, plan, planned, verdict, judged)
 
 
@@ -216,7 +221,7 @@ def _print_part(part: Mapping[str, Any]) -> None:
         return
     rows = part["rows"]
     verified = [row for row in rows if row["verified"]]
-    area, done = sum(row["area"] for row in rows), sum(row["verified_area"] for row in rows)
+    area, done = _areas(part)
     shares = f"{_percent(len(verified), len(rows)):>7} {_percent(done, area):>6}"
     unsafe = [row for row in rows if row["outcome"] in ("failed", "not judged")]
     undone = [row for row in rows if row["outcome"] in ("open", "left")]
@@ -257,9 +262,16 @@ def _print_total(result: Mapping[str, Any]) -> None:
           "op s: longest of one face to plan, to judge; MB: greatest resident set of one process")
 
 
+def _areas(part: Mapping[str, Any]) -> tuple[float, float]:
+    """Area that was asked for, and what of it is verified, mm^2."""
+    if part.get("whole"):
+        return part["whole"]["area"], part["whole"]["verified"]
+    return sum(row["area"] for row in part["rows"]), sum(row["verified_area"] for row in part["rows"])
+
+
 def _share(part: Mapping[str, Any]) -> float:
-    area = sum(row["area"] for row in part["rows"])
-    return sum(row["verified_area"] for row in part["rows"]) / area if area > 0 else 0.0
+    area, verified = _areas(part)
+    return verified / area if area > 0 else 0.0
 
 
 def _print_change(old: Mapping[str, Any], new: Mapping[str, Any]) -> None:

@@ -38,6 +38,8 @@ _EVEN = 0.9
 _STEPS, _ON_THE_WAY = 60, 17
 #: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
 _PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
+#: How many times finer cells are tried where some of those may turn over.
+_FINER = (2, 4)
 
 
 class TurningCells(NamedTuple):
@@ -88,20 +90,45 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     Notes
     -----
     Su of a piece lies in the cone of the legs of its control net along u, Sv in that of the legs along v.  Where the
-    two cones share no line, Su and Sv are nowhere parallel.  A cell shorter than a fold may lie within one.
+    two cones share no line, Su and Sv are nowhere parallel.  Where that is so of all cells, however small, none is
+    turned over.  Otherwise a cell shorter than a fold may lie within one.
     """
-    knots_u, knots_v, _, pu, pv, _ = data
-    lines_u, lines_v = _cell_lines(knots_u, pu), _cell_lines(knots_v, pv)
-    step = max(1, _AT_ONCE // ((len(lines_v) - 1) * (pu + 1) * (pv + 1)))
-    turning = [_turning(bezier_nets(data, lines_u[first:first + step + 1], lines_v))
-               for first in range(0, len(lines_u) - 1, step)]
-    return TurningCells(lines_u, lines_v, np.concatenate(turning))
+    found = _Cells.of(data, 1)
+    for finer in _FINER:
+        if not found.turning.any():
+            break
+        closer = _Cells.of(data, finer)
+        if not closer.turning.any():
+            found = closer
+    if not found.turning.any():
+        return TurningCells(*found.lines, np.zeros_like(found.turning))
+    return TurningCells(*found.lines, found.turning | found.short)
 
 
-def _cell_lines(knots: Array, degree: int) -> Array:
+class _Cells(NamedTuple):
+    """Cells of a surface: their lines along u and v, which may turn over, and which are no longer than a fold."""
+
+    lines: tuple[Array, Array]
+    turning: Bools
+    short: Bools
+
+    @staticmethod
+    def of(data: SurfaceData, finer: int) -> "_Cells":
+        """Cells so many times finer than usual."""
+        knots_u, knots_v, _, pu, pv, _ = data
+        lines_u, lines_v = _cell_lines(knots_u, pu, finer), _cell_lines(knots_v, pv, finer)
+        step = max(1, _AT_ONCE // ((len(lines_v) - 1) * (pu + 1) * (pv + 1)))
+        nets = [bezier_nets(data, lines_u[first:first + step + 1], lines_v)
+                for first in range(0, len(lines_u) - 1, step)]
+        turning = np.concatenate([_turning(one) for one in nets])
+        short = np.concatenate([_short(one[..., :3] / one[..., 3:]) for one in nets])
+        return _Cells((lines_u, lines_v), turning, short)
+
+
+def _cell_lines(knots: Array, degree: int, finer: int) -> Array:
     """The knots of the domain and lines that cut the spans between them evenly."""
     ends = np.unique(knots[degree:len(knots) - degree])
-    parts = max(_PARTS, -(-_CELLS // (len(ends) - 1)))
+    parts = finer * max(_PARTS, -(-_CELLS // (len(ends) - 1)))
     between = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(parts) / parts)
     return np.append(between.ravel(), ends[-1])
 
@@ -121,7 +148,7 @@ def _turning(nets: Array) -> Bools:
         axes.append(axis)
         widths.append(width)
     apart = np.arccos(np.clip(np.abs(dot(*axes)), 0.0, 1.0))
-    return np.asarray((sum(widths) >= apart) | _short(points))
+    return np.asarray(sum(widths) >= apart)
 
 
 def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import stations, walk
 from toolaxis.shape.face import Face
+from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.faces_in_view import FacesInView
@@ -71,6 +72,14 @@ class ViewSurface(NurbsSurface):
     def spline(self) -> NurbsSurface:  # type: ignore[override]
         """The smooth spline that stands for the faces where strips are measured."""
         return NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
+
+    @cached_property
+    def turning_cells(self) -> TurningCells:  # type: ignore[override]
+        """Where Su x Sv may turn over: a height over the plane does not, unless one of the faces does."""
+        found = find_turning_cells(self.data)
+        if any(face.surface.turning_cells.turning.any() for face in self.members):
+            return found
+        return found._replace(turning=np.zeros_like(found.turning))
 
     @cached_property
     def joins(self) -> tuple[Array, ...]:

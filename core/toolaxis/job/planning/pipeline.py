@@ -184,7 +184,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                                  WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
-    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * cutter.radius), *not_divided(loaded, given),
+    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
                                   *rack.warnings)
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
@@ -249,7 +249,9 @@ def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], p
     with activate_progress(progress):
         if job.workers > 1:
             _in_cells(job, progress)
-        return RackPlanner([replace(job, tool=tool, one_by_one=False) for tool in tools]).plan(faces, progress)
+        area = sum(face.area for face in faces)
+        return RackPlanner([replace(job, tool=tool, one_by_one=False, asked_area=area) for tool in tools]).plan(
+            faces, progress)
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:

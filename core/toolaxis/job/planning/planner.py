@@ -66,6 +66,8 @@ Array = NDArray[np.float64]
 DIVIDED = ("sphere", "sectors")
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
+#: Share of the limit of work for a sub-surface, by its share of the area of a plan with several tools, and at least.
+_WORK_OF_SHARE, _LEAST_WORK = 3.0, 0.15
 #: Why a sub-surface is divided before an axis for all of it is looked for.
 _IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
@@ -144,6 +146,9 @@ class PlanningJob:
         Sub-surfaces given by hand; faces that have some are not divided otherwise.
     one_by_one : bool
         Whether the faces of a skin of which a part has no axis are planned one by one where they do better.
+    asked_area : float
+        Area of all that is asked for in a plan with several tools, mm^2: by its share of that a sub-surface is allowed
+        work, as there is another tool to be tried.  0 with one tool.
     """
 
     part: Part
@@ -159,6 +164,7 @@ class PlanningJob:
     machine: Mounting | None = None
     division: tuple[SubSurface, ...] = ()
     one_by_one: bool = True
+    asked_area: float = 0.0
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -450,9 +456,14 @@ class PlanningJob:
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
-        times = MOVING if self._strategy.moves else 1.0
-        with limit_work(Budget(self.inputs.limit, times * len(target.face.numbers))):
+        with limit_work(Budget(self.inputs.limit, self._times_of_work(target.face))):
             return self._with_axis(target, place, progress)
+
+    def _times_of_work(self, face: Face) -> float:
+        """How many times the limit of work a sub-surface is allowed."""
+        if self.asked_area > 0:
+            return float(np.clip(_WORK_OF_SHARE * face.area / self.asked_area, _LEAST_WORK, 1.0))
+        return (MOVING if self._strategy.moves else 1.0) * len(face.numbers)
 
     def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import Cancelled, fault
+from toolaxis.errors import Cancelled
 from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better
 from toolaxis.job.planning.failures import fail_face
+from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.plan.operation import Operation
@@ -112,17 +113,16 @@ class RackPlanner:
         whole = [target.face for target in pieces if target.ended is None]
         self._done += [target.ended for target in pieces if target.ended is not None]
         self._screen = _Screen(self.jobs, whole)
-        screened: list[Face] = []
-        chains: list[tuple[ToolChain, ...]] = []
-        for k, face in enumerate(whole):
-            progress.report("choice of tools", k, len(whole))
-            try:
-                chains.append(self._screen.chains(face, 0))
-                screened.append(face)
-            except Cancelled:
-                raise
-            except Exception as reason:
-                self._done.append(fail_face(1, face, smallest, fault(reason)))
+
+        def _chains(k: int, inner: Progress) -> tuple[ToolChain, ...]:
+            inner.report("choice of tools", k, len(whole))
+            return self._screen.chains(whole[k], 0)
+
+        found = abreast(_chains, len(whole), self.jobs[0].workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        self._done += [fail_face(1, whole[k], smallest, why) for k, why in found.faults.items()]
+        screened, chains = [whole[k] for k in found.results], list(found.results.values())
         choice = choose_tools(chains, CHANGE_SECONDS)
         self._used = set(choice.tools)
         for face, chain in zip(screened, choice.chains, strict=True):
