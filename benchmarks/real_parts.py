@@ -8,10 +8,10 @@ SIGTERM once: what it finished is judged and counted.  As only the command is ru
 file measures other versions too: name one by PYTHONPATH.
 
 The tool is the same for all faces of a part: `benchmarks._rack` states the rule; ``--tools`` names a rack in its place
-(``general-rack`` is the one that is shipped), with which the whole part is planned as a user does who names no faces.
-The faces are all sculptured ones, or ``--sample`` of them, drawn by ``--seed`` and the name of the file, or ``--faces``.  A face is verified where all its
-operations pass; its area counts without what its plan leaves to clean-up.
-Of a whole part the areas are those of the verdict.
+(``general-rack`` is the one that is shipped), with which the whole part is planned, as for a user who names no faces.
+Otherwise the faces are all sculptured ones, or ``--sample`` of them, drawn by ``--seed`` and the name of the file, or
+``--faces``.  A face is verified where all its operations pass; its area counts without what its plan leaves to
+clean-up.  Areas of a whole part are those of its verdict.
 
 ``--out`` writes everything as JSON; ``--compare OLD.json`` sets it beside an earlier result and lists what was lost.
 A RESULT.json in the folder's place is printed, and compared, as it is.
