@@ -206,9 +206,3 @@ def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
     made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
     assert [tool.name for tool in made.tools] == ["ball:10"]
     assert any("left out: its radius is not above the scallop height" in why for why in made.part.warnings)
-
-
-def test_a_part_with_blades_is_refused_unless_faces_are_chosen() -> None:
-    blisk = Path(__file__).parents[2] / "examples" / "blisk.step"
-    with pytest.raises(InvalidInput, match=r"the part has \d+ blades, which are planned with one tool"):
-        ta.plan(blisk, TOOLS, SCALLOP)

@@ -15,7 +15,6 @@ from toolaxis.job.planning.blade_pattern import find_pattern
 from toolaxis.job.planning.parallel import check_workers
 from toolaxis.job.planning.planner import went_on
 from toolaxis.machine.limits import parse_limits
-from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.fixed_axis import task
@@ -62,12 +61,12 @@ class Planner:
     def __init__(self):
         self.asked = []
 
-    def task(self, part, face, progress):
-        return task(face, TOOL, SCALLOP, None, (), part=part, progress=progress)
+    def task(self, part, face, tool, progress):
+        return task(face, tool, SCALLOP, None, (), part=part, progress=progress)
 
-    def search(self, part, face, number, progress):
-        self.asked.append(face.number)
-        return Operation(number, face, TOOL, Orientation(None, reasons=("searched",)))
+    def search(self, part, op, progress):
+        self.asked.append(op.face.number)
+        return replace(op, orientation=Orientation(None, reasons=("searched",)), path=None, frame=None)
 
 
 @pytest.fixture(scope="module")
@@ -136,9 +135,9 @@ def test_where_the_proof_refuses_the_copy_the_axis_is_searched_anew_and_it_is_sa
 
 
 def test_where_passes_laid_anew_are_refused_the_axis_is_searched_too(first):
-    def _shut(part, face, progress):
+    def _shut(part, face, tool, progress):
         limits = parse_limits("cone:" + ",".join(map(str, -first.operations[0].orientation.axis)) + ",5")
-        return task(face, TOOL, SCALLOP, limits, (), part=part, progress=progress)
+        return task(face, tool, SCALLOP, limits, (), part=part, progress=progress)
 
     pattern, _ = find_pattern(wheel("thick"))
     planner = Planner()

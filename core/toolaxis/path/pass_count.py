@@ -270,6 +270,8 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _
     a0, a1, _, _ = chart.bounds
     found = rows(chart, steps)
     few = row_points(found, (a1 - a0) / _EXACT_GAPS)
+    if not len(few.interval):
+        return _Rows(steps, np.zeros(len(steps)), np.full(len(steps), a0), np.zeros(len(steps)))
     points = _with_breaks(found, row_points(found, (a1 - a0) / _ROW_GAPS), chart.breaks[0])
     line = found.line[points.interval]
     step, along = steps[line], points.along

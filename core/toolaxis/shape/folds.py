@@ -93,11 +93,11 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     two cones share no line, Su and Sv are nowhere parallel.  Where that is so of all cells, however small, none is
     turned over.  Otherwise a cell shorter than a fold may lie within one.
     """
-    found = _Cells.of(data, 1)
+    found = _NetCells.of(data, 1)
     for finer in _FINER:
         if not found.turning.any():
             break
-        closer = _Cells.of(data, finer)
+        closer = _NetCells.of(data, finer)
         if not closer.turning.any():
             found = closer
     if not found.turning.any():
@@ -105,7 +105,7 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     return TurningCells(*found.lines, found.turning | found.short)
 
 
-class _Cells(NamedTuple):
+class _NetCells(NamedTuple):
     """Cells of a surface: their lines along u and v, which may turn over, and which are no longer than a fold."""
 
     lines: tuple[Array, Array]
@@ -113,7 +113,7 @@ class _Cells(NamedTuple):
     short: Bools
 
     @staticmethod
-    def of(data: SurfaceData, finer: int) -> "_Cells":
+    def of(data: SurfaceData, finer: int) -> "_NetCells":
         """Cells so many times finer than usual."""
         knots_u, knots_v, _, pu, pv, _ = data
         lines_u, lines_v = _cell_lines(knots_u, pu, finer), _cell_lines(knots_v, pv, finer)
@@ -122,7 +122,7 @@ class _Cells(NamedTuple):
                 for first in range(0, len(lines_u) - 1, step)]
         turning = np.concatenate([_turning(one) for one in nets])
         short = np.concatenate([_short(one[..., :3] / one[..., 3:]) for one in nets])
-        return _Cells((lines_u, lines_v), turning, short)
+        return _NetCells((lines_u, lines_v), turning, short)
 
 
 def _cell_lines(knots: Array, degree: int, finer: int) -> Array:

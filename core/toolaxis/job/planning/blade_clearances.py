@@ -71,7 +71,8 @@ def with_rooms(plan: Plan, progress: Progress = NO_PROGRESS) -> Plan:
 
 
 def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iterator[BladeClearance]:
-    known = [c for c, name in enumerate(COMPONENTS) if name in {"cutter", *plan.tools[0].outlines}]
+    outlines = {name for op in plan.operations for name in op.tool.outlines}
+    known = [c for c, name in enumerate(COMPONENTS) if name in {"cutter", *outlines}]
     best = {c: BladeClearance(to, COMPONENTS[c], MOST) for c in known}
     own = [op for op in plan.operations if op.done and blades.blade_of(op.face.number) == 1]
     if not faces or not own:
@@ -80,7 +81,7 @@ def _rooms(plan: Plan, blades: Blades, to: str, faces: tuple[Face, ...]) -> Iter
     for op in own:
         machined = {op.face.number, *plan.part.neighbours(op.face.number, "tangent")}
         joined = to == "hub" and bool(machined & set(blades.hub))
-        asked = [c for c in known if c > 0 or not joined]
+        asked = [c for c in known if COMPONENTS[c] in op.tool.outlines or (c == 0 and not joined)]
         grazed = to == "hub" and any(face.number in blades.hub for face in
                                      blades.apart(plan.part, op.face.number).skin(op.face.number))
         for c, (value, face, _, _) in _nearest(op, group, {c: best[c].distance for c in asked}).items():

@@ -22,6 +22,7 @@ from toolaxis.job.planning.parallel import Outcome, abreast
 from toolaxis.plan.blades import PlannedBlade
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -30,6 +31,7 @@ from toolaxis.search.messages import sentence
 from toolaxis.search.path_check import COMPONENTS, prove
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 #: Operations of one blade, and for each the number of the one that it copies; 0 where its axis was searched anew.
@@ -48,11 +50,11 @@ class FacePlanner(Protocol):
     def workers(self) -> int:
         """Processes to work with."""
 
-    def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
+    def task(self, part: Part, face: Face, tool: Tool, progress: Progress) -> FaceProblem:
         """What decides about an axis for a face of a part."""
 
-    def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
-        """The operation of a face of a part, its axis searched."""
+    def search(self, part: Part, op: Operation, progress: Progress) -> Operation:
+        """An operation on its face of a part, its axis searched anew."""
 
 
 def with_refused(first: Plan, pattern: Pattern, share: BladeFaces) -> Plan:
@@ -70,7 +72,7 @@ def with_refused(first: Plan, pattern: Pattern, share: BladeFaces) -> Plan:
     for number, (face, outcome, why) in enumerate(faces, len(first.operations) + 1):
         none = Orientation(None, outcome=outcome, reasons=(why,))
         zones = (Zone(face.outline, face.area),) if face.number in share.left else ()
-        made.append(Operation(number, face, first.tools[0], none, zones=zones))
+        made.append(Operation(number, face, first.tools[-1], none, zones=zones))
     return replace(first, operations=(*first.operations, *made))
 
 
@@ -81,9 +83,20 @@ def append_operations(plan: Plan, other: Plan) -> Plan:
     ----------
     plan, other : Plan
     """
-    more = tuple(replace(op, number=len(plan.operations) + op.number) for op in other.operations)
+    more = tuple(renumber(op, len(plan.operations)) for op in other.operations)
     worst = next((name for name in ("cancelled", "incomplete") if name in (plan.outcome, other.outcome)), "complete")
     return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults))
+
+
+def renumber(op: Operation, before: int) -> Operation:
+    """An operation behind so many others, with the numbers of those whose rest it machines.
+
+    Parameters
+    ----------
+    op : Operation
+    before : int
+    """
+    return replace(op, number=op.number + before, rest_of=tuple(one + before for one in op.rest_of))
 
 
 def spread_out(pattern: Pattern, first: Plan, planner: FacePlanner, progress: Progress) -> Plan:
@@ -122,14 +135,16 @@ def _with_blades(pattern: Pattern, first: Plan, done: Outcome[_OnBlade]) -> Plan
     every = {**done.results, **{k: _fail_blade(pattern, k, first, why) for k, why in done.faults.items()}}
     operations, copies, searched = list(first.operations), {}, []
     for k in sorted(every):
-        for op, source in zip(*every[k], strict=True):
-            number = len(operations) + 1
+        before = len(operations)
+        for original, op, source in zip(first.operations, *every[k], strict=True):
             face = pattern.part.face(op.face.number)
-            operations.append(replace(op, number=number, face=face.trimmed(op.face.trims, op.face.label)))
+            placed = replace(op, number=original.number, rest_of=original.rest_of,
+                             face=face.trimmed(op.face.trims, op.face.label))
+            operations.append(renumber(placed, before))
             if source:
-                copies[number] = source
+                copies[operations[-1].number] = source
             elif op.done:
-                searched.append(number)
+                searched.append(operations[-1].number)
     outcome = "cancelled" if done.cancelled else outcome_of(operations, pattern.blades)
     blades = replace(pattern.blades, copies=copies, searched=tuple(searched))
     return replace(first, part=pattern.part, operations=tuple(operations), outcome=outcome, blades=blades)
@@ -177,14 +192,13 @@ def _measure_blade(pattern: Pattern, k: int, operations: Sequence[Operation]) ->
     """A blade with the areas that are machined and left."""
     blade = pattern.blades.blades[k]
     own = [op for op in operations if pattern.blades.blade_of(op.face.number) == k + 1]
-    area = sum(op.face.area for op in own)
-    left = sum(op.face.area * (op.orientation.unreached if op.done else 1.0) for op in own)
-    return replace(blade, area=float(area), left=float(left))
+    account = PartAccount.of(own)
+    return replace(blade, area=account.area, left=account.area - account.machined)
 
 
 def _on_blade(pattern: Pattern, k: int, first: Plan, planner: FacePlanner, progress: Progress) -> _OnBlade:
     """Operations of blade k + 2, and for each the number of the one it copies; 0 where its axis was searched anew."""
-    known: dict[frozenset[int], tuple[CheckSurfaces, ...]] = {}
+    known: _KnownGroups = {}
     found, taken = [], []
     for index, op in enumerate(first.operations):
         progress.report("proof of turned operations", index, len(first.operations))
@@ -199,7 +213,8 @@ def _on_blade(pattern: Pattern, k: int, first: Plan, planner: FacePlanner, progr
     return found, taken
 
 
-_Means = tuple[FacePlanner, dict[frozenset[int], tuple[CheckSurfaces, ...]], Progress]
+_KnownGroups: TypeAlias = dict[tuple[Tool, frozenset[int]], tuple[CheckSurfaces, ...]]
+_Means = tuple[FacePlanner, _KnownGroups, Progress]
 
 
 def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[Operation, bool]:
@@ -219,7 +234,7 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
         whole = tuple(Zone(piece.outline, piece.area) for _ in op.zones)
         return Operation(op.number, piece, op.tool, replace(op.orientation, map=None, lobes=()), zones=whole), True
     assert op.path is not None and op.orientation.axis is not None
-    task = planner.task(apart, piece, progress)
+    task = planner.task(apart, piece, op.tool, progress)
     axis = matrix[:3, :3] @ op.orientation.axis
     swapped = other.chart.swapped if other.chart is not None else None
     if away <= SAME and swapped is not None:
@@ -232,7 +247,7 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
         made, why = _replan_turned(op, piece, task, axis, swapped)
     if made is not None:
         return made, True
-    anew = planner.search(apart, piece, op.number, progress)
+    anew = planner.search(apart, replace(op, face=piece), progress)
     note = f"the turned axis of {op.name} was refused here: {why}"
     return replace(anew, orientation=replace(anew.orientation, reasons=(note, *anew.orientation.reasons))), False
 
@@ -267,7 +282,7 @@ def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) ->
 def _groups(task: FaceProblem, means: _Means) -> tuple[CheckSurfaces, ...]:
     """The surroundings of a task's face; those of one skin share their cells."""
     known = means[1]
-    key = frozenset(face.number for face in task.groups[0].faces)
+    key = task.worth.tool, frozenset(face.number for face in task.groups[0].faces)
     return known.setdefault(key, task.groups)
 
 

@@ -15,12 +15,13 @@ from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.inputs.spec import choose_faces, with_joined, with_rings
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
-from toolaxis.job.planning.blade_pattern import find_pattern
+from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.parallel import check_workers
 from toolaxis.job.planning.planner import DIVIDED, PlanningJob, went_on
 from toolaxis.job.planning.rack import RackPlanner
+from toolaxis.job.planning.rack_blades import plan_blades_with_rack
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
 from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
@@ -173,12 +174,14 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
-    loaded, asked = load(part), faces is not None
+    loaded, asked, pattern = load(part), faces is not None, None
     if len(rack.tools) > 1:
         _check_for_rack(chosen.moves, method, regions, orientations, given, compare)
         if not asked:
-            _refuse_blades(loaded, progress)
-            faces = "skins"
+            pattern = _find_blades(loaded, progress)
+            faces = "skins" if pattern is None else None
+    if pattern is not None:
+        loaded = pattern.part
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
                                  WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
@@ -190,7 +193,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     if len(rack.tools) > 1:
-        return _order_operations(_plan_rack(job, rack.tools, choose_faces(loaded, numbers), progress), progress)
+        whole_part = None if pattern is None else replace(pattern, part=loaded)
+        return _order_operations(_plan_rack(job, rack.tools, choose_faces(loaded, numbers), whole_part, progress),
+                                 progress)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
 
@@ -231,27 +236,28 @@ def _check_for_rack(moves: bool, method: str, regions: Any, orientations: Any, g
             raise InvalidInput(f"{name} is planned with one tool and several are given: name one tool")
 
 
-def _refuse_blades(part: Part, progress: Progress) -> None:
-    """Refuse a part with blades: one of them is planned and copied with one tool, and face by face takes too long."""
+def _find_blades(part: Part, progress: Progress) -> Pattern | None:
+    """The blades of a part; None where it has none, or they cannot be told apart."""
     if part.original or part.selected:
-        return
-    with activate_progress(progress):
-        pattern = None
-        with suppress(Exception):  # then its faces are planned as those of any part, or it is cancelled there
-            pattern, _ = find_pattern(part, progress)
-    if pattern is not None:
-        raise InvalidInput(f"the part has {len(pattern.blades.blades)} blades, which are planned with one tool and "
-                           "several are given: name one tool, or choose faces")
+        return None
+    with activate_progress(progress), suppress(Exception):  # its faces are planned as those of any part then
+        return find_pattern(part, progress)[0]
+    return None
 
 
-def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], progress: Progress) -> Plan:
+def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], pattern: Pattern | None,
+               progress: Progress) -> Plan:
     """The plan of a job with several tools."""
     with activate_progress(progress):
         if job.workers > 1:
             _in_cells(job, progress)
-        area = sum(face.area for face in faces)
-        return RackPlanner([replace(job, tool=tool, one_by_one=False, asked_area=area) for tool in tools]).plan(
-            faces, progress)
+        jobs = [replace(job, tool=tool, one_by_one=False, asked_area=sum(face.area for face in faces))
+                for tool in tools]
+        try:
+            return RackPlanner(jobs).plan(faces, progress) if pattern is None else plan_blades_with_rack(
+                jobs, pattern, progress)
+        except Cancelled:
+            return replace(job.empty(), tools=tuple(tools))
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:

@@ -187,7 +187,7 @@ class PlanningJob:
         one = replace(self, part=apart, regions=regions, whole=share.whole)
         first = with_refused(one.zoned_out(share.divided, progress), pattern, share)
         found = went_on(replace(first, part=pattern.part),
-                        lambda plan: spread_out(pattern, plan, _Planner(self), progress))
+                        lambda plan: spread_out(pattern, plan, PlannerOfFaces((self,)), progress))
         if found.outcome != "cancelled" and pattern.rest:
             found = append_operations(found, self.zoned_out(pattern.rest, progress))
         if compare:
@@ -571,20 +571,30 @@ def _price(job: FaceProblem, found: Orientation) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Planner:
-    """What plans a face of a part whose blades are told apart."""
+class PlannerOfFaces:
+    """What plans a face of a part whose blades are told apart.
 
-    job: PlanningJob
+    Attributes
+    ----------
+    jobs : sequence of PlanningJob
+        The same job with each tool.
+    """
+
+    jobs: Sequence[PlanningJob]
 
     @property
     def workers(self) -> int:
         """Processes to work with."""
-        return self.job.workers
+        return self.jobs[0].workers
 
-    def task(self, part: Part, face: Face, progress: Progress) -> FaceProblem:
+    def task(self, part: Part, face: Face, tool: Tool, progress: Progress) -> FaceProblem:
         """What decides about an axis."""
-        return replace(self.job, part=part)._task(face, progress)
+        return replace(self._job(tool), part=part)._task(face, progress)
 
-    def search(self, part: Part, face: Face, number: int, progress: Progress) -> Operation:
+    def search(self, part: Part, op: Operation, progress: Progress) -> Operation:
         """The operation, its axis searched."""
-        return replace(replace(self.job, part=part)._operation(Target(face), (number - 1, number), progress), face=face)
+        job = replace(self._job(op.tool), part=part)
+        return replace(job._operation(Target(op.face), (op.number - 1, op.number), progress), face=op.face)
+
+    def _job(self, tool: Tool) -> PlanningJob:
+        return next(job for job in self.jobs if job.tool == tool)

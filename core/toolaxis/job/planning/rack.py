@@ -223,10 +223,8 @@ class RackPlanner:
         rows = [self._with_elsewhere(k, op, machined) for k, op in enumerate(self._done)]
         numbered = tuple(replace(op, number=k + 1, rest_of=tuple(sorted(one + 1 for one in self._left_by.get(k, ()))))
                          for k, op in enumerate(rows))
-        account = PartAccount.of(numbered)
         if not outcome:
-            lost = any(op.failed for op in numbered) or not account.machined
-            outcome = "incomplete" if lost or account.open > LEFT_OPEN * account.area else "complete"
+            outcome = outcome_of_rack(numbered)
         return replace(self.jobs[0].empty(), tools=tuple(job.tool for job in self.jobs), operations=numbered,
                        outcome=outcome)
 
@@ -248,6 +246,18 @@ class RackPlanner:
         share = min(machined[place] / area, 1.0)
         return replace(op, zones=tuple(replace(zone, elsewhere=share * zone.area) if zone.at_wall else zone
                                        for zone in op.zones))
+
+
+def outcome_of_rack(operations: Sequence[Operation]) -> str:
+    """What a plan with several tools came to that nobody stopped: complete where next to nothing stays open.
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+    """
+    account = PartAccount.of(operations)
+    lost = any(op.failed for op in operations) or not account.machined
+    return "incomplete" if lost or account.open > LEFT_OPEN * account.area else "complete"
 
 
 def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:

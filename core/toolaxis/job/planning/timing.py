@@ -47,17 +47,13 @@ def add_times(plan: Plan, reorder: bool = False) -> Plan:
     outcome = plan.outcome
     if outcome == "complete" and any(one.outcome != "complete" for one in made):
         outcome = "incomplete"
-    return replace(plan, operations=_renumber_rests(plan, made), outcome=outcome,
-                   order=_add_orders([one.order for one in made]),
-                   in_the_way=tuple(f"{one.named_tools}: {why}" for one in made for why in one.in_the_way))
-
-
-def _renumber_rests(plan: Plan, made: Sequence[Plan]) -> tuple[Operation, ...]:
-    """The operations of all tools; what is a rest names those that left it by their new numbers."""
     operations = [op for one in made for op in one.operations]
     number = {op.face.label: op.number for op in operations}
     now = {op.number: number[op.face.label] for op in plan.operations}
-    return tuple(replace(op, rest_of=tuple(sorted(now[one] for one in op.rest_of))) for op in operations)
+    rests = tuple(replace(op, rest_of=tuple(sorted(now[one] for one in op.rest_of))) for op in operations)
+    return replace(plan, operations=rests, outcome=outcome, order=_add_orders([one.order for one in made]),
+                   blades=None if plan.blades is None else plan.blades.renumbered(now),
+                   in_the_way=tuple(f"{one.named_tools}: {why}" for one in made for why in one.in_the_way))
 
 
 def _add_orders(orders: Sequence[Order | None]) -> Order | None:
