@@ -14,12 +14,13 @@ from toolaxis.job.output.post import post_plan
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
+from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
-from toolaxis.report.tables import plan_table, verdict_table
+from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.shape.part import Part
 
 #: The small one is so slow that the large one begins, whatever a tool change takes.
@@ -80,6 +81,22 @@ def test_areas_of_a_part_add_up(planned: Plan) -> None:
     assert found.machined + found.open == pytest.approx(found.area, rel=1e-12)
     assert found.open > 1e-3 * found.area and planned.outcome == "incomplete", "no ball reaches into the corner"
     assert found.length == pytest.approx(planned.length) and found.gap == pytest.approx(found.length / found.bound - 1)
+
+
+def test_what_stays_open_is_listed_with_what_would_close_it(planned: Plan) -> None:
+    place, = list_open_places(planned)
+    assert place.label == "1.2" and place.area == pytest.approx(planned.account.open, rel=0.2)
+    assert place.point[1] < 1.5 and place.radius == pytest.approx(125, rel=0.1), "along the wall at y = 0"
+    assert "another clamping" in what_closes(place, 1.5)
+    made = open_table(planned)
+    assert made is not None and list(made.columns[0].cells) == ["1.2"] and "1 places" not in str(made.title)
+
+
+def test_a_hollow_that_no_tool_fits_asks_for_a_smaller_ball() -> None:
+    made = ta.plan(trough(), ["ball:12", "ball:10"], SCALLOP, limits=UP, workers=1)
+    place = list_open_places(made)[0]
+    assert place.radius == pytest.approx(9 / 3.2, rel=0.2) and abs(place.point[1] - 12) < 2
+    assert what_closes(place, 5.0) == f"a ball end of {2 * place.radius:.2g} mm or less"
 
 
 def test_the_judge_passes_each_operation_with_its_own_tool(planned: Plan) -> None:

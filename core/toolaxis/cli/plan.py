@@ -129,11 +129,13 @@ def _print_plan(made: Plan, given: Namespace) -> int:
     if given.json:
         print_json(read_json(Path(given.out) / PLAN))
     else:
-        from toolaxis.report.tables import baselines_table, options_table, plan_table
+        from toolaxis.report.tables import baselines_table, open_table, options_table, plan_table
 
         if made.options:
             print_table(options_table(made.options))
         print_table(plan_table(made))
+        if (still_open := open_table(made)) is not None:
+            print_table(still_open)
         if made.baselines:
             print_table(baselines_table(made))
     if made.blades is not None:

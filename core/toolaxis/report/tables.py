@@ -9,6 +9,7 @@ from rich.table import Table
 
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
+from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
 from toolaxis.verify.component_clearance import Clearance
@@ -19,6 +20,10 @@ Column: TypeAlias = tuple[str, str]
 _COLUMNS: tuple[Column, ...] = (
     ("sub-\nsurface", "right"), ("axis", "left"), ("feed", "left"), ("passes", "right"), ("strip width\nmm", "right"),
     ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
+_OPEN_COLUMNS: tuple[Column, ...] = (("sub-\nsurface", "right"), ("open\nmm2", "right"), ("about\nx y z", "left"),
+                                     ("least hollow\nradius mm", "right"), ("what would close it", "left"))
+#: Open places that are told one by one.
+_OPEN_ROWS = 20
 _BOUNDS = "gouge: upper bound; clearance: lower bound, looked at up to 20 mm; -: not checked"
 _POINTS = "where the axis moves, the cutter on the machined face is checked at points; clearances are those kept"
 
@@ -114,6 +119,28 @@ def plan_table(plan: Plan) -> Table:
     points = _POINTS if plan.at_points else ""
     notes = _of_part(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def open_table(plan: Plan) -> Table | None:
+    """One row per place that several tools leave open, the largest first, with what would close it; None where nothing
+    is worth a row, there is one tool, or the plan was stopped.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    found = list_open_places(plan) if len(plan.tools) > 1 and plan.outcome != "cancelled" else ()
+    if not found:
+        return None
+    smallest = min(tool.corner_radius for tool in plan.tools)
+    rows = [[one.label, number(one.area, 2), " ".join(f"{x:.1f}" for x in one.point + 0.0),
+             number(one.radius if isfinite(one.radius) else None, 2), what_closes(one, smallest)]
+            for one in found[:_OPEN_ROWS]]
+    rest = found[_OPEN_ROWS:]
+    caption = f"and {len(rest)} more, {sum(one.area for one in rest):.2f} mm2 together" if rest else ""
+    places = "1 place stays" if len(found) == 1 else f"{len(found)} places stay"
+    title = f"{places} open, {sum(one.area for one in found):.2f} mm2"
+    return table(title, _OPEN_COLUMNS, rows, caption)
 
 
 def _titled(plan: Plan) -> str:

@@ -34,7 +34,7 @@ from toolaxis.report.html.page_tables import (
     zone_rows,
 )
 from toolaxis.report.html.scene_3d import scene
-from toolaxis.report.tables import baselines_table, number, options_table, plan_table, reckoning
+from toolaxis.report.tables import baselines_table, number, open_table, options_table, plan_table, reckoning
 from toolaxis.report.warnings import warnings_of
 from toolaxis.verify.axis_view import RestMaterialView, coarser
 
@@ -248,6 +248,8 @@ def _figures(plan: Plan) -> list[tuple[str, str]]:
 
 def _tables(plan: Plan, beside: PlanFiles, times: tuple[list[Operation], list[dict[str, float]]]) -> dict[str, Rows]:
     found = {"operations": rows_of(plan_table(plan)), "orientations": orientation_rows(plan)}
+    if (still_open := open_table(plan)) is not None:
+        found["open"] = rows_of(still_open)
     if beside.verdict is not None:
         found["verdict"] = verdict_rows(plan, beside.verdict)
     if times[0]:
