@@ -183,8 +183,10 @@ class IsoChart:
     def _poles(self) -> tuple[float, float]:
         """Steps shortly after a lower and before an upper border that is a point; infinite where there is none."""
         a0, a1, s0, s1 = self._range
-        low, high = (np.ptp(self.face.evaluate(self.uv(np.linspace(a0, a1, 5), np.full(5, s))).point, axis=0).max()
-                     < 1e-9 * self.face.diagonal for s in (s0, s1))
+        places = np.repeat([s0, (s0 + s1) / 2, s1], 5)
+        points = self.face.evaluate(self.uv(np.tile(np.linspace(a0, a1, 5), 3), places)).point
+        low, high = (np.ptp(points[row], axis=0).max() < 1e-9 * np.ptp(points, axis=0).max()
+                     for row in (slice(0, 5), slice(10, 15)))
         near = _POLE * (s1 - s0)
         return s0 + near if low else -np.inf, s1 - near if high else np.inf
 

@@ -13,6 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_polygon, without
+from toolaxis.numeric.polygons import signed_area
 from toolaxis.path.rest_grid import sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -42,6 +43,8 @@ _FAR = 1e-3
 _BULGE = 1.2
 #: Halvings of the edges of fine cells that find the border of a zone: to some nanometres.
 _HALVINGS = 14
+#: Share of a face's range of parameters below which a zone is so small that its area is not integrated.
+_CRUMB = 2e-4
 #: Nodes at which it is looked first whether a zone is deep.
 _FIRST = 500
 
@@ -155,12 +158,26 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     found = contours(values, lines, high, _HALVINGS)
     progress.check()
     zones = [face.trimmed(loops) for loops in outer_with_holes(split(face.outline, found)[0])]
-    small, large = _partition_by([(zone, zone.area) for zone in zones],
+    small, large = _partition_by(list(zip(zones, _areas(face, zones), strict=True)),
                                  lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
     told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
     if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
         told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
     return tuple(sorted(told, key=lambda zone: -zone.area))
+
+
+def _areas(face: Face, zones: Sequence[Face]) -> list[float]:
+    """Areas of zones of a face, mm^2: those of crumbs from the mean area per parameter along their borders."""
+    if not zones:
+        return []
+    sizes = [abs(signed_area(zone.trims[0])) - sum(abs(signed_area(hole)) for hole in zone.trims[1:]) for zone in zones]
+    u0, u1, v0, v1 = face.bounds
+    d = face.evaluate(np.concatenate([zone.trims[0] for zone in zones]))
+    first = np.cumsum([0, *(len(zone.trims[0]) for zone in zones[:-1])])
+    counts = np.diff([*first, len(d.su)])
+    density = np.add.reduceat(np.linalg.norm(np.cross(d.su, d.sv), axis=1), first) / counts
+    return [float(size * here) if size <= _CRUMB * (u1 - u0) * (v1 - v0) else zone.area
+            for zone, size, here in zip(zones, sizes, density, strict=True)]
 
 
 def undercut(zones: Sequence[Zone]) -> float:
