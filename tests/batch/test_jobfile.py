@@ -53,20 +53,20 @@ def test_defaults_hold_for_all_jobs_and_files_are_meant_from_the_job_files_folde
     assert one.spec.numbers == (1, (3, 4), 7) and one.spec.regions == "auto"
     assert one.spec.place == pytest.approx([1, -2.5, 3]) and one.machine is not None
     assert one.own["timeout"] == 60 and one.own["verify"] and two.own["memory"] == 2000
-    assert two.tool.radius == 3 and two.tool.stickout == 40 and np.shape(two.tool.holder) == (2, 2)
+    assert two.tools[0].radius == 3 and two.tools[0].stickout == 40 and np.shape(two.tools[0].holder) == (2, 2)
     task = two.task()
     assert task.part.content == STEP.encode() and [body.content for body in task.obstacles] == [(STEP + "b").encode()]
-    assert tool_document(task.tool) == tool_document(two.tool)
+    assert tool_document(task.tools[0]) == tool_document(two.tools[0])
 
 
 @pytest.mark.parametrize("text, said", [
     ("", "no jobs"), ("[[jobs]]", "job 1: there is no 'part'"), ("jobs = 3", "each job a table"),
-    ('[[jobs]]\npart="a.step"', "no 'tool'"), ("[[jobs", "not valid TOML"), ("[job]\nx=1", "unknown 'job'"),
+    ('[[jobs]]\npart="a.step"', "no 'scallop'"), ("[[jobs", "not valid TOML"), ("[job]\nx=1", "unknown 'job'"),
     ("[defaults]\ncolour=1", r"\[defaults\] has 'colour'"), ('[defaults]\nname="x"', "'name', which is each job's own"),
     ("{scallop}\ncolour=1", r"job 1: unknown 'colour': use name, part, tool"),
     ('{scallop}\nname="two"\ntoolpath=1', r"job 1 \(two\): unknown 'toolpath'"),
     ('[[jobs]]\npart="a.step"\ntool="torus:12x7"\nscallop=0.1', "corner radius is 7"),
-    ('[[jobs]]\npart="a.step"\ntool="drill:3"\nscallop=0.1', "nor one of the library"),
+    ('[[jobs]]\npart="a.step"\ntool="drill:3"\nscallop=0.1', "nor one of the tools"),
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop="fine"', "scallop is 'fine': give a finite number"),
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop=true', "scallop is True"),
     ('[[jobs]]\npart="a.step"\ntool="ball:8"\nscallop=-1', "scallop is -1"),
@@ -90,6 +90,45 @@ def test_a_wrong_job_is_refused_in_a_sentence(here: Path, text: str, said: str) 
     with pytest.raises(InvalidInput, match=said) as caught:
         read(here, text.replace("{scallop}", good))
     assert "\n" not in str(caught.value)
+
+
+def test_a_rack_is_several_tools_a_library_or_both_and_the_general_rack_where_nothing_is_named(here: Path) -> None:
+    (here / "rack.toml").write_text('[[tool]]\nkind = "ball"\ndiameter = 6\n[[tool]]\nkind = "ball"\ndiameter = 3\n')
+    some, library, both, general = read(here, """
+        [defaults]
+        part = "a.step"
+        scallop = 0.02
+        [[jobs]]
+        name = "some"
+        tool = ["ball:8", "ball:4"]
+        [[jobs]]
+        name = "library"
+        tools = "rack.toml"
+        [[jobs]]
+        name = "both"
+        tool = "torus:12x1"
+        tools = "rack.toml"
+        feedrate = 700
+        [[jobs]]
+        name = "general"
+        """)
+    radii = [[tool.radius for tool in job.tools] for job in (some, library, both)]
+    assert radii == [[4, 2], [3, 1.5], [6, 3, 1.5]]
+    assert len(general.tools) > 10 and len({job.key for job in (some, library, both, general)}) == 4
+    options = [job.task().options for job in (some, both)]
+    assert [(one["feedrate"], one["spindle"], one["objective"]) for one in options] == [(None, None, None),
+                                                                                       (700.0, None, None)]
+
+
+@pytest.mark.parametrize("more, said", [
+    ({"tool": []}, "the rack is empty"), ({"tool": [3]}, "tool is 3: give a text, a Tool, or a list"),
+    ({"tools": "general-rack", "stickout": 40}, "a holder or stick-out is given beside several tools"),
+    ({"tools": "general-rack", "regions": 2}, "regions is planned with one tool and several are given"),
+    ({"tool": ["ball:8", "ball:4"], "compare": True}, "a comparison is planned with one tool"),
+])
+def test_what_a_rack_cannot_do_ends_the_batch_before_it_begins(here: Path, more: dict[str, Any], said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        read_jobs([{"name": "x", "part": here / "a.step", "scallop": 0.1, **more}])
 
 
 def test_a_job_file_that_is_not_there(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
 from os import PathLike
@@ -15,7 +15,9 @@ from toolaxis import __version__
 from toolaxis.batch.task import BatchTask, PartBytes
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
+from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
 from toolaxis.job.inputs.spec import Spec
+from toolaxis.job.inputs.tool_library import GENERAL_RACK, load_library
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
@@ -34,8 +36,10 @@ _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
+#: What tools have of their own, or goes by how many there are, unless a job says it.
+_OF_TOOL = ("objective", "feedrate", "spindle")
 #: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
-KEYS = ("name", "part", "tool", "machine", "obstacles", *_INPUTS, *_ASKED, *_OWN)
+KEYS = ("name", "part", "tool", "tools", "machine", "obstacles", *_INPUTS, *_ASKED, *_OWN)
 _NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
 
 
@@ -49,19 +53,21 @@ class CheckedJob:
         Also that of its folder.
     spec : Spec
         Paths are those that were given, from the job file's folder.
-    tool : Tool
+    tools : tuple of Tool
+        One, or a rack.
     machine : Machine or None
     bodies : tuple
         The part, then the obstacles: paths, or what `toolaxis.load` made of objects.
     own : dict
-        compare, strategy, roughness (micrometres, or None), verify, pictures, timeout and memory.
+        compare, strategy, roughness (micrometres, or None), verify, pictures, timeout and memory; objective, feedrate
+        and spindle where they are given, else None: tools of a rack have rates of their own.
     key : str
         SHA-256 of all that the plan depends on: the same for the same plan, another one for another.
     """
 
     name: str
     spec: Spec
-    tool: Tool
+    tools: tuple[Tool, ...]
     machine: Machine | None
     bodies: tuple[Any, ...]
     own: dict[str, Any]
@@ -76,14 +82,15 @@ class CheckedJob:
             When a file cannot be read any more, or is another one than when the batch began.
         """
         part, *obstacles = (_source(body) for body in self.bodies)
-        if _key(self.spec, self.tool, self.machine, self.own, (part, *obstacles)) != self.key:
+        if _key(self.spec, self.tools, self.machine, self.own, (part, *obstacles)) != self.key:
             raise InvalidInput(f"{part.name}: a file of the job was changed while the batch ran: run it again")
         inputs = self.spec.inputs
         options = {**{name: getattr(inputs, name) for name in _INPUTS if name != "scallop"},
                    "scallop": inputs.scallop, "faces": self.spec.numbers, "regions": self.spec.regions,
                    "orientations": self.spec.orientations, "offset": self.spec.place, "compare": self.own["compare"],
-                   "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"])}
-        return BatchTask(self.name, self.key, part, tuple(obstacles), self.tool, self.machine, options,
+                   "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"]),
+                   **{name: self.own[name] for name in _OF_TOOL}}
+        return BatchTask(self.name, self.key, part, tuple(obstacles), self.tools, self.machine, options,
                          self.own["verify"], self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
 
 
@@ -94,7 +101,8 @@ def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[
     ----------
     jobs : path or iterable of mappings
         A TOML file with [[jobs]] and, if need be, [defaults] for all of them; or the jobs themselves, whose part may be
-        anything that `toolaxis.load` takes and whose tool may be a Tool.  Paths in a file are meant from its folder.
+        anything that `toolaxis.load` takes and whose tool may be a Tool, or several.  Paths in a file are meant from
+        its folder.  A job without a tool has the general rack.
 
     Returns
     -------
@@ -155,9 +163,9 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     unknown = sorted(set(row) - set(KEYS))
     if unknown:
         raise InvalidInput(f"unknown {unknown[0]!r}: use {', '.join(KEYS)}")
-    for name in ("part", "tool", "scallop"):
+    for name in ("part", "scallop"):
         if name not in row:
-            raise InvalidInput(f"there is no {name!r}: each job needs a part, a tool and a scallop")
+            raise InvalidInput(f"there is no {name!r}: each job needs a part and a scallop")
     obstacles = row.get("obstacles", ())
     bodies = tuple(_body(body, folder) for body in
                    (row["part"], *(obstacles if isinstance(obstacles, list | tuple) else (obstacles,))))
@@ -169,21 +177,39 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
         values["holder"] = _file_beside(values["holder"], folder)
     machine = row.get("machine") or None
     machine = load_machine(_file_beside(machine, folder)) if isinstance(machine, str) else machine
-    tool = row["tool"]
-    spec = Spec(_title(bodies[0]), tool.name if isinstance(tool, Tool)
-                else _file_beside(_value("tool", tool, str), folder),
+    named = _sources(row, folder)
+    words = " ".join(one.name if isinstance(one, Tool) else one for one in named)
+    spec = Spec(_title(bodies[0]), words or GENERAL_RACK,
                 PlanInputs(**{name: values[name] for name in _INPUTS if name in values}),
                 obstacles=tuple(map(_title, bodies[1:])), machine="" if machine is None else machine.name,
                 **{name: values[name] for name in _ASKED if name in values})
-    tool = _tool(tool, spec)
+    tools = _tools(named, "tools" in row, spec)
     _check_rest(spec, machine)
     own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "timeout": None, "memory": None,
            "strategy": INDEXED, "roughness": None,
-           **{name: values[name] for name in _OWN if name in values}}
-    check_strategy(own["strategy"], Asked(tool, machine, spec.inputs.method, spec.inputs.objective,
-                                          _in_mm(own["roughness"]), spec.orientations, passes=spec.inputs.passes))
-    key = _key(spec, tool, machine, own, tuple(map(_source, bodies)))
-    return CheckedJob(_name(row, bodies[0]), spec, tool, machine, bodies, own, key)
+           **{name: values[name] for name in _OWN if name in values}, **{name: values.get(name) for name in _OF_TOOL}}
+    chosen = check_strategy(own["strategy"], Asked(
+        tools[0], machine, spec.inputs.method, spec.inputs.objective, _in_mm(own["roughness"]), spec.orientations,
+        passes=spec.inputs.passes))
+    if len(tools) > 1:
+        check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions is not None,
+                                     spec.orientations is not None, compare=own["compare"]))
+    key = _key(spec, tools, machine, own, tuple(map(_source, bodies)))
+    return CheckedJob(_name(row, bodies[0]), spec, tools, machine, bodies, own, key)
+
+
+def _sources(row: Mapping[str, Any], folder: Path) -> list[Any]:
+    """What a job names of tools and libraries, files from its folder; nothing where it names none."""
+    found: list[Any] = []
+    for name in ("tool", "tools"):
+        given = row.get(name, [])
+        for one in given if isinstance(given, list | tuple) else [given]:
+            if not isinstance(one, Tool | str):
+                raise InvalidInput(f"{name} is {one!r}: give a text, a Tool, or a list of them")
+            found.append(one if isinstance(one, Tool) else _beside(one, folder))
+    if not found and any(name in row for name in ("tool", "tools")):
+        raise InvalidInput("the rack is empty: name at least one tool, library or folder")
+    return found
 
 
 def _in_mm(roughness: float | None) -> float | None:
@@ -201,13 +227,19 @@ def _check_rest(spec: Spec, machine: Machine | None) -> None:
         raise InvalidInput("a place of the part on the table is given without a machine: name the machine too")
 
 
-def _tool(tool: Any, spec: Spec) -> Tool:
-    if not isinstance(tool, Tool):
-        return spec.resolved_tool()
+def _tools(named: Sequence[Any], of_library: bool, spec: Spec) -> tuple[Tool, ...]:
+    """The tools that a job names; the general rack where it names none."""
     if spec.holder or spec.stickout is not None:
-        raise InvalidInput("the tool is a Tool, which has its own holder and stick-out: leave them out")
-    spec.inputs.check_tool(tool)
-    return tool
+        if of_library or len(named) != 1:
+            raise InvalidInput("a holder or stick-out is given beside several tools: let each have its own, and leave "
+                               "them out")
+        if isinstance(named[0], Tool):
+            raise InvalidInput("the tool is a Tool, which has its own holder and stick-out: leave them out")
+        return (spec.resolved_tool(),)
+    found = load_library(list(named) or None).tools
+    if len(found) == 1:
+        spec.inputs.check_tool(found[0])
+    return found
 
 
 def _body(given: Any, folder: Path) -> Any:
@@ -222,6 +254,12 @@ def _body(given: Any, folder: Path) -> Any:
 
 def _title(body: Any) -> str:
     return str(body) if isinstance(body, Path) else str(body.source)
+
+
+def _beside(text: str, folder: Path) -> str:
+    """A file or folder beside the job file where there is one of that name, else the text as it is."""
+    path = folder / text
+    return str(path) if text and path.exists() else text
 
 
 def _file_beside(text: str, folder: Path) -> str:
@@ -278,10 +316,11 @@ def _source(body: Any) -> PartBytes:
     return PartBytes(body.source, content, hashlib.sha256(content).hexdigest(), document=True)
 
 
-def _key(spec: Spec, tool: Tool, machine: Machine | None, own: Mapping[str, Any],
+def _key(spec: Spec, tools: Sequence[Tool], machine: Machine | None, own: Mapping[str, Any],
          sources: tuple[PartBytes, ...]) -> str:
     asked = {**{name: getattr(spec, name) for name in ("faces", "regions", "orientations", "offset")},
-             "inputs": asdict(spec.inputs), "tool": tool_document(tool),
+             "inputs": asdict(spec.inputs), "tools": [tool_document(tool) for tool in tools],
+             **{name: own[name] for name in _OF_TOOL},
              "machine": "" if machine is None else machine_to_toml(machine),
              "sources": [source.sha256 for source in sources], "version": __version__,
              **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")},

@@ -90,7 +90,7 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
     part, *obstacles = (_part(source, scratch, known) for source in (task.part, *task.obstacles))
     if task.memory is not None:  # once the parts are read: what their kernel takes is looked at from outside
         resource.setrlimit(resource.RLIMIT_DATA, (int(task.memory * MEGABYTE),) * 2)
-    made = plan(part, task.tool, machine=task.machine, obstacles=obstacles or None, workers=1, **task.options)
+    made = plan(part, task.tools, machine=task.machine, obstacles=obstacles or None, workers=1, **task.options)
     if made.operations and all(op.orientation.reasons[:1] and op.orientation.reasons[0].startswith(OUT_OF_MEMORY)
                                for op in made.operations):
         raise MemoryError  # nothing is lost with the plan, and the next run tries it again

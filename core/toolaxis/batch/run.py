@@ -202,7 +202,7 @@ class _Run:
 
 def _row(job: CheckedJob, answer: BatchAnswer | None = None) -> JobRow:
     spec = job.spec
-    first = (job.name, spec.part, job.tool.name, spec.machine, spec.inputs.scallop)
+    first = (job.name, spec.part, job.spec.tool, spec.machine, spec.inputs.scallop)
     if answer is None:
         return JobRow(*first)
     return JobRow(*first, answer.outcome, answer.cause, answer.reason, answer.figures,

@@ -42,7 +42,8 @@ class BatchTask:
         Of the job.
     part : PartBytes
     obstacles : tuple of PartBytes
-    tool : Tool
+    tools : tuple of Tool
+        One, or a rack.
     machine : Machine or None
     options : dict
         Keyword arguments of `toolaxis.plan`.
@@ -60,7 +61,7 @@ class BatchTask:
     key: str
     part: PartBytes
     obstacles: tuple[PartBytes, ...]
-    tool: Tool
+    tools: tuple[Tool, ...]
     machine: Machine | None
     options: dict[str, Any]
     verify: bool

@@ -10,5 +10,7 @@ DIRECTIONS = ("zigzag", "climb", "conventional")
 ISO, PLANES, FIELD, AUTO = "iso", "planes", "scallop", "auto"
 PATTERNS = (ISO, PLANES, FIELD)
 PASSES = (*PATTERNS, AUTO)
+#: Methods under which a face that no axis reaches whole is divided; several tools are planned with one of them.
+DIVIDED = ("sphere", "sectors")
 #: What is planned with unless given: scallop height, mm, feed rate, mm/min, and spindle speed, rev/min.
 SCALLOP, FEEDRATE, SPINDLE = 0.02, 1000.0, 10000.0

@@ -16,8 +16,9 @@ Bools = NDArray[np.bool_]
 
 #: Places along each parameter, and pieces of the longest loop, from which a point is looked for.
 _GRID, _PIECES = 24, 192
-#: Newton steps, what is exact enough and the longest step, as shares of the parameter range.
-_ITERATIONS, _EXACT, _FAR = 30, 1e-13, 0.25
+#: Newton steps, the step after which the next one is below rounding, and the longest step, as shares of the parameter
+#: range.
+_ITERATIONS, _LAST, _FAR = 30, 1e-8, 0.25
 #: Ends of a parameter range that lie nearer to each other than this share of the face's diagonal are the same.
 _SAME = 1e-6
 
@@ -123,7 +124,7 @@ class SeenFace:
             size = (np.abs(move) / span).max(axis=1)
             move *= np.minimum(1.0, _FAR / np.maximum(size, np.finfo(float).tiny))[:, None]
             uv[todo] = self._wrap(uv[todo] + move, low)
-            todo = todo[size > _EXACT]
+            todo = todo[size > _LAST]
             if not len(todo):
                 break
         return uv

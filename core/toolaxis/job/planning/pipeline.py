@@ -13,13 +13,14 @@ from toolaxis.cad.load import load
 from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
+from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
 from toolaxis.job.inputs.spec import choose_faces, with_joined, with_rings
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.parallel import check_workers
-from toolaxis.job.planning.planner import DIVIDED, PlanningJob, went_on
+from toolaxis.job.planning.planner import PlanningJob, went_on
 from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.rack_blades import plan_blades_with_rack
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
@@ -176,7 +177,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     inputs.check_tool(cutter)
     loaded, asked, pattern = load(part), faces is not None, None
     if len(rack.tools) > 1:
-        _check_for_rack(chosen.moves, method, regions, orientations, given, compare)
+        check_rack_inputs(RackInputs(method, chosen.moves, regions is not None, orientations is not None, bool(given),
+                                     compare))
         if not asked:
             pattern = _find_blades(loaded, progress)
             faces = "skins" if pattern is None else None
@@ -224,16 +226,6 @@ def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
     taken = {one.number for one in tools}
     free = (number for number in count(1) if number not in taken)
     return tuple(one if one.number else replace(one, number=next(free)) for one in tools)
-
-
-def _check_for_rack(moves: bool, method: str, regions: Any, orientations: Any, given: Any, compare: bool) -> None:
-    """Refuse what is planned with one tool only."""
-    asked = {"a moving axis": moves, f"the method {method}": not moves and method not in DIVIDED,
-             "regions": regions is not None, "orientations": orientations is not None,
-             "a division by hand": bool(given), "a comparison": compare}
-    for name, is_asked in asked.items():
-        if is_asked:
-            raise InvalidInput(f"{name} is planned with one tool and several are given: name one tool")
 
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:

@@ -38,7 +38,7 @@ from toolaxis.partition.face_division import MOST, Divider, Regions
 from toolaxis.partition.partition import check_count
 from toolaxis.partition.partition import regions as regions_of
 from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
-from toolaxis.plan.choices import FEEDS, ISO
+from toolaxis.plan.choices import DIVIDED, FEEDS, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Option, Plan, PlanInputs
@@ -62,8 +62,6 @@ from toolaxis.work import MOVING, Budget, OutOfWork, limit_work
 
 Array = NDArray[np.float64]
 
-#: Methods under which a face that no axis reaches whole is divided.
-DIVIDED = ("sphere", "sectors")
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
 #: Share of the limit of work for a sub-surface, by its share of the area of a plan with several tools, and at least.
