@@ -40,6 +40,8 @@ _STEPS, _ON_THE_WAY = 60, 17
 _PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
 #: How many times finer cells are tried where some of those may turn over.
 _FINER = (2, 4)
+#: Cells that are tried at most, so that it takes less than a second.
+_MOST_CELLS = 20_000
 
 
 class TurningCells(NamedTuple):
@@ -95,7 +97,7 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     """
     found = _NetCells.of(data, 1)
     for finer in _FINER:
-        if not found.turning.any():
+        if not found.turning.any() or found.turning.size * finer**2 > _MOST_CELLS:
             break
         closer = _NetCells.of(data, finer)
         if not closer.turning.any():

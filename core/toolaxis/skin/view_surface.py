@@ -76,10 +76,10 @@ class ViewSurface(NurbsSurface):
     @cached_property
     def turning_cells(self) -> TurningCells:  # type: ignore[override]
         """Where Su x Sv may turn over: a height over the plane does not, unless one of the faces does."""
-        found = find_turning_cells(self.data)
         if any(face.surface.turning_cells.turning.any() for face in self.members):
-            return found
-        return found._replace(turning=np.zeros_like(found.turning))
+            return find_turning_cells(self.data)
+        lines_u, lines_v = (np.array(ends) for ends in self.domain)
+        return TurningCells(lines_u, lines_v, np.zeros((1, 1), dtype=bool))
 
     @cached_property
     def joins(self) -> tuple[Array, ...]:
