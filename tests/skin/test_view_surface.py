@@ -14,6 +14,7 @@ from toolaxis.numeric.polygons import inside, signed_area, slabs
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.part import Part
+from toolaxis.skin import view_surface
 from toolaxis.skin.find import find_skins
 from toolaxis.skin.join import join
 from toolaxis.skin.pieces import own_pieces
@@ -146,3 +147,11 @@ def test_a_skin_is_planned_as_one_face_judged_and_read_again(quilt: Part, whole:
     assert all(map(np.array_equal, again.face.trims, op.face.trims))
     deep = replace(op.path, cl=op.path.cl - 0.05 * op.path.axis) if op.path else None
     assert not ta.verify(replace(made, operations=(replace(op, path=deep),))).passed
+
+
+def test_skins_of_faces_without_folds_have_none_and_look_for_none(quilt: Part, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: with thousands of cells it took half a minute to learn that a height over a plane does not run back."""
+    skin = join(quilt, (1, 2, 3)).faces[0]
+    assert not any(face.surface.turning_cells.turning.any() for face in skin.own_faces)
+    monkeypatch.setattr(view_surface, "find_turning_cells", lambda data: pytest.fail("cells are looked for"))
+    assert not skin.surface.turning_cells.turning.any() and not len(skin.folds(skin.grid(5, 5)).rows)

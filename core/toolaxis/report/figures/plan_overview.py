@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 _MANY = 8
 #: How far rests are lifted towards the viewer for each larger tool before, pixels.
 _LIFT = 3
+#: Share of a face that its sub-surfaces cover from which on the face itself is not drawn.
+_COVERED = 0.995
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
@@ -50,10 +52,14 @@ def overview_picture(plan: Plan) -> Figure:
                       for op, root in zip(operations, roots, strict=True)])
     seen = camera(*view_onto(middle), np.concatenate([corners, roots, heads]), pixels=1100)
     canvas = Canvas(seen)
-    whole = {op.face.number for op in plan.operations}
+    covered: dict[int, float] = {}
+    for op in plan.operations:
+        covered[op.face.number] = covered.get(op.face.number, 0.0) + (0.0 if op.rest_of else op.face.area)
     for face in plan.part.faces:
-        if face.number not in whole:
-            canvas.splat(*face_splats(face, seen), _PART)
+        if face.number not in covered or covered[face.number] < _COVERED * face.area:
+            points, ways = face_splats(face, seen)
+            below = _LIFT * seen.pixel if face.number in covered else 0.0  # what no sub-surface covers shows
+            canvas.splat(points - below * seen.back, ways, _PART)
     tools = plan.used_tools if len(plan.used_tools) > 1 else ()
     chosen = [tools.index(op.tool) if op.tool in tools else 0 for op in operations] if tools else colour_map(operations)
     colours = {op.number: COLOURS[k % len(COLOURS)] for op, k in zip(operations, chosen, strict=True)}
@@ -77,7 +83,8 @@ def overview_picture(plan: Plan) -> Figure:
         if op.done or outcome_of([op], plan.blades) == "incomplete":
             _arrow(ax, op, (foot, tip), at_feet)
     done = sum(op.done for op in plan.operations)
-    ax.set_title(f"{plan.named_tools}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
+    tool_words = f"{len(tools)} tools" if tools else plan.named_tools
+    ax.set_title(f"{tool_words}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
                  f"sub-surfaces, different axes {plan.orientations}, cutting length {plan.length:.0f} mm", fontsize=10)
     named = [Patch(facecolor=COLOURS[k % len(COLOURS)], label=tool.shop_name) for k, tool in enumerate(tools)]
     if any(op.zones or not op.done for op in operations):

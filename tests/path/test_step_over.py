@@ -1,0 +1,87 @@
+"""Where the next pass goes: past jumps of the strip width, and not on for ever where strips are next to nothing."""
+
+from itertools import count
+
+import numpy as np
+import pytest
+
+from toolaxis.path.parametrization import Cut, IsoChart, columns
+from toolaxis.path.pass_count import measure
+from toolaxis.path.step_over import _root, _Strips, lines, space
+from toolaxis.path.trim_intervals import table
+from toolaxis.tools.tool import Tool
+
+from .conftest import flat, holed, leaning, wavy  # type: ignore[import-not-found]
+
+TORUS = Tool.torus(12, 1)
+
+
+@pytest.mark.parametrize("jump", [0.3, 0.31, 0.777])
+def test_a_slack_that_jumps_past_zero_ends_on_its_positive_side(jump: float) -> None:
+    """Found: the place behind the jump was taken, whose strip does not reach back."""
+    asked = count()
+
+    def _slack(step: float) -> float:
+        next(asked)
+        return 1.0 - step if step < jump else -0.5 - step
+
+    place = _root(_slack, 0.1, -1.0, 1e-6)
+    assert jump - 1e-6 <= place < jump
+    assert next(asked) < 40
+
+
+def test_a_smooth_slack_is_solved_in_a_few_looks() -> None:
+    asked = count()
+
+    def _slack(step: float) -> float:
+        next(asked)
+        return float(np.cos(step) - 0.9 * step)
+
+    place = _root(_slack, 0.5, -1.0, 1e-6)
+    assert 0 <= np.cos(place) - 0.9 * place <= 1e-6 and next(asked) < 12
+
+
+def test_strips_are_measured_only_where_something_is_to_be_covered() -> None:
+    """A triangle, on whose short side few lines have anything left: passes there look at few lines."""
+    face = flat(40.0, 30.0).trimmed((np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),))
+    chart, cut = IsoChart(face, "u"), Cut(TORUS, leaning(15.0), 0.02, 0.0)
+    across = lines(chart, cut)
+    strips = _Strips(chart, cut, across)
+    front = np.where(across.along < 0.25, 0.9, np.inf)
+    near = strips.watch(front, 0.9)
+    assert near.sum() == (across.along < 0.25).sum()
+    measured = strips.at(0.9)[near]
+    strips.watch(np.zeros(len(across.along)), 0.0)
+    assert measured == pytest.approx(strips.at(0.9)[near], rel=1e-12)
+    material = table(columns(chart, across.along), len(across.along))
+    made = space(chart, cut, across, material)
+    zero = (made.halves == 0).all(axis=2)
+    assert not zero[0].any() and zero[-1].mean() > 0.5
+    used = len(made.steps) - made.unused
+    assert used == pytest.approx(measure(chart, cut).passes, abs=1.0)
+
+
+def test_a_capped_count_is_as_good_on_a_face_with_holes_and_looks_at_fewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    from toolaxis.path import pass_count
+
+    face, cut = holed(wavy(3)), Cut(Tool.ball(8), leaning(10.0), 0.02, 0.0)
+    looked, whole = [0], pass_count._narrowest
+
+    def _narrowest(chart, cut, beyond, steps):  # type: ignore[no-untyped-def]
+        looked[0] += len(steps)
+        return whole(chart, cut, beyond, steps)
+
+    monkeypatch.setattr(pass_count, "_narrowest", _narrowest)
+    exact = measure(IsoChart(face, "u"), cut, accuracy=1e-6)
+    most, looked[0] = looked[0], 0
+    capped = measure(IsoChart(face, "u"), cut, accuracy=1e-6, most=200)
+    assert np.isfinite(exact.length) and looked[0] < most / 2
+    assert capped.length == pytest.approx(exact.length, rel=3e-3)
+
+
+def test_a_ball_counts_the_same_under_every_axis() -> None:
+    """What the search takes for granted: it counts once for a ball end."""
+    face, ball = wavy(5), Tool.ball(8)
+    lengths = [measure(IsoChart(face, "v"), Cut(ball, leaning(lead, turn), 0.02, 0.0)).length
+               for lead, turn in ((2.0, 0.0), (25.0, 60.0), (40.0, 200.0))]
+    assert lengths == pytest.approx([lengths[0]] * 3, rel=1e-3)
