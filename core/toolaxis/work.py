@@ -4,7 +4,7 @@ What is counted are bounds taken, each of one piece of a tool over one cell of a
 What is kept from before, such as the cells of faces, is not counted: it may or may not be there.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
@@ -15,6 +15,10 @@ from toolaxis.errors import ToolAxisError
 UNIT, LIMIT = 1000, 100_000.0
 #: How many times that much is allowed to an axis that moves: no part of its search is worth anything by itself.
 MOVING = 10.0
+
+
+#: How messages call a limit that ended a search.
+_LIMIT_WORDS = "the work limit of"
 
 
 class OutOfWork(ToolAxisError):
@@ -60,7 +64,7 @@ class Budget:
         found : bool
             Whether the search had found an axis by then.
         """
-        limit = f"the work limit of {self.limit:,.10g}"
+        limit = f"{_LIMIT_WORDS} {self.limit:,.10g}"
         if found:
             return f"search stopped at {limit}: a better axis may exist (raise --limit)"
         return f"no axis found within {limit}: raise --limit, use a coarser scallop or another tool"
@@ -76,6 +80,16 @@ class Budget:
 
 
 _SPENT: ContextVar[Budget | None] = ContextVar("toolaxis_work", default=None)
+
+
+def is_out_of_work(reasons: Iterable[str]) -> bool:
+    """Whether reasons tell that the limit of work ended a search.
+
+    Parameters
+    ----------
+    reasons : iterable of str
+    """
+    return any(_LIMIT_WORDS in why for why in reasons)
 
 
 @contextmanager

@@ -219,6 +219,13 @@ def test_what_a_rack_cannot_do_is_refused_in_one_sentence(given: dict[str, objec
         ta.plan(**{"part": trough(), "tool": TOOLS, "scallop": SCALLOP, **given})  # type: ignore[arg-type]
 
 
+def test_no_more_tools_are_used_than_are_allowed() -> None:
+    made = ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1, most_tools=1)
+    assert len(made.used_tools) == 1 and len(made.tools) == 2
+    with pytest.raises(InvalidInput, match="most_tools is 0: it must be a whole number above zero"):
+        ta.plan(walled(), TOOLS, SCALLOP, faces=[1], most_tools=0)
+
+
 def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
     made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
     assert [tool.name for tool in made.tools] == ["ball:10"]

@@ -35,6 +35,29 @@ def test_no_other_choice_is_cheaper(seed: int, change: float) -> None:
     assert found.seconds == pytest.approx(cost - sum(one.charge for one in found.chains), rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("most", [1, 2, 3])
+def test_no_other_choice_of_so_many_tools_is_cheaper(seed: int, most: int) -> None:
+    chains = [chains_of(prices(np.random.default_rng([seed, k]), 4), 2.0, most=2) for k in range(3)]
+    found = choose_tools(chains, 3.0, most)
+    assert len(found.tools) <= most
+    cost = sum(one.cost for one in found.chains) + 3.0 * len(found.tools)
+    ways = [some for some in itertools.product(*chains) if len({tool for one in some for tool in one.tools}) <= most]
+    least = min((sum(one.cost for one in some) + 3.0 * len({tool for one in some for tool in one.tools})
+                 for some in ways), default=np.inf)
+    if all(one.tools for one in found.chains):
+        assert cost == pytest.approx(least, rel=1e-9)
+    else:
+        assert cost <= least
+
+
+def test_a_face_that_no_allowed_tool_reaches_is_left_alone() -> None:
+    seconds = np.array([[[1.0, 1.0]], [[np.inf, np.inf]]]), np.array([[[np.inf, np.inf]], [[5.0, 5.0]]])
+    chains = [chains_of(FacePrices(one, np.ones(2)), 0.0) for one in seconds]
+    found = choose_tools(chains, 1.0, 1)
+    assert found.tools == (1,) and [one.tools for one in found.chains] == [(), (1,)], "the dearer face is served"
+
+
 def test_one_tool_serves_all_where_changes_cost_more_than_they_save() -> None:
     quick_on_first = FacePrices(np.array([[[1.0, 1.0]], [[2.0, 2.0]]]), np.ones(2))
     only_small = FacePrices(np.array([[[np.inf, np.inf]], [[2.0, 2.0]]]), np.ones(2))

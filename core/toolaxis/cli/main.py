@@ -78,6 +78,7 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--tools", action="append", default=[], metavar="FILE|FOLDER|NAME",
                      help="tools to choose from: a TOML, .fctl, .csv or .json library, a folder of tool files, or a "
                           "name from resources/racks; may be repeated")
+    sub.add_argument("--most-tools", type=int, metavar="N", help="use at most N of the tools")
     sub.add_argument("--scallop", default=SCALLOP, type=float, metavar="MM",
                      help=f"greatest scallop height (default: {SCALLOP:g})")
     sub.add_argument("--tolerance", type=float, metavar="MM",

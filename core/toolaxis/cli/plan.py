@@ -58,7 +58,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
-                        progress=progress)
+                        most_tools=given.most_tools, progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
+from toolaxis.work import is_out_of_work
 
 Array = NDArray[np.float64]
 
@@ -69,7 +70,7 @@ def _place(op: Operation, face: Face, area: float) -> OpenPlace:
     points = face.evaluate(uv).point
     middle = points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))]
     hollow = float(face.curvature(uv).k1.max(initial=0.0))
-    limited = any("work limit" in why for why in op.orientation.reasons)
+    limited = is_out_of_work(op.orientation.reasons)
     return OpenPlace(op.face.label, area, middle, 1 / hollow if hollow > _FLAT else np.inf, limited)
 
 

@@ -149,7 +149,7 @@ def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _S
     return _Step(held[best], float(seconds[best]))
 
 
-def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float) -> ToolChoice:
+def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float, most: int | None = None) -> ToolChoice:
     """The chain of each face with which all faces take least time together, tool changes included.
 
     Parameters
@@ -158,6 +158,8 @@ def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float) -> ToolCh
         Of each face, from `chains_of`.
     change : float
         Time of a tool change, s.
+    most : int, optional
+        Greatest number of tools; faces that none of these reaches have an empty chain then.
 
     Notes
     -----
@@ -167,7 +169,8 @@ def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float) -> ToolCh
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import coo_array
 
-    rows = [(face, one) for face, some in enumerate(chains) for one in some]
+    rows = [(face, one) for face, some in enumerate(chains)
+            for one in (some if most is None else (*some, _nothing_of(some)))]
     tools = sorted({tool for _, one in rows for tool in one.tools})
     if not tools:
         return ToolChoice(tuple(some[0] for some in chains), (), 0.0, 0.0)
@@ -178,10 +181,18 @@ def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float) -> ToolCh
     entries = [(row, column, sign) for row, pair in enumerate(uses) for column, sign in zip(pair, (1, -1), strict=True)]
     line, column, value = (np.array(part) for part in zip(*entries, strict=True))
     opened = coo_array((value.astype(float), (line, column)), (len(uses), len(price)))
-    found = milp(price, integrality=np.ones(len(price)), bounds=Bounds(0, 1),
-                 constraints=[LinearConstraint(one_each, 1, 1), LinearConstraint(opened, -np.inf, 0)])
+    constraints = [LinearConstraint(one_each, 1, 1), LinearConstraint(opened, -np.inf, 0)]
+    if most is not None:
+        counted = np.append(np.zeros(count), np.ones(len(tools)))
+        constraints.append(LinearConstraint(counted[None], 0, most))
+    found = milp(price, integrality=np.ones(len(price)), bounds=Bounds(0, 1), constraints=constraints)
     picked = np.flatnonzero(found.x[:count] > 0.5)
     chosen = tuple(rows[k][1] for k in picked)
     used = tuple(sorted({tool for one in chosen for tool in one.tools}))
     seconds = sum(one.seconds for one in chosen) + change * len(used)
     return ToolChoice(chosen, used, float(seconds), float(max(found.mip_gap, 0.0)))
+
+
+def _nothing_of(some: Sequence[ToolChain]) -> ToolChain:
+    """The chain of a face that is left alone: dearer than any other one."""
+    return ToolChain((), 0.0, _DEARER * max(one.cost for one in some))

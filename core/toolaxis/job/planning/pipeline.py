@@ -60,7 +60,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          feedrate: float | None = None, spindle: float | None = None, tolerance: ToleranceLike = None,
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
-         compare: bool = False, limit: float = LIMIT, workers: int | None = None,
+         compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
@@ -138,6 +138,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     workers : int, optional
         Processes that plan sub-surfaces side by side, on Linux and outside FreeCAD; as many as there are cores unless
         given. The result is the same for any number.
+    most_tools : int, optional
+        Greatest number of tools that are used, where several are given.
     progress : Progress
 
     Returns
@@ -153,6 +155,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     UnsupportedGeometry
         When faces cannot be joined.
     """
+    if most_tools is not None and (isinstance(most_tools, bool) or not isinstance(most_tools, int) or most_tools < 1):
+        raise InvalidInput(f"most_tools is {most_tools!r}: it must be a whole number above zero")
     check_count(regions)
     check_count(orientations, "orientations")
     mounting, allowed = _machine(machine, limits, offset)
@@ -196,8 +200,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                       check_workers(workers), machine=mounting, division=given)
     if len(rack.tools) > 1:
         whole_part = None if pattern is None else replace(pattern, part=loaded)
-        return _order_operations(_plan_rack(job, rack.tools, choose_faces(loaded, numbers), whole_part, progress),
-                                 progress)
+        jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
+        made = _plan_rack(jobs, choose_faces(loaded, numbers), (whole_part, most_tools), progress)
+        return _order_operations(made, progress)
     whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
     return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
 
@@ -237,19 +242,20 @@ def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     return None
 
 
-def _plan_rack(job: PlanningJob, tools: Sequence[Tool], faces: Sequence[Face], pattern: Pattern | None,
+def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[Pattern | None, int | None],
                progress: Progress) -> Plan:
-    """The plan of a job with several tools."""
+    """The plan of a job with each of several tools: blade by blade where there is a pattern, with so many at most."""
+    pattern, most = asked
     with activate_progress(progress):
-        if job.workers > 1:
-            _in_cells(job, progress)
-        jobs = [replace(job, tool=tool, one_by_one=False, asked_area=sum(face.area for face in faces))
-                for tool in tools]
+        if jobs[0].workers > 1:
+            _in_cells(jobs[0], progress)
         try:
-            return RackPlanner(jobs).plan(faces, progress) if pattern is None else plan_blades_with_rack(
-                jobs, pattern, progress)
+            if pattern is not None:
+                return plan_blades_with_rack(jobs, pattern, most, progress)
+            area = sum(face.area for face in faces)
+            return RackPlanner([replace(job, asked_area=area) for job in jobs], most).plan(faces, progress)
         except Cancelled:
-            return replace(job.empty(), tools=tuple(tools))
+            return replace(jobs[0].empty(), tools=tuple(job.tool for job in jobs))
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:

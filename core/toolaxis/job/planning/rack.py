@@ -70,9 +70,12 @@ class RackPlanner:
     ----------
     jobs : list of PlanningJob
         The same job with each tool, in the order in which tools are used.
+    most : int or None
+        Greatest number of tools.
     """
 
     jobs: list[PlanningJob]
+    most: int | None = None
     _done: list[Operation] = field(default_factory=list)
     _left_by: dict[int, frozenset[int]] = field(default_factory=dict)
     _waiting: list[_Waiting] = field(default_factory=list)
@@ -123,12 +126,20 @@ class RackPlanner:
             raise Cancelled("cancelled by the user")
         self._done += [fail_face(1, whole[k], smallest, why) for k, why in found.faults.items()]
         screened, chains = [whole[k] for k in found.results], list(found.results.values())
-        choice = choose_tools(chains, CHANGE_SECONDS)
+        choice = choose_tools(chains, CHANGE_SECONDS, self.most)
         self._used = set(choice.tools)
+        if self.most is not None and not self._used:
+            self._used = {len(self.jobs) - 1}
+        allowed = self._allowed
         for face, chain in zip(screened, choice.chains, strict=True):
             # Where the screening sees no way, the smallest tool is asked: it tells why.
-            tool = chain.tools[0] if chain.tools else len(self.jobs) - 1
+            tool = chain.tools[0] if chain.tools else max(allowed)
             self._waiting.append(_Waiting(face, (), tool, in_pieces=0 < chain.first < WHOLE))
+
+    @property
+    def _allowed(self) -> set[int]:
+        """Numbers of the tools that may be used: all, or those that were chosen where their number is limited."""
+        return set(range(len(self.jobs))) if self.most is None or not self._used else set(self._used)
 
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan all that waits for a tool; False where the user stopped it."""
@@ -177,9 +188,10 @@ class RackPlanner:
             raise
         except Exception:  # what was left stays open, as it is told of the operation that left it
             return None
-        best = min(chains, key=lambda one: one.cost + CHANGE_SECONDS * len(set(one.tools) - self._used))
-        if not best.tools:
+        chains = tuple(one for one in chains if one.tools and set(one.tools) <= self._allowed)
+        if not chains:
             return None
+        best = min(chains, key=lambda one: one.cost + CHANGE_SECONDS * len(set(one.tools) - self._used))
         self._used |= set(best.tools)
         return best
 
@@ -193,7 +205,7 @@ class RackPlanner:
         if not lost:
             return
         apart = take_apart(part, [skin.number for skin in lost])
-        other = RackPlanner([replace(job, part=apart) for job in self.jobs])
+        other = RackPlanner([replace(self.jobs[k], part=apart) for k in sorted(self._allowed)])
         made = other.plan([apart.face(number) for skin in lost for number in skin.numbers], progress)
         if made.outcome == "cancelled":
             raise Cancelled("cancelled by the user")

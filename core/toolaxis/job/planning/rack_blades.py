@@ -14,7 +14,8 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 
 
-def plan_blades_with_rack(jobs: Sequence[PlanningJob], pattern: Pattern, progress: Progress) -> Plan:
+def plan_blades_with_rack(jobs: Sequence[PlanningJob], pattern: Pattern, most: int | None,
+                          progress: Progress) -> Plan:
     """The plan of a part with blades.
 
     Parameters
@@ -22,6 +23,8 @@ def plan_blades_with_rack(jobs: Sequence[PlanningJob], pattern: Pattern, progres
     jobs : sequence of PlanningJob
         The same job with each tool, in the order in which tools are used.
     pattern : Pattern
+    most : int or None
+        Greatest number of tools.
     progress : Progress
 
     Returns
@@ -32,12 +35,16 @@ def plan_blades_with_rack(jobs: Sequence[PlanningJob], pattern: Pattern, progres
     smallest = jobs[-1]
     share = group_blade_faces(pattern, smallest.tool, smallest.inputs.tolerance.cutter_clearance)
     apart = pattern.blades.apart(pattern.part, pattern.first[0].number)
-    first = _with_part(jobs, apart, (*share.divided, *share.whole)).plan((*share.divided, *share.whole), progress)
+    own = (*share.divided, *share.whole)
+    first = _with_part(jobs, apart, own, most).plan(own, progress)
+    used = first.used_tools
     first = with_refused(first, pattern, share)
     found = went_on(replace(first, part=pattern.part),
                     lambda plan: spread_out(pattern, plan, PlannerOfFaces(jobs), progress))
     if found.outcome != "cancelled" and pattern.rest:
-        found = append_operations(found, _with_part(jobs, pattern.part, pattern.rest).plan(pattern.rest, progress))
+        others = [job for job in jobs if job.tool in used] if most is not None and used else jobs
+        rest = _with_part(others, pattern.part, pattern.rest, most).plan(pattern.rest, progress)
+        found = append_operations(found, rest)
     found = _sort_by_tool(found)
     if found.outcome != "cancelled":
         found = replace(found, outcome=outcome_of_rack(found.operations))
@@ -53,7 +60,7 @@ def _sort_by_tool(plan: Plan) -> Plan:
     return replace(plan, operations=made, blades=None if plan.blades is None else plan.blades.renumbered(numbers))
 
 
-def _with_part(jobs: Sequence[PlanningJob], part: Part, faces: Sequence[Face]) -> RackPlanner:
+def _with_part(jobs: Sequence[PlanningJob], part: Part, faces: Sequence[Face], most: int | None) -> RackPlanner:
     """What plans some faces of a part."""
     area = sum(face.area for face in faces)
-    return RackPlanner([replace(job, part=part, asked_area=area) for job in jobs])
+    return RackPlanner([replace(job, part=part, asked_area=area) for job in jobs], most)

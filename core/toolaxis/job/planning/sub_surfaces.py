@@ -24,6 +24,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
+from toolaxis.work import is_out_of_work
 
 Array = NDArray[np.float64]
 
@@ -117,7 +118,9 @@ def shrink_refused(targets: Sequence[Target], operations: Sequence[Operation], w
     refused = []
     for k, piece in enumerate(division.pieces):
         op = made_of(targets[k], operations)
-        if op is not None and not op.done and not op.failed and piece.smaller:
+        if op is None or op.done or op.failed or not piece.smaller:
+            continue
+        if not is_out_of_work(op.orientation.reasons):  # a smaller one takes as much work
             refused.append(k)
     if not refused:
         return list(targets)
