@@ -12,6 +12,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.job.planning.planner import PlanningJob
+from toolaxis.job.planning.rack import _merge, _Waiting
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -97,6 +98,16 @@ def test_a_hollow_that_no_tool_fits_asks_for_a_smaller_ball() -> None:
     place = list_open_places(made)[0]
     assert place.radius == pytest.approx(9 / 3.2, rel=0.2) and abs(place.point[1] - 12) < 2
     assert what_closes(place, 5.0) == f"a ball end of {2 * place.radius:.2g} mm or less"
+
+
+def test_rests_wait_apart_from_what_no_tool_has_machined() -> None:
+    """Found: a piece that no axis reached counted as the rest of its neighbour, and was missing in the part's area."""
+    root, loop = walled().faces[0], np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5]])
+    some = [_Waiting(root, (loop,), 1), _Waiting(root, (loop + 0.1,), 1, frozenset({0})),
+            _Waiting(root, (loop + 0.2,), 1), _Waiting(root, (loop + 0.3,), 1, frozenset({2}))]
+    plain, rest = _merge(some)
+    assert not plain.left_by and len(plain.loops) == 2
+    assert rest.left_by == {0, 2} and len(rest.loops) == 2
 
 
 def test_the_judge_passes_each_operation_with_its_own_tool(planned: Plan) -> None:

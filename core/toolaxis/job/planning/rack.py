@@ -273,11 +273,15 @@ def outcome_of_rack(operations: Sequence[Operation]) -> str:
 
 
 def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
-    """What waits for a tool, that of one sub-surface together."""
-    found: dict[int, _Waiting] = {}
+    """What waits for a tool, that of one sub-surface together; rests apart from what no tool has machined yet.
+
+    Areas tell by that what is counted already.
+    """
+    found: dict[tuple[int, bool], _Waiting] = {}
     for one in some:
-        before = found.get(id(one.root))
-        found[id(one.root)] = one if before is None else replace(
+        key = id(one.root), bool(one.left_by)
+        before = found.get(key)
+        found[key] = one if before is None else replace(
             one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
             in_pieces=before.in_pieces or one.in_pieces)
     return list(found.values())
