@@ -108,7 +108,8 @@ FAULTS = (
     Fault(CORE + "cad/step/units.py", "    if number in above:\n        return f\"declares the length unit #{number}, "
           "which is defined by itself; {REMEDY}\"\n", "",
           ("cad/test_units.py", "cad/test_bad_files.py", "cad/test_malformed.py")),
-    Fault(CORE + "batch/jobfile.py", "\"inputs\": asdict(spec.inputs), \"tool\": tool_document(tool),",
+    Fault(CORE + "batch/jobfile.py", "\"inputs\": asdict(spec.inputs), \"tools\": [tool_document(tool) "
+          "for tool in tools],",
           "\"inputs\": asdict(spec.inputs),",
           ("batch/test_jobfile.py", "batch/test_journal.py", "batch/test_batch.py")),
     Fault(CORE + "cli/verify.py", "return 0 if passes(plan, verdict) else 1", "return 0",

@@ -35,7 +35,7 @@ def test_the_plan_of_a_patch_is_complete_and_passes(small_plan: Plan) -> None:
     verdict = ta.verify(small_plan)
     assert verdict.passed, verdict.reasons
     judged = verdict.operations[0]
-    assert judged.scallop_max <= 1.003 * 0.1 and judged.gouge_max <= judged.gouge_allowed == 0.01
+    assert judged.scallop_max <= 1.025 * 0.1 and judged.gouge_max <= judged.gouge_allowed == 0.01
     assert judged.clearance["holder"].distance >= found.clearance["holder"] - 0.01
 
 

@@ -188,7 +188,7 @@ class _Strips:
         self.measured: Array = np.empty((0, 2))
         self.halves: Array = np.empty((0, 2))
 
-    def watch(self, front: Array, step: float) -> Bools:
+    def watch_front(self, front: Array, step: float) -> Bools:
         """Measure from now on only where something is to be covered near a pass: on lines (m,) bool, and beside them.
 
         Parameters
@@ -198,13 +198,27 @@ class _Strips:
         step : float
             About where the pass will be.
         """
-        near = front <= max(step, float(front.min())) + self._far
+        near = np.asarray(front <= max(step, float(front.min())) + self._far)
+        self._watch(near)
+        return near
+
+    def watch_material(self, material: Array, step: float) -> None:
+        """Measure from now on where the face lies near a pass, covered or not.
+
+        Parameters
+        ----------
+        material : (m, k, 2) array
+        step : float
+        """
+        low, high = material[..., 0] - self._far, material[..., 1] + self._far
+        self._watch(np.asarray(((low <= step) & (high >= step)).any(axis=1)))
+
+    def _watch(self, near: Bools) -> None:
         needed = np.zeros(len(self.across.measured), dtype=bool)
-        needed[self.across.index[near]] = True
+        needed[self.across.index[near if near.any() else np.ones_like(near)]] = True
         needed[1:] |= needed[:-1]
         needed[:-1] |= needed[1:]
         self._needed, self._step = np.flatnonzero(needed), np.nan
-        return np.asarray(near)
 
     def at(self, step: float) -> Array:
         """Half widths (m, 2) at one step parameter, on all lines."""
@@ -285,11 +299,13 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
     while np.isfinite(front).any():
         active = np.isfinite(front)
         greedy, place = _next(strips, front, top, min(guess, s1))
+        strips.watch_material(material, place)
         half = strips.at(place)
         strips.check(active & (front <= place + half[:, 1]))
         unused = max(greedy - place, 0.0) / max(float(half.sum(axis=1)[active].min()), 1e-12 * (s1 - s0))
         if not steps and unused > 0:
             place = _only_place((max(place, s0), min(greedy, s1)), (greedy + place) / 2, material[active])
+            strips.watch_material(material, place)
         half = strips.at(place)
         strips.check_progress(place, steps)
         steps.append(place)
@@ -339,13 +355,14 @@ def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lin
     if len(steps) > 1:
         rate = np.clip((halves[-1][:, 0] - halves[-2][:, 0]) / (steps[-1] - steps[-2]), -0.5, 0.5)
     now, slope = across.spread(halves[-1][:, 0]), across.spread(rate)
-    return float(((front + now - slope * steps[-1]) / (1 - slope)).min())
+    places = (front + now - slope * steps[-1]) / (1 - slope)
+    return float(places[np.isfinite(places)].min()) if np.isfinite(places).any() else steps[-1]
 
 
 def _next(strips: _Strips, front: Array, top: Array, guess: float) -> tuple[float, float]:
     """Farthest place of the next pass, and where it is put: the same unless it is the last one."""
     active = np.isfinite(front)
-    near = strips.watch(front, guess)
+    near = strips.watch_front(front, guess)
 
     def slack(step: float) -> float:
         return float((front + strips.at(step)[:, 0] - step)[near].min())
