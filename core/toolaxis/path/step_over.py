@@ -34,7 +34,10 @@ _MOST_PASSES = 20_000
 #: How far from a pass strips on its lines may matter, in radii of the cutter.
 _NEAR = 4.0
 #: Places that are tried for a pass.
-_TRIED = 40
+_TRIED = 60
+#: How near both sides of a jump of the slack are looked at, in what a place may be off otherwise: so noise in the
+#: surface's numbers does not move a pass.
+_JUMP = 1e-3
 #: So many passes in a row that together do not get on by as many times this share of the scallop height are none.
 _STUCK, _LEAST = 20, 0.05
 #: Places that are tried for the only pass of a face.
@@ -150,7 +153,7 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
     """Place where a function of slope near `sign` vanishes, or jumps past zero, from the side on which it is positive.
     """
     place, value, slope = guess, function(guess), sign
-    above, below = None, None
+    above, below, width = None, None, np.inf
     for _ in range(_TRIED):
         if 0 <= value <= tolerance:
             return place
@@ -158,13 +161,14 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
             above = place
         else:
             below = place
-        if above is not None and below is not None and abs(above - below) <= tolerance:
-            return above
-        step = (0.5 * tolerance - value) / slope
-        new = place + step
-        if above is not None and below is not None and not min(above, below) < new < max(above, below):
-            new = (above + below) / 2
-            step = new - place
+        new = place + (0.5 * tolerance - value) / slope
+        if above is not None and below is not None:
+            before, width = width, abs(above - below)
+            if width <= _JUMP * tolerance:
+                return above
+            if width > before / 2 or not min(above, below) < new < max(above, below):
+                new = (above + below) / 2
+        step = new - place
         after = function(new)
         if step:
             slope = sign * min(max(sign * (after - value) / step, 0.3), 3.0)

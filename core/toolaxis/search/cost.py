@@ -29,7 +29,7 @@ OBJECTIVES = ("length", "passes", "time")
 CLEAN_UP = 2.0
 #: What is too little to be searched for: cutting length, mm, and time, s; as a share of the value not less than the
 #: first and not more than the second.
-_LITTLE, _LITTLE_TIME, _SHARES = 1.5, 0.1, (5e-5, 1e-3)
+_LITTLE, _LITTLE_TIME, _SHARES = 1.5, 0.1, (5e-5, 3e-4)
 #: Places each way from which the ideal length of an axis is told.
 _IDEAL = 16
 
