@@ -16,7 +16,8 @@ from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress, activate_progress, breathe
 from toolaxis.shape import nurbs
 
-POINTS, MOTIONS = 250_000, 256
+#: Most work between two checks, and the mean.
+POINTS, MOTIONS, MEAN = 250_000, 256, 5_000
 
 
 class Counted:
@@ -24,6 +25,7 @@ class Counted:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, stop_at: int | None = None) -> None:
         self.checks, self.work, self.most, self.stop_at = 0, {"points": 0, "motions": 0}, {}, stop_at
+        self.total = {"points": 0, "motions": 0}
         self.progress = Progress(None, self.asked)
         evaluate, descend = nurbs.surface_derivatives_many, distances.descend_many
 
@@ -40,6 +42,7 @@ class Counted:
 
     def done(self, what: str, count: int) -> None:
         self.work[what] += count
+        self.total[what] += count
         self.most[what] = max(self.most.get(what, 0), self.work[what])
 
     def asked(self) -> bool:
@@ -66,6 +69,7 @@ def test_there_is_little_work_between_two_checks(small_plan: Plan, monkeypatch: 
     counted = Counted(monkeypatch)
     made = ta.plan(small_plan.part, small_plan.tools[0], 0.1, progress=counted.progress)
     assert made.outcome == "complete" and counted.checks > 500
+    assert counted.total["points"] < MEAN * counted.checks
     assert 0 < counted.most["points"] <= POINTS and counted.most.get("motions", 0) <= MOTIONS, counted.most
     judge = Counted(monkeypatch)
     assert ta.verify(made, progress=judge.progress).passed and judge.checks > 30

@@ -74,15 +74,14 @@ def again(thing, commands, tmp_path_factory):
 
 @pytest.mark.parametrize("written", WRITTEN or [pytest.param(None, marks=pytest.mark.skip(reason="not prepared"))])
 def test_faces_have_the_same_figures(written, evaluated):
-    """Widths, gouges, clearances and counts to 1e-6; lengths of passes, which go by places that are found to a share of
-    a strip where widths jump, to 1e-5; passes within 0.1 %."""
+    """Widths, gouges, clearances, counts and lengths to 1e-6; passes within 0.1 %."""
     theirs = WRITTEN[written]
     with imported(written) as thing:
         part = ta.load(thing)
         for number, figures in theirs["faces"].items():
             ours = evaluated(part, int(number), theirs["tool"], theirs["scallop"])
             for figure, values in figures.items():
-                share = {"passes": 1e-3, "length": 1e-5}.get(figure, 1e-6)
+                share = 1e-3 if figure == "passes" else 1e-6
                 assert ours[figure] == pytest.approx(values, rel=share, abs=1e-6), (number, figure)
 
 

@@ -38,6 +38,9 @@ _TRIED = 60
 #: How near both sides of a jump of the slack are looked at, in what a place may be off otherwise: so noise in the
 #: surface's numbers does not move a pass.
 _JUMP = 1e-3
+#: A step that leaves more of the bracket and of the slack is slow.  Not one half, which a bisection leaves exactly:
+#: there noise would decide.
+_HALF = 0.51
 #: So many passes in a row that together do not get on by as many times this share of the scallop height are none.
 _STUCK, _LEAST = 20, 0.05
 #: Places that are tried for the only pass of a face.
@@ -153,7 +156,7 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
     """Place where a function of slope near `sign` vanishes, or jumps past zero, from the side on which it is positive.
     """
     place, value, slope = guess, function(guess), sign
-    above, below, width = None, None, np.inf
+    above, below, width, last = None, None, np.inf, np.inf
     for _ in range(_TRIED):
         if 0 <= value <= tolerance:
             return place
@@ -166,9 +169,10 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
             before, width = width, abs(above - below)
             if width <= _JUMP * tolerance:
                 return above
-            if width > before / 2 or not min(above, below) < new < max(above, below):
+            slow = width > _HALF * before and abs(value) > _HALF * last
+            if slow or not min(above, below) < new < max(above, below):
                 new = (above + below) / 2
-        step = new - place
+        step, last = new - place, abs(value)
         after = function(new)
         if step:
             slope = sign * min(max(sign * (after - value) / step, 0.3), 3.0)
@@ -357,7 +361,9 @@ def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lin
     """Where the next pass will be, were the half widths to go on changing as they did between the last two."""
     rate = np.zeros(len(across.measured))
     if len(steps) > 1:
-        rate = np.clip((halves[-1][:, 0] - halves[-2][:, 0]) / (steps[-1] - steps[-2]), -0.5, 0.5)
+        known = (halves[-1][:, 0] != 0) & (halves[-2][:, 0] != 0)
+        change = np.where(known, halves[-1][:, 0] - halves[-2][:, 0], 0.0)
+        rate = np.clip(change / (steps[-1] - steps[-2]), -0.5, 0.5)
     now, slope = across.spread(halves[-1][:, 0]), across.spread(rate)
     places = (front + now - slope * steps[-1]) / (1 - slope)
     return float(places[np.isfinite(places)].min()) if np.isfinite(places).any() else steps[-1]
