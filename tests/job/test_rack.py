@@ -23,6 +23,7 @@ from toolaxis.post.context import Options
 from toolaxis.progress import Progress
 from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.shape.part import Part
+from toolaxis.tolerances import Tolerance
 
 #: The small one is so slow that the large one begins, whatever a tool change takes.
 TOOLS = [ta.Tool.ball(10), ta.Tool.ball(3, feedrate=200.0, spindle=12000.0)]
@@ -79,14 +80,18 @@ def test_areas_of_a_part_add_up(planned: Plan) -> None:
     assert found.area == pytest.approx(planned.part.faces[0].area, rel=1e-9)
     large, small = planned.operations
     assert found.machined == pytest.approx(sum(op.face.area * (1 - op.orientation.unreached) for op in (large, small)))
-    assert found.machined + found.open == pytest.approx(found.area, rel=1e-12)
-    assert found.open > 1e-3 * found.area and planned.outcome == "incomplete", "no ball reaches into the corner"
+    assert found.machined + found.unreachable + found.open == pytest.approx(found.area, rel=1e-12)
+    assert planned.outcome == "incomplete", "no ball reaches into the corner"
+    near = 1.5 + Tolerance().cutter_clearance
+    assert found.unreachable == pytest.approx(24 * near, rel=0.02) and found.open < 0.1 * found.unreachable
     assert found.length == pytest.approx(planned.length) and found.gap == pytest.approx(found.length / found.bound - 1)
 
 
 def test_what_stays_open_is_listed_with_what_would_close_it(planned: Plan) -> None:
     place, = list_open_places(planned)
-    assert place.label == "1.2" and place.area == pytest.approx(planned.account.open, rel=0.2)
+    account = planned.account
+    assert place.label == "1.2" and place.area == pytest.approx(account.open + account.unreachable, rel=0.2)
+    assert place.unreachable == pytest.approx(account.unreachable)
     assert place.point[1] < 1.5 and place.radius == pytest.approx(125, rel=0.1), "along the wall at y = 0"
     assert "another clamping" in what_closes(place, 1.5)
     made = open_table(planned)
@@ -137,7 +142,7 @@ def test_tables_name_the_tools_and_what_stays_open(planned: Plan) -> None:
     made = plan_table(planned)
     assert [str(column.header) for column in made.columns][1] == "tool"
     assert list(made.columns[1].cells)[:2] == ["Ball D10", "Ball D3"]
-    assert "2 of 2 tools; open: " in str(made.caption)
+    assert "2 of 2 tools; proven out of reach: 38." in str(made.caption)
     assert str(verdict_table(planned, ta.verify(planned)).title).startswith("2 tools, ")
 
 
@@ -190,7 +195,9 @@ def test_what_no_tool_reaches_stays_open_and_the_plan_incomplete() -> None:
     made = ta.plan(trough(1.0), TOOLS, SCALLOP, limits=UP, workers=1)
     assert made.outcome == "incomplete" and made.account.open > 1.0
     assert all(op.orientation.reasons or op.done for op in made.operations)
-    assert made.account.open == pytest.approx(made.account.area - made.account.machined)
+    found = made.account
+    assert found.open + found.unreachable == pytest.approx(found.area - found.machined)
+    assert 0.5 * (found.area - found.machined) < found.unreachable == sum(op.unreachable for op in made.operations)
 
 
 def test_stopped_between_tools_it_keeps_what_is_finished() -> None:

@@ -140,7 +140,7 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
             "label": op.face.label, "tool": 1 + plan.tools.index(op.tool),
-            "rest_of": list(op.rest_of),
+            "rest_of": list(op.rest_of), "unreachable": op.unreachable,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
             "region": None if same else [_rows(loop) for loop in op.face.trims],
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
@@ -235,7 +235,8 @@ def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Too
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
     rotary = document.get("rotary") or [()]
     return Operation(document["number"], face, tools[document["tool"] - 1], orientation_from(document["orientation"]),
-                     path, axes, zones, known, tuple(rotary[0]), tuple(document["rest_of"]))
+                     path, axes, zones, known, tuple(rotary[0]), tuple(document["rest_of"]),
+                     unreachable=document["unreachable"])
 
 
 def _order_from(document: Mapping[str, Any] | None) -> Order | None:

@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 LEAST = 0.01
 #: Cells each way at whose centres the curvature of a place is asked for.
 _CELLS = 12
+#: Share of a place from which on it counts as out of reach where that is proven.
+_MOSTLY = 0.5
 #: Curvature below which a place counts as not hollow, 1/mm.
 _FLAT = 1e-4
 
@@ -23,16 +25,51 @@ _FLAT = 1e-4
 class OpenPlace(NamedTuple):
     """A place that no operation machines.
 
-    label : str, of the sub-surface;  area : float, mm^2;  point : (3,) array, mm, in the middle of it;  radius : float,
+    label : str, of the sub-surface;  area : float, mm^2;  unreachable : float, mm^2 of it, proven to be out of reach of
+    every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float,
     least radius of its hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work
     ended the search there.
     """
 
     label: str
     area: float
+    unreachable: float
     point: Array
     radius: float
     limited: bool
+
+
+class OpenFace(NamedTuple):
+    """A piece of a face that no operation machines.
+
+    operation : int, number of the one that leaves it;  zone : int or None, which of its zones it is, None for the whole
+    sub-surface;  face : Face;  area : float, mm^2 of it that no other operation machines.
+    """
+
+    operation: int
+    zone: int | None
+    face: Face
+    area: float
+
+
+def list_open_faces(plan: Plan) -> tuple[OpenFace, ...]:
+    """What no operation machines, in the order of the operations; on blades that of the planned one.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    copies = {} if plan.blades is None else plan.blades.copies
+    found: list[OpenFace] = []
+    for op in plan.operations:
+        if op.number in copies:
+            continue
+        if not op.done:
+            found.append(OpenFace(op.number, None, op.face, op.face.area))
+        elif op.number not in plan.taken_over:  # what it left to others is told of those
+            found += [OpenFace(op.number, k, op.face.trimmed(zone.loops), zone.area - zone.elsewhere)
+                      for k, zone in enumerate(op.zones) if zone.at_wall]
+    return tuple(found)
 
 
 def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
@@ -43,35 +80,22 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
     plan : Plan
         Places of less than 0.01 mm^2 are left out.
     """
-    copies = {} if plan.blades is None else plan.blades.copies
-    found: list[OpenPlace] = []
-    for op in plan.operations:
-        if op.number in copies:
-            continue
-        for face, area in _open_faces(op, op.number in plan.taken_over):
-            if area >= LEAST:
-                found.append(_place(op, face, area))
+    operations = {op.number: op for op in plan.operations}
+    found = [_place(operations[one.operation], one) for one in list_open_faces(plan) if one.area >= LEAST]
     return tuple(sorted(found, key=lambda one: (-one.area, one.label)))
 
 
-def _open_faces(op: Operation, taken_over: bool) -> list[tuple[Face, float]]:
-    """What an operation leaves, with its area; what it left to others is told of those."""
-    if not op.done:
-        return [(op.face, op.face.area)]
-    if taken_over:
-        return []
-    return [(op.face.trimmed(zone.loops), zone.area - zone.elsewhere) for zone in op.zones if zone.at_wall]
-
-
-def _place(op: Operation, face: Face, area: float) -> OpenPlace:
+def _place(op: Operation, piece: OpenFace) -> OpenPlace:
+    face = piece.face
     uv = face.grid(_CELLS, _CELLS)
     if not len(uv):
         uv = face.outline[0]
     points = face.evaluate(uv).point
     middle = points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))]
     hollow = float(face.curvature(uv).k1.max(initial=0.0))
+    proven = op.unreachable if piece.zone is None else op.zones[piece.zone].unreachable
     limited = is_out_of_work(op.orientation.reasons)
-    return OpenPlace(op.face.label, area, middle, 1 / hollow if hollow > _FLAT else np.inf, limited)
+    return OpenPlace(op.face.label, piece.area, proven, middle, 1 / hollow if hollow > _FLAT else np.inf, limited)
 
 
 def what_closes(place: OpenPlace, smallest: float) -> str:
@@ -85,6 +109,8 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     """
     if place.radius < smallest:
         return f"a ball end of {2 * place.radius:.2g} mm or less"
+    if place.unreachable >= _MOSTLY * place.area:
+        return "a slimmer or longer tool, or another clamping: no tool here reaches it with any axis"
     if place.limited:
         return "more work: raise --limit"
     return "a slimmer or longer tool, or another clamping: no axis that was tried reaches it"

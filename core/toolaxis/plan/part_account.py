@@ -44,7 +44,9 @@ class PartAccount:
         machined = sum(op.face.area * (1 - op.orientation.unreached) for op in done)
         ideals = [op.orientation.ideal_of_cut for op in done]
         bound = sum(ideals) if all(one > 0 for one in ideals) else 0.0
-        return PartAccount(float(area), float(min(machined, area)), 0.0,
+        machined = min(machined, area)
+        proven = sum(op.unreachable if not op.done else sum(zone.unreachable for zone in op.zones) for op in operations)
+        return PartAccount(float(area), float(machined), float(min(proven, area - machined)),
                            float(sum(op.orientation.length for op in done)), float(bound))
 
     @property

@@ -22,9 +22,12 @@ class Zone:
         Whether the tool may not stand there, for a wall or an obstacle; else it is an undercut at the border.
     elsewhere : float
         Area of it that other operations of the plan machine, mm^2.
+    unreachable : float
+        Area of what is left then that is proven to be out of reach of every tool of the plan, mm^2.
     """
 
     loops: tuple[Array, ...]
     area: float
     at_wall: bool = True
     elsewhere: float = 0.0
+    unreachable: float = 0.0

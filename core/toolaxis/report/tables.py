@@ -20,7 +20,8 @@ Column: TypeAlias = tuple[str, str]
 _COLUMNS: tuple[Column, ...] = (
     ("sub-\nsurface", "right"), ("axis", "left"), ("feed", "left"), ("passes", "right"), ("strip width\nmm", "right"),
     ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
-_OPEN_COLUMNS: tuple[Column, ...] = (("sub-\nsurface", "right"), ("open\nmm2", "right"), ("about\nx y z", "left"),
+_OPEN_COLUMNS: tuple[Column, ...] = (("sub-\nsurface", "right"), ("open\nmm2", "right"),
+                                     ("proven out\nof reach mm2", "right"), ("about\nx y z", "left"),
                                      ("least hollow\nradius mm", "right"), ("what would close it", "left"))
 #: Open places that are told one by one.
 _OPEN_ROWS = 20
@@ -133,7 +134,7 @@ def open_table(plan: Plan) -> Table | None:
     if not found:
         return None
     smallest = min(tool.corner_radius for tool in plan.tools)
-    rows = [[one.label, number(one.area, 2), " ".join(f"{x:.1f}" for x in one.point + 0.0),
+    rows = [[one.label, number(one.area, 2), number(one.unreachable, 2), " ".join(f"{x:.1f}" for x in one.point + 0.0),
              number(one.radius if isfinite(one.radius) else None, 2), what_closes(one, smallest)]
             for one in found[:_OPEN_ROWS]]
     rest = found[_OPEN_ROWS:]
@@ -154,8 +155,9 @@ def _of_part(plan: Plan) -> str:
         return ""
     found = plan.account
     share = 100 * found.machined / found.area if found.area > 0 else 0.0
+    proven = f"proven out of reach: {found.unreachable:.1f} mm2; " if found.unreachable >= 0.05 else ""
     return (f"machined: {found.machined:.1f} of {found.area:.1f} mm2 ({share:.1f} %) with {len(plan.used_tools)} of "
-            f"{len(plan.tools)} tools; open: {found.open:.1f} mm2")
+            f"{len(plan.tools)} tools; {proven}open: {found.open:.1f} mm2")
 
 
 def _over_ideal(operations: Sequence[Operation]) -> str:

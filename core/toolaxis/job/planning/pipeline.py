@@ -25,6 +25,7 @@ from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.rack_blades import plan_blades_with_rack
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
 from toolaxis.job.planning.timing import add_times
+from toolaxis.job.planning.unreachable import with_unreachable
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
@@ -251,9 +252,11 @@ def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[
             _in_cells(jobs[0], progress)
         try:
             if pattern is not None:
-                return plan_blades_with_rack(jobs, pattern, most, progress)
-            area = sum(face.area for face in faces)
-            return RackPlanner([replace(job, asked_area=area) for job in jobs], most).plan(faces, progress)
+                made = plan_blades_with_rack(jobs, pattern, most, progress)
+            else:
+                area = sum(face.area for face in faces)
+                made = RackPlanner([replace(job, asked_area=area) for job in jobs], most).plan(faces, progress)
+            return made if made.outcome == "cancelled" else with_unreachable(made, jobs, progress)
         except Cancelled:
             return replace(jobs[0].empty(), tools=tuple(job.tool for job in jobs))
 

@@ -13,7 +13,9 @@ from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
+from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
 from toolaxis.plan.operation import Operation
+from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, Plan
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -35,6 +37,8 @@ APART, _CELLS = np.radians(20), 200
 WHOLE = 0.8
 #: Share of a skin's area below which what is machined of it makes its faces be planned one by one.
 APART_BELOW = 0.5
+#: Share of a face that is out of reach where no tool is asked for it.
+PROVEN = 0.99
 #: Share of the faces that may stay open in a plan that is complete.
 LEFT_OPEN = 1e-3
 
@@ -131,10 +135,24 @@ class RackPlanner:
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
         allowed = self._allowed
+        scene = scene_of(self.jobs[0])
         for face, chain in zip(screened, choice.chains, strict=True):
+            if not chain.tools and (refused := self._refuse(face, scene)) is not None:
+                self._done.append(refused)
+                continue
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             tool = chain.tools[0] if chain.tools else max(allowed)
             self._waiting.append(_Waiting(face, (), tool, in_pieces=0 < chain.first < WHOLE))
+
+    def _refuse(self, face: Face, scene: ReachScene) -> Operation | None:
+        """The operation of a face that no tool reaches; None where that is not proven."""
+        proven = prove_unreachable(face, self.jobs, scene, face.area / (self.jobs[0].asked_area or face.area))
+        if proven.area < PROVEN * face.area:
+            return None
+        share = 100 * proven.area / face.area
+        why = f"infeasible: no tool of the rack reaches it with any axis, proven for {share:.1f} % of its area"
+        none = Orientation(None, outcome="infeasible", reasons=(why,))
+        return Operation(1, face, self.jobs[-1].tool, none, unreachable=proven.area)
 
     @property
     def _allowed(self) -> set[int]:

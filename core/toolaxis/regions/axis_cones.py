@@ -1,0 +1,94 @@
+"""All axes as cones: cells of a cube's sides seen from its middle, which are halved each way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.vectors import angle_between, unit
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+#: Cones along each side of the cube at first.
+_FIRST = 6
+#: Middles of the quarters of a cone, in halves of it.
+_QUARTERS = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
+
+
+@dataclass(frozen=True, eq=False)
+class AxisCones:
+    """Sets of axes; make them with `first_cones` and `halve`.
+
+    Attributes
+    ----------
+    side : (n,) array of int
+        Side of the cube, 0 to 5: +x, +y, +z, -x, -y, -z.
+    place : (n, 2) array
+        Angles of the middle across the side, rad, from -pi / 4 to pi / 4.
+    half : (n,) array
+        Half the range of these angles, rad.
+    """
+
+    side: Indices
+    place: Array
+    half: Array
+
+    @property
+    def middle(self) -> Array:
+        """Unit vectors, (n, 3)."""
+        return _directions(self.side, self.place)
+
+    @property
+    def radius(self) -> Array:
+        """No axis is farther than this from the middle of its cone, (n,) rad."""
+        corner = self.place[:, None] + 2 * _QUARTERS * self.half[:, None, None]
+        ends = _directions(np.repeat(self.side, 4), corner.reshape(-1, 2)).reshape(-1, 4, 3)
+        # The sides of a cone are parts of great circles: the farthest axis lies in a corner.
+        return np.asarray(np.asarray(angle_between(ends, self.middle[:, None])).max(axis=1, initial=0.0))
+
+    def pick(self, rows: Bools | Indices) -> "AxisCones":
+        """Some of the cones.
+
+        Parameters
+        ----------
+        rows : array of bool or int
+        """
+        return AxisCones(self.side[rows], self.place[rows], self.half[rows])
+
+    def halve(self) -> "AxisCones":
+        """Four cones in place of each, those of one together."""
+        place = (self.place[:, None] + _QUARTERS * self.half[:, None, None]).reshape(-1, 2)
+        return AxisCones(np.repeat(self.side, 4), place, np.repeat(self.half / 2, 4))
+
+    def join(self, others: "AxisCones") -> "AxisCones":
+        """These cones and others.
+
+        Parameters
+        ----------
+        others : AxisCones
+        """
+        return AxisCones(np.concatenate([self.side, others.side]), np.concatenate([self.place, others.place]),
+                         np.concatenate([self.half, others.half]))
+
+    def __len__(self) -> int:
+        return len(self.side)
+
+
+def first_cones() -> AxisCones:
+    """Cones over the whole sphere, each some 15 degrees wide."""
+    half = np.pi / 4 / _FIRST
+    line = half * (2 * np.arange(_FIRST) + 1) - np.pi / 4
+    place = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    return AxisCones(np.repeat(np.arange(6), len(place)), np.tile(place, (6, 1)), np.full(6 * len(place), half))
+
+
+def _directions(side: Indices, place: Array) -> Array:
+    """Unit vectors (n, 3) at places of the sides of the cube."""
+    found = np.empty((len(side), 3))
+    row, axis = np.arange(len(side)), side % 3
+    found[row, axis] = 1.0
+    found[row, (axis + 1) % 3] = np.tan(place[:, 0])
+    found[row, (axis + 2) % 3] = np.tan(place[:, 1])
+    return np.asarray(unit(found)) * np.where(side < 3, 1.0, -1.0)[:, None]

@@ -1,0 +1,464 @@
+"""What of a face no tool of a rack reaches under any axis that is allowed: proven cell by cell, cone by cone.
+
+A cell is a rectangle of the parameters, a cone a set of axes around its middle.  A tool that touches the cell anywhere,
+with any axis of the cone, differs in place and direction from the tool in the middle of both by no more than a known
+distance at each height.  Where the tool in the middle gouges, or meets something, by more than that, so does each of
+them.  What is not decided is halved: the cone or the cell, whichever leaves more room.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.contact.placement import tips
+from toolaxis.numeric.vectors import angle_between
+from toolaxis.partition.uv_grid import Lattice
+from toolaxis.progress import breathe
+from toolaxis.regions.axis_cones import AxisCones, first_cones
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
+from toolaxis.regions.scene import ReachScene
+from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+#: Cells at first, about, and the fewest each way; how often undecided ones are halved each way, and how many there may
+#: be at once.
+_CELLS, _FEWEST, _HALVINGS, _MOST_CELLS = 100, 3, 4, 6000
+#: Cells each way from which it is told how long a face is, and how wide.
+_COARSE = 8
+#: Radius of cones that are not halved any more, rad, and pairs of a cell and a cone that are tried for a face in all.
+_NARROW, MOST_PAIRS = np.radians(1.5), 600_000
+#: By how much more than at nine places of it a cell may reach from its middle, and its normals may turn.
+_BULGE = 1.1
+#: Places of a cell, in halves of it from its middle, and how near to its border it is asked whether it is on the face.
+_PLACES, _WITHIN = np.array([-1.0, 0.0, 1.0]), 0.98
+#: A part of a tool is cut into slices whose upper end is so many times as high as the lower one; they overlap by half.
+#: Height from which on slices grow, mm.
+_SLICE, _LOWEST = 4.0, 2.0
+#: Pairs go together whose tools are off by distances, mm, from the least on, and angles that differ less than this.
+_ALIKE, _LEAST = 1.25, 1e-4
+#: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
+_HALF = 1.0001
+_AT_ONCE = 4096
+
+
+class OutOfReach(NamedTuple):
+    """What of a face is proven to be out of reach of all tools.
+
+    area : float, mm^2;  by_corner : float, mm^2 of it where the corner of each tool is too large for the face;
+    reached : float, mm^2 of the cells in whose middle a tool may stand.  The rest is not decided.
+    rectangles : (m, 4) array, least and greatest u, least and greatest v of the cells in which that is proven.
+    """
+
+    area: float
+    by_corner: float
+    reached: float
+    rectangles: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Cells:
+    """Rectangles of the parameters.
+
+    middle, half : (n, 2) arrays, of u and v;  point, normal : (n, 3) arrays, at the contact, mm;  area : (n,) array,
+    mm^2 of the face;  off : (n,) array, mm, how far a place of the cell lies from the contact at most;  turn : (n,)
+    array, rad, the same of its normals.
+    """
+
+    middle: Array
+    half: Array
+    point: Array
+    normal: Array
+    area: Array
+    off: Array
+    turn: Array
+
+    def pick(self, rows: Bools | Indices) -> "_Cells":
+        """Some of the cells."""
+        return _Cells(*(getattr(self, one.name)[rows] for one in fields(self)))
+
+    @property
+    def rectangles(self) -> Array:
+        """Least and greatest u, least and greatest v, (n, 4)."""
+        low, high = self.middle - self.half, self.middle + self.half
+        return np.column_stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]])
+
+    def __len__(self) -> int:
+        return len(self.middle)
+
+
+class _Pairs(NamedTuple):
+    """Pairs of a cell, by its number, and a cone."""
+
+    cell: Indices
+    cones: AxisCones
+
+    def pick(self, rows: Bools | Indices) -> "_Pairs":
+        """Some of the pairs."""
+        return _Pairs(self.cell[rows], self.cones.pick(rows))
+
+    def halve(self) -> "_Pairs":
+        """Four pairs in place of each, with its cone halved each way."""
+        return _Pairs(np.repeat(self.cell, 4), self.cones.halve())
+
+    def join(self, others: "_Pairs") -> "_Pairs":
+        """These pairs and others."""
+        return _Pairs(np.concatenate([self.cell, others.cell]), self.cones.join(others.cones))
+
+
+def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
+                       most_pairs: int = MOST_PAIRS) -> OutOfReach:
+    """How much of a face no tool can touch under any axis without gouging or meeting something.
+
+    Parameters
+    ----------
+    face : Face
+        Of the scene's part, or a piece of one.
+    tools : sequence of Tool
+    scene : ReachScene
+        With the limits of the axes.
+    most_pairs : int
+        Pairs of a cell and a cone that are tried, about.
+
+    Returns
+    -------
+    OutOfReach
+
+    Notes
+    -----
+    A tool touches a place where its surface has the place's normal.  What is claimed holds for every place of a cell
+    and every axis, but for how far cells reach and their normals turn, which is told from nine places of each with a
+    tenth added, and for faces that are known to the remainder of their cells.
+
+    **Properties**: 1. no tool at any contact in what is proven, with any axis within the limits, passes the exact check
+    of `toolaxis.feasibility.feasibility.Feasibility.reach`; 2. areas add up to no more than that of the face.
+    """
+    cells = _first_cells(face)
+    proofs = _proofs(face, tools, scene, len(cells))
+    proven = by_corner = reached = 0.0
+    found: list[Array] = []
+    tried = 0
+    for halving in range(_HALVINGS + 1):
+        surely, narrow = _smallest_corner_gouges(proofs, cells)
+        met = np.zeros(len(cells), dtype=bool)
+        open_ = narrow & ~surely
+        for proof in proofs:
+            tried += proof.close(cells, ~narrow & ~met, met, most_pairs - tried)
+            open_[proof.pairs.cell] |= ~narrow[proof.pairs.cell]
+        closed = ~surely & ~met & ~open_
+        by_corner += float(cells.area[surely].sum())
+        proven += float(cells.area[surely | closed].sum())
+        reached += float(cells.area[met].sum())
+        found.append(cells.rectangles[surely | closed])
+        left = np.flatnonzero(open_ & ~met)
+        if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried > most_pairs:
+            break
+        cells, parent = _halve(face, cells.pick(left))
+        for proof in proofs:
+            proof.hand_down(left, parent)
+    whole = face.area
+    return OutOfReach(min(proven, whole), min(by_corner, whole), min(reached, whole), np.concatenate(found))
+
+
+def _first_cells(face: Face) -> _Cells:
+    u, v = Lattice(face, _shape_for(face)).lines
+    middle = np.stack(np.meshgrid((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = np.stack(np.meshgrid(np.diff(u) / 2, np.diff(v) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    return _measure(face, middle, half, face.area)[0]
+
+
+def _shape_for(face: Face) -> tuple[int, int]:
+    """Cells along u and along v, about as long as they are wide."""
+    along, across = (float(np.median(lengths.sum(axis=way)))
+                     for way, lengths in enumerate(Lattice(face, (_COARSE, _COARSE)).lengths))
+    ratio = np.sqrt(along / across) if along > 0 and across > 0 else 1.0
+    count = np.clip(np.ceil(np.sqrt(_CELLS) * np.array([ratio, 1 / ratio])), _FEWEST, _CELLS // _FEWEST)
+    return int(count[0]), int(count[1])
+
+
+def _halve(face: Face, cells: _Cells) -> tuple[_Cells, Indices]:
+    """Four cells in place of each, those that have something of the face, and of which each is a quarter."""
+    ways = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
+    middle = (cells.middle[:, None] + ways * cells.half[:, None]).reshape(-1, 2)
+    found, kept = _measure(face, middle, np.repeat(cells.half / 2, 4, axis=0), float(cells.area.sum()))
+    return found, np.repeat(np.arange(len(cells)), 4)[kept]
+
+
+def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Cells, Bools]:
+    """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
+    ways = np.stack(np.meshgrid(_PLACES, _PLACES, indexing="ij"), axis=-1).reshape(-1, 2)
+    inside = face.contains((middle[:, None] + _WITHIN * ways * half[:, None]).reshape(-1, 2)).reshape(-1, 9)
+    kept = np.asarray(inside.any(axis=1))
+    middle, half, inside = middle[kept], half[kept], inside[kept]
+    uv = (middle[:, None] + ways * half[:, None]).reshape(-1, 2)
+    d, normals = face.evaluate(uv), face.normal(uv).reshape(-1, 9, 3)
+    points, size = d.point.reshape(-1, 9, 3), np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(-1, 9)
+    known = np.linalg.norm(normals, axis=2) > 0.5
+    pick = np.argmin(np.where(inside & known, np.hypot(*ways.T), np.inf), axis=1)
+    one = np.arange(len(middle))
+    point, normal = points[one, pick], normals[one, pick]
+    off = np.linalg.norm(points - point[:, None], axis=2).max(axis=1, initial=0.0)
+    turn = np.where(known, np.asarray(angle_between(normals, normal[:, None])), np.pi).max(axis=1, initial=0.0)
+    share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
+    share *= area / max(float(share.sum()), np.finfo(float).tiny)
+    return _Cells(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
+
+
+@dataclass(frozen=True, eq=False)
+class _Slices:
+    """A tool in pieces.
+
+    pieces : (k, 8) array;  required : (faces + 1, k) array, mm, what each has to keep;  arm : (k,) array, mm, greatest
+    distance of each from the middle of the tool's corner circle.
+    """
+
+    pieces: Array
+    required: Array
+    arm: Array
+
+
+def _proofs(face: Face, tools: Sequence[Tool], scene: ReachScene, cells: int) -> list["_Proof"]:
+    """A proof for each tool, the slim ones first: what they reach need not be asked of the others."""
+    required, room = scene.required(face), ReachRoom.make()
+    slim = sorted(tools, key=lambda tool: (tool.radius, tool.corner_radius))
+    return [_Proof(scene, tool, required, room, cells) for tool in slim]
+
+
+def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: _Cells) -> tuple[Bools, Bools]:
+    """Where the ball in the smallest corner of all tools gouges, whatever the axis, as `_Proof.corner_gouges`."""
+    if not proofs:
+        return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
+    return min(proofs, key=lambda proof: proof.ball).corner_gouges(cells)
+
+
+class _Proof:
+    """One tool held against what stands around a face.
+
+    Attributes
+    ----------
+    pairs : _Pairs
+        The cells and cones of which it is not known whether the tool may touch the one with the other.
+    """
+
+    def __init__(self, scene: ReachScene, tool: Tool, required: Array, room: ReachRoom, cells: int) -> None:
+        self._scene, self._tool, self._required, self._room = scene, tool, required, room
+        whole = scene.tool(tool, required)
+        self._plain = _Slices(whole.pieces, whole.limits[:, whole.pieces[:, 7].astype(int)],
+                              np.zeros(len(whole.pieces)))
+        self._slices = _cut_into_slices(whole, tool.corner_radius)
+        self._core = _cut_into_slices(_take_off(whole, tool.flat_radius), tool.corner_radius)
+        cones = first_cones()
+        cell, cone = (side.ravel() for side in np.indices((cells, len(cones))))
+        self.pairs = _Pairs(cell, cones.pick(cone))
+
+    @property
+    def ball(self) -> float:
+        """Radius of the ball that the tool holds at its contact, mm."""
+        tool = self._tool
+        return tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
+
+    def corner_gouges(self, cells: _Cells) -> tuple[Bools, Bools]:
+        """Where the ball in the tool's corner gouges at every contact of a cell, and where it does in the middle."""
+        radius = self.ball
+        if radius <= 0 or not len(cells):
+            return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
+        ball = _Slices(np.array([[0.0, radius, 1.0, 0.0, 0.0, _HALF * radius, radius, 0.0]]), self._required[:, :1],
+                       np.zeros(1))
+        places, none = cells.point + self._scene.allowance * cells.normal, np.zeros(len(cells))
+        middle = self._blocked(ball, none, none, places, cells.normal)
+        at = np.flatnonzero(middle)
+        surely = middle.copy()
+        surely[at] = self._blocked(ball, none[at], self._corner_off(cells)[at], places[at], cells.normal[at])
+        return surely, middle
+
+    def close(self, cells: _Cells, asked: Bools, met: Bools, most: int) -> int:
+        """Leave those pairs of which nothing is known; note in met (n,) the cells that the tool reaches in the middle.
+
+        Parameters
+        ----------
+        cells : _Cells
+        asked : (n,) array of bool
+            Of which cells pairs are to be looked at.
+        met : (n,) array of bool
+        most : int
+            Pairs that may be looked at.
+
+        Returns
+        -------
+        int
+            How many pairs were looked at.
+        """
+        surely, narrow = self.corner_gouges(cells)
+        waiting = self.pairs.pick(~surely[self.pairs.cell])
+        now = asked & ~narrow
+        kept, waiting = waiting.pick(~now[waiting.cell]), waiting.pick(now[waiting.cell])
+        tried = 0
+        while len(waiting.cell) and tried <= most:
+            breathe()
+            waiting = waiting.pick(self._may_touch(cells, waiting) & ~met[waiting.cell])
+            tried += len(waiting.cell)
+            open_, wide = self._try(cells, waiting, met)
+            kept, waiting = kept.join(open_.pick(~wide)), open_.pick(wide).halve()
+        kept = kept.join(waiting)
+        self.pairs = kept.pick(~met[kept.cell])
+        return tried
+
+    def _try(self, cells: _Cells, pairs: _Pairs, met: Bools) -> tuple[_Pairs, Bools]:
+        """The pairs that are not decided, and which of them had better be halved in their cones than in their cells."""
+        cones = pairs.cones
+        pairs = pairs.pick(np.lexsort((pairs.cell, cones.place[:, 1], cones.place[:, 0], cones.side, cones.half)))
+        axes, radius = pairs.cones.middle, pairs.cones.radius
+        places = tips(cells.point[pairs.cell], cells.normal[pairs.cell], axes, self._tool, self._scene.allowance)
+        off = self._off(cells, pairs, axes, radius)
+        blocked = self._blocked(self._slices, radius, off, places, axes)
+        if self._tool.flat_radius > 0:
+            rest = np.flatnonzero(~blocked)
+            blocked[rest] = self._core_blocked(cells, pairs.pick(rest), axes[rest], radius[rest])
+        open_ = np.flatnonzero(~blocked)
+        pairs, places, axes, radius = pairs.pick(open_), places[open_], axes[open_], radius[open_]
+        none = np.zeros(len(axes))
+        free = ~self._blocked(self._plain, none, none, places, axes)
+        met[pairs.cell[free & self._is_seen(cells, pairs, axes)]] = True
+        own = self._corner_off(cells)[pairs.cell]
+        return pairs, (radius * (self._tool.stickout or self._tool.height) >= own) & (radius > _NARROW)
+
+    def _core_blocked(self, cells: _Cells, pairs: _Pairs, axes: Array, radius: Array) -> Bools:
+        """Whether what the tool has around the ball at its contact is blocked, to whichever side its axis lies."""
+        corner = self._tool.corner_radius
+        normal = cells.normal[pairs.cell]
+        places = cells.point[pairs.cell] + (corner + self._scene.allowance) * normal - corner * axes
+        return self._blocked(self._core, radius, self._corner_off(cells)[pairs.cell], places, axes)
+
+    def hand_down(self, left: Indices, parent: Indices) -> None:
+        """Give the pairs of cells to their quarters.
+
+        Parameters
+        ----------
+        left : (m,) array of int
+            Numbers of the cells that were halved.
+        parent : (k,) array of int
+            Of which of these each quarter is one.
+        """
+        order = np.argsort(self.pairs.cell, kind="stable")
+        pairs = self.pairs.pick(order)
+        first, last = (np.searchsorted(pairs.cell, left[parent], side=side) for side in ("left", "right"))
+        count = last - first
+        start = np.repeat(first - np.cumsum(count) + count, count)
+        self.pairs = _Pairs(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(start + np.arange(count.sum())))
+
+    def _may_touch(self, cells: _Cells, pairs: _Pairs) -> Bools:
+        """Whether any axis of a cone may touch any place of a cell, by its angle to the normals and by the limits."""
+        axes, radius, tool = pairs.cones.middle, pairs.cones.radius, self._tool
+        angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
+        slack = cells.turn[pairs.cell] + radius
+        found = angle - slack <= np.pi / 2 - tool.half_angle
+        if tool.flat_radius > 0:
+            found &= angle + slack >= self._scene.tolerance.min_lead
+        limits = self._scene.limits
+        return np.asarray(found if limits is None or not len(axes) else found & (limits.excess(axes) <= radius))
+
+    def _is_seen(self, cells: _Cells, pairs: _Pairs, axes: Array) -> Bools:
+        """Whether the axes themselves touch the contacts."""
+        angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
+        found = angle <= np.pi / 2 - self._tool.half_angle
+        if self._tool.flat_radius > 0:
+            found &= angle >= self._scene.tolerance.min_lead
+        limits = self._scene.limits
+        return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
+
+    def _corner_off(self, cells: _Cells) -> Array:
+        """How far the middle of the corner's ball lies from that at the contact of its cell, at most, (n,) mm."""
+        radius = self._tool.corner_radius + self._scene.allowance
+        return np.asarray(cells.off + 2 * radius * np.sin(cells.turn / 2))
+
+    def _off(self, cells: _Cells, pairs: _Pairs, axes: Array, radius: Array) -> Array:
+        """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm.
+
+        At an angle t of axis and normal, their turns turn the way from the ball to the circle's middle by as much over
+        sin t.
+        """
+        off, flat = self._corner_off(cells)[pairs.cell], self._tool.flat_radius
+        if flat <= 0:
+            return off
+        angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
+        slack = cells.turn[pairs.cell] + radius
+        least = np.sin(np.clip(np.minimum(angle - slack, np.pi - angle - slack), 0.0, np.pi / 2))
+        turn = np.where(least > 0, slack / np.where(least > 0, least, 1.0), np.pi) + radius
+        return np.asarray(off + 2 * flat * np.sin(np.minimum(turn, np.pi) / 2))
+
+    def _blocked(self, slices: _Slices, turn: Array, off: Array, places: Array, axes: Array) -> Bools:
+        """Whether a tool comes nearer to something than it may by more than it may be off.
+
+        Parameters
+        ----------
+        slices : _Slices
+        turn, off : (n,) arrays
+            By how much the axis may be off, rad, and the middle of the corner circle, mm.
+        places, axes : (n, 3) arrays
+            Tips, mm, and axes.
+        """
+        blocked = np.zeros(len(off), dtype=bool)
+        level = [np.ceil(np.log(np.maximum(one, _LEAST) / _LEAST) / np.log(_ALIKE)).astype(int) for one in (turn, off)]
+        key = level[0] * (level[1].max(initial=0) + 1) + level[1]
+        for one in np.unique(key):
+            rows = np.flatnonzero(key == one)
+            less = float(off[rows].max()) + 2 * np.sin(float(turn[rows].max()) / 2) * slices.arm
+            for first in range(0, len(slices.pieces), MOST_PIECES):
+                some = slice(first, first + MOST_PIECES)
+                pieces = slices.pieces[some].copy()
+                pieces[:, 7] = np.arange(len(pieces))
+                tool = ReachTool(pieces, np.ascontiguousarray(slices.required[:, some] - less[some]))
+                rest = rows[~blocked[rows]]
+                blocked[rest] = self._find(tool, places[rest], axes[rest])
+        return blocked
+
+    def _find(self, tool: ReachTool, places: Array, axes: Array) -> Bools:
+        found = np.zeros(len(places), dtype=bool)
+        for first in range(0, len(places), _AT_ONCE):
+            breathe()
+            some = slice(first, first + _AT_ONCE)
+            find_blocked(self._scene.tree, tool, places[some], axes[some], self._room, found[some])
+        return found
+
+
+def _take_off(whole: ReachTool, radius: float) -> ReachTool:
+    """A tool with a smaller radius all along; what is no wider than that goes."""
+    pieces = whole.pieces - np.array([radius, 0.0, 0.0, 0.0, 0.0, 0.0, radius, 0.0])
+    return ReachTool(pieces[(pieces[:, 0] >= 0) & (pieces[:, 6] > 0)], whole.limits)
+
+
+def _cut_into_slices(whole: ReachTool, corner: float) -> _Slices:
+    """A tool with what holds it, in slices that overlap by half."""
+    pieces = np.array([part for piece in whole.pieces for part in _slice_piece(piece, corner)])
+    # Seen from the middle of the corner circle; a slice is widest at its upper end, at its lower one, or in its arc.
+    wide = np.maximum(pieces[:, 6], pieces[:, 0] + pieces[:, 1])
+    high = np.abs(pieces[:, 4:6] - corner).max(axis=1)
+    return _Slices(pieces, whole.limits[:, pieces[:, 7].astype(int)], np.hypot(wide, high))
+
+
+def _slice_piece(piece: Array, corner: float) -> list[Array]:
+    """A convex piece, its straight side in slices."""
+    flat, radius, cosine, sine, low, top, rim, component = piece
+    straight = max(low + radius * (1 - sine), low + 1.5 * radius)
+    if straight >= top:
+        return [piece]
+
+    def side(z: float) -> float:
+        """Radius at a height."""
+        return float(rim - (top - z) * sine / cosine)
+
+    found = []
+    if radius > 0:
+        found.append(np.array([flat, radius, cosine, sine, low, straight, side(straight), component]))
+    z, end = straight, straight
+    while end < top:
+        end = min(_SLICE * max(z, corner, _LOWEST), top)
+        found.append(np.array([side(z), 0.0, cosine, sine, z, end, side(end), component]))
+        z = np.sqrt(_SLICE) * max(z, corner, _LOWEST)
+    return found

@@ -1,0 +1,101 @@
+"""What is proven to be out of reach stands up to brute force, and what can be reached is not claimed."""
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.feasibility.feasibility import Feasibility
+from toolaxis.feasibility.surroundings import group_surroundings
+from toolaxis.machine.limits import Cone
+from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.regions.axis_cones import first_cones
+from toolaxis.regions.out_of_reach import OutOfReach, prove_out_of_reach
+from toolaxis.regions.scene import ReachScene
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+
+cq = pytest.importorskip("cadquery")
+
+HOLDER = [(12, 0), (16, 40)]
+BALL = ta.Tool.ball(4, stickout=20, holder=HOLDER)
+BULL = ta.Tool.torus(diameter=5, corner_radius=0.5, stickout=20, holder=HOLDER)
+
+
+def contradictions(part: Part, face: Face, tools: list[ta.Tool], found: OutOfReach, limits: Cone | None = None) -> int:
+    """Postures at random places of what is proven that the exact check passes: 40 places, 300 axes, each tool."""
+    rng, scene = np.random.default_rng(11), ReachScene.of(part)
+    rows = found.rectangles[rng.integers(len(found.rectangles), size=60)]
+    uv = rows[:, [0, 2]] + rng.random((60, 2)) * (rows[:, [1, 3]] - rows[:, [0, 2]])
+    uv = uv[face.contains(uv)][:40]
+    assert len(uv) >= 10
+    axes = unit(rng.normal(size=(300, 3)))
+    axes = axes if limits is None else axes[limits.allowed(axes)]
+    groups = group_surroundings(face, scene.tolerance, part=part)
+    return sum(int(Feasibility(face, tool, groups, scene.tolerance).reach(uv, axis, itself=True).sum())
+               for tool in tools for axis in axes)
+
+
+@pytest.fixture(scope="module")
+def pocket() -> Part:
+    """A block with a pocket, 16 x 16 x 20 mm, whose corners have radius 1 mm."""
+    return ta.load(cq.Workplane().box(40, 40, 30).faces(">Z").workplane().rect(16, 16).cutBlind(-20)
+                   .edges("|Z").edges(cq.selectors.BoxSelector((-10, -10, -15), (10, 10, 16))).fillet(1.0))
+
+
+@pytest.fixture(scope="module")
+def slot() -> Part:
+    """A block with a slot, 6 mm wide and 45 deep, from end to end."""
+    return ta.load(cq.Workplane().box(60, 40, 50).faces(">Z").workplane().rect(60, 6).cutBlind(-45))
+
+
+def test_cones_cover_all_axes() -> None:
+    axes = unit(np.random.default_rng(2).normal(size=(5000, 3)))
+    whole = first_cones()
+    for cones in (whole, whole.halve()):
+        away = np.asarray(angle_between(axes[:, None], cones.middle[None])) - cones.radius
+        assert away.min(axis=1).max() <= 1e-12
+
+
+def test_corners_are_out_of_reach_of_a_ball_that_is_too_large(pocket: Part) -> None:
+    corners = [face for face in pocket.faces if face.kind == "cylinder"]
+    for face in corners:
+        found = prove_out_of_reach(face, [BALL], ReachScene.of(pocket))
+        assert found.area == pytest.approx(face.area) and found.by_corner == found.area
+        assert contradictions(pocket, face, [BALL], found) == 0
+        small = prove_out_of_reach(face, [BALL, ta.Tool.ball(1.5, stickout=30, holder=HOLDER)], ReachScene.of(pocket))
+        assert small.area < 0.05 * face.area and small.reached > 0.9 * face.area, "all but the end at the floor"
+
+
+def test_what_lies_open_is_not_claimed(pocket: Part, slot: Part) -> None:
+    for part in (pocket, slot):
+        top = max(part.faces, key=lambda face: face.evaluate(face.grid(3, 3)).point[:, 2].min())
+        found = prove_out_of_reach(top, [BALL, BULL], ReachScene.of(part))
+        assert found.area == 0.0 and found.reached == pytest.approx(top.area)
+
+
+def test_the_middle_of_a_deep_slot_is_out_of_reach_for_the_holder(slot: Part) -> None:
+    side = next(face for face in slot.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 1], -3.0))
+    for tools in ([BALL], [BALL, BULL]):
+        found = prove_out_of_reach(side, tools, ReachScene.of(slot), 2_000_000)
+        # 20 mm from both ends and from the top, and a strip along the floor, but for what the holder's clearance takes
+        assert 500 < found.area < 22 * 27 + 60 * 2 and found.by_corner < 0.5 * found.area
+        assert found.area + found.reached <= side.area * (1 + 1e-9)
+        assert contradictions(slot, side, tools, found) == 0
+    longer = ta.Tool.ball(4, stickout=60, holder=HOLDER)
+    assert prove_out_of_reach(side, [longer], ReachScene.of(slot)).area < 0.06 * side.area, "the corner at the floor"
+
+
+def test_limits_of_the_axes_count(pocket: Part) -> None:
+    floor = next(face for face in pocket.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 2], -5.0))
+    aside = Cone(np.array([1.0, 0.0, 0.0]), np.radians(20))
+    found = prove_out_of_reach(floor, [BALL], ReachScene.of(pocket, limits=aside))
+    assert found.area == pytest.approx(floor.area), "no such axis sees the floor past the walls"
+    assert contradictions(pocket, floor, [BALL], found, aside) == 0
+    assert prove_out_of_reach(floor, [BALL], ReachScene.of(pocket)).area < 0.5 * floor.area
+
+
+def test_a_longer_proof_finds_no_less_and_a_short_one_claims_little(slot: Part) -> None:
+    side = next(face for face in slot.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 1], -3.0))
+    scene = ReachScene.of(slot)
+    areas = [prove_out_of_reach(side, [BALL], scene, most).area for most in (1000, 100_000, 1_000_000)]
+    assert areas == sorted(areas) and areas[0] == 0.0
