@@ -39,8 +39,8 @@ FOLDER = Path(os.environ.get("TOOLAXIS_SHARED", Path(__file__).resolve().parents
 ENDINGS = (".step", ".stp")
 _COMMAND = ("-m", "toolaxis.cli.start")
 _COLUMNS = (f"{'part':24} {'tool':12} {'faces':>5} {'sculptured mm2':>14} {'drawn':>5} {'verified':>8} {'% faces':>7} "
-            f"{'% area':>6} {'planned':>7} {'open':>4} {'inspect':>7} {'plan s':>7} {'judge s':>7} {'face s':>7} "
-            f"{'op s':>6} {'clock s':>7} {'MB':>6}")
+            f"{'% area':>6} {'% out':>6} {'planned':>7} {'open':>4} {'inspect':>7} {'plan s':>7} {'judge s':>7} "
+            f"{'face s':>7} {'op s':>6} {'clock s':>7} {'MB':>6}")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -222,7 +222,8 @@ def _print_part(part: Mapping[str, Any]) -> None:
     rows = part["rows"]
     verified = [row for row in rows if row["verified"]]
     area, done = _areas(part)
-    shares = f"{_percent(len(verified), len(rows)):>7} {_percent(done, area):>6}"
+    proven = (part.get("whole") or {}).get("unreachable", 0.0)
+    shares = f"{_percent(len(verified), len(rows)):>7} {_percent(done, area):>6} {_percent(proven, area):>6}"
     unsafe = [row for row in rows if row["outcome"] in ("failed", "not judged")]
     undone = [row for row in rows if row["outcome"] in ("open", "left")]
     print(f"{part['part']:24} {part['tool']:12} {part['faces']:5d} {part['sculptured_area']:14.1f} {len(rows):5d} "
@@ -251,15 +252,21 @@ def _print_total(result: Mapping[str, Any]) -> None:
     rows = [row for part in result["parts"] for row in part["rows"]]
     verified = [row for row in rows if row["verified"]]
     areas = [_share(part) for part in result["parts"] if part["rows"]]
+    known = [part["whole"] for part in result["parts"] if part.get("whole")]
+    told = [(one["verified"] + one["unreachable"]) / one["area"] for one in known if one["area"] > 0]
     print(f"\n{len(result['parts'])} parts, {len(rows)} faces drawn, {len(verified)} verified "
           f"({_percent(len(verified), len(rows))} %); verified share of the drawn area, mean over parts "
           f"{100 * sum(areas) / max(len(areas), 1):.1f} %")
+    if told:
+        print(f"with what is proven to be out of reach of the rack: {100 * sum(told) / len(told):.1f} %, at least "
+              f"{100 * min(told):.1f} %")
     for outcome in ("failed", "not judged", "open", "left"):
         kinds = Counter(row["kind"] for row in rows if row["outcome"] == outcome)
         if kinds:
             print(f"{outcome}: " + ", ".join(f"{kind} {count}" for kind, count in kinds.most_common()))
     print("seconds are of processor time (all threads), clock s apart; planned: has a path that did not pass; face s, "
-          "op s: longest of one face to plan, to judge; MB: greatest resident set of one process")
+          "op s: longest of one face to plan, to judge; % out: proven to be out of reach of a rack; MB: greatest "
+          "resident set of one process")
 
 
 def _areas(part: Mapping[str, Any]) -> tuple[float, float]:

@@ -63,7 +63,7 @@ class OutOfReach(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Cells:
+class _Rectangles:
     """Rectangles of the parameters.
 
     middle, half : (n, 2) arrays, of u and v;  point, normal : (n, 3) arrays, at the contact, mm;  area : (n,) array,
@@ -79,9 +79,9 @@ class _Cells:
     off: Array
     turn: Array
 
-    def pick(self, rows: Bools | Indices) -> "_Cells":
+    def pick(self, rows: Bools | Indices) -> "_Rectangles":
         """Some of the cells."""
-        return _Cells(*(getattr(self, one.name)[rows] for one in fields(self)))
+        return _Rectangles(*(getattr(self, one.name)[rows] for one in fields(self)))
 
     @property
     def rectangles(self) -> Array:
@@ -93,23 +93,23 @@ class _Cells:
         return len(self.middle)
 
 
-class _Pairs(NamedTuple):
+class _CellCones(NamedTuple):
     """Pairs of a cell, by its number, and a cone."""
 
     cell: Indices
     cones: AxisCones
 
-    def pick(self, rows: Bools | Indices) -> "_Pairs":
+    def pick(self, rows: Bools | Indices) -> "_CellCones":
         """Some of the pairs."""
-        return _Pairs(self.cell[rows], self.cones.pick(rows))
+        return _CellCones(self.cell[rows], self.cones.pick(rows))
 
-    def halve(self) -> "_Pairs":
+    def halve(self) -> "_CellCones":
         """Four pairs in place of each, with its cone halved each way."""
-        return _Pairs(np.repeat(self.cell, 4), self.cones.halve())
+        return _CellCones(np.repeat(self.cell, 4), self.cones.halve())
 
-    def join(self, others: "_Pairs") -> "_Pairs":
+    def join(self, others: "_CellCones") -> "_CellCones":
         """These pairs and others."""
-        return _Pairs(np.concatenate([self.cell, others.cell]), self.cones.join(others.cones))
+        return _CellCones(np.concatenate([self.cell, others.cell]), self.cones.join(others.cones))
 
 
 def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
@@ -166,7 +166,7 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     return OutOfReach(min(proven, whole), min(by_corner, whole), min(reached, whole), np.concatenate(found))
 
 
-def _first_cells(face: Face) -> _Cells:
+def _first_cells(face: Face) -> _Rectangles:
     u, v = Lattice(face, _shape_for(face)).lines
     middle = np.stack(np.meshgrid((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
     half = np.stack(np.meshgrid(np.diff(u) / 2, np.diff(v) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -182,7 +182,7 @@ def _shape_for(face: Face) -> tuple[int, int]:
     return int(count[0]), int(count[1])
 
 
-def _halve(face: Face, cells: _Cells) -> tuple[_Cells, Indices]:
+def _halve(face: Face, cells: _Rectangles) -> tuple[_Rectangles, Indices]:
     """Four cells in place of each, those that have something of the face, and of which each is a quarter."""
     ways = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
     middle = (cells.middle[:, None] + ways * cells.half[:, None]).reshape(-1, 2)
@@ -190,7 +190,7 @@ def _halve(face: Face, cells: _Cells) -> tuple[_Cells, Indices]:
     return found, np.repeat(np.arange(len(cells)), 4)[kept]
 
 
-def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Cells, Bools]:
+def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Rectangles, Bools]:
     """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
     ways = np.stack(np.meshgrid(_PLACES, _PLACES, indexing="ij"), axis=-1).reshape(-1, 2)
     inside = face.contains((middle[:, None] + _WITHIN * ways * half[:, None]).reshape(-1, 2)).reshape(-1, 9)
@@ -207,7 +207,7 @@ def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Cell
     turn = np.where(known, np.asarray(angle_between(normals, normal[:, None])), np.pi).max(axis=1, initial=0.0)
     share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
     share *= area / max(float(share.sum()), np.finfo(float).tiny)
-    return _Cells(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
+    return _Rectangles(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +230,7 @@ def _proofs(face: Face, tools: Sequence[Tool], scene: ReachScene, cells: int) ->
     return [_Proof(scene, tool, required, room, cells) for tool in slim]
 
 
-def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: _Cells) -> tuple[Bools, Bools]:
+def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: _Rectangles) -> tuple[Bools, Bools]:
     """Where the ball in the smallest corner of all tools gouges, whatever the axis, as `_Proof.corner_gouges`."""
     if not proofs:
         return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
@@ -242,7 +242,7 @@ class _Proof:
 
     Attributes
     ----------
-    pairs : _Pairs
+    pairs : _CellCones
         The cells and cones of which it is not known whether the tool may touch the one with the other.
     """
 
@@ -255,7 +255,7 @@ class _Proof:
         self._core = _cut_into_slices(_take_off(whole, tool.flat_radius), tool.corner_radius)
         cones = first_cones()
         cell, cone = (side.ravel() for side in np.indices((cells, len(cones))))
-        self.pairs = _Pairs(cell, cones.pick(cone))
+        self.pairs = _CellCones(cell, cones.pick(cone))
 
     @property
     def ball(self) -> float:
@@ -263,7 +263,7 @@ class _Proof:
         tool = self._tool
         return tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
 
-    def corner_gouges(self, cells: _Cells) -> tuple[Bools, Bools]:
+    def corner_gouges(self, cells: _Rectangles) -> tuple[Bools, Bools]:
         """Where the ball in the tool's corner gouges at every contact of a cell, and where it does in the middle."""
         radius = self.ball
         if radius <= 0 or not len(cells):
@@ -277,12 +277,12 @@ class _Proof:
         surely[at] = self._blocked(ball, none[at], self._corner_off(cells)[at], places[at], cells.normal[at])
         return surely, middle
 
-    def close(self, cells: _Cells, asked: Bools, met: Bools, most: int) -> int:
+    def close(self, cells: _Rectangles, asked: Bools, met: Bools, most: int) -> int:
         """Leave those pairs of which nothing is known; note in met (n,) the cells that the tool reaches in the middle.
 
         Parameters
         ----------
-        cells : _Cells
+        cells : _Rectangles
         asked : (n,) array of bool
             Of which cells pairs are to be looked at.
         met : (n,) array of bool
@@ -309,7 +309,7 @@ class _Proof:
         self.pairs = kept.pick(~met[kept.cell])
         return tried
 
-    def _try(self, cells: _Cells, pairs: _Pairs, met: Bools) -> tuple[_Pairs, Bools]:
+    def _try(self, cells: _Rectangles, pairs: _CellCones, met: Bools) -> tuple[_CellCones, Bools]:
         """The pairs that are not decided, and which of them had better be halved in their cones than in their cells."""
         cones = pairs.cones
         pairs = pairs.pick(np.lexsort((pairs.cell, cones.place[:, 1], cones.place[:, 0], cones.side, cones.half)))
@@ -328,7 +328,7 @@ class _Proof:
         own = self._corner_off(cells)[pairs.cell]
         return pairs, (radius * (self._tool.stickout or self._tool.height) >= own) & (radius > _NARROW)
 
-    def _core_blocked(self, cells: _Cells, pairs: _Pairs, axes: Array, radius: Array) -> Bools:
+    def _core_blocked(self, cells: _Rectangles, pairs: _CellCones, axes: Array, radius: Array) -> Bools:
         """Whether what the tool has around the ball at its contact is blocked, to whichever side its axis lies."""
         corner = self._tool.corner_radius
         normal = cells.normal[pairs.cell]
@@ -350,9 +350,10 @@ class _Proof:
         first, last = (np.searchsorted(pairs.cell, left[parent], side=side) for side in ("left", "right"))
         count = last - first
         start = np.repeat(first - np.cumsum(count) + count, count)
-        self.pairs = _Pairs(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(start + np.arange(count.sum())))
+        rows = start + np.arange(count.sum())
+        self.pairs = _CellCones(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(rows))
 
-    def _may_touch(self, cells: _Cells, pairs: _Pairs) -> Bools:
+    def _may_touch(self, cells: _Rectangles, pairs: _CellCones) -> Bools:
         """Whether any axis of a cone may touch any place of a cell, by its angle to the normals and by the limits."""
         axes, radius, tool = pairs.cones.middle, pairs.cones.radius, self._tool
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
@@ -363,7 +364,7 @@ class _Proof:
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & (limits.excess(axes) <= radius))
 
-    def _is_seen(self, cells: _Cells, pairs: _Pairs, axes: Array) -> Bools:
+    def _is_seen(self, cells: _Rectangles, pairs: _CellCones, axes: Array) -> Bools:
         """Whether the axes themselves touch the contacts."""
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         found = angle <= np.pi / 2 - self._tool.half_angle
@@ -372,12 +373,12 @@ class _Proof:
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
 
-    def _corner_off(self, cells: _Cells) -> Array:
+    def _corner_off(self, cells: _Rectangles) -> Array:
         """How far the middle of the corner's ball lies from that at the contact of its cell, at most, (n,) mm."""
         radius = self._tool.corner_radius + self._scene.allowance
         return np.asarray(cells.off + 2 * radius * np.sin(cells.turn / 2))
 
-    def _off(self, cells: _Cells, pairs: _Pairs, axes: Array, radius: Array) -> Array:
+    def _off(self, cells: _Rectangles, pairs: _CellCones, axes: Array, radius: Array) -> Array:
         """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm.
 
         At an angle t of axis and normal, their turns turn the way from the ball to the circle's middle by as much over
