@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.path.mending import FurtherPasses
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.plan import Plan
@@ -20,9 +21,8 @@ TOOL = ta.Tool.ball(diameter=8, stickout=40)
 class Unmended(FaceProblem):
     """Passes as they are laid, without further ones over what they leave."""
 
-    def completed(self, placed: Layout) -> FurtherPasses:
+    def completed(self, placed: Layout, path: ToolPath) -> FurtherPasses:
         """The passes as they come."""
-        path = self.traced(placed)
         return FurtherPasses(placed, path, self.left_by(path))
 
 

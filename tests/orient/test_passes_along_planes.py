@@ -72,7 +72,8 @@ def test_further_passes_beside_a_wall_lie_in_planes_too(make) -> None:
     axis = np.array([0.0, -0.5, 1.0]) / np.sqrt(1.25)
     for feed in "uv":
         plain = job.traced(job.laid(axis, feed))
-        made = job.completed(job.laid(axis, feed))
+        placed = job.laid(axis, feed)
+        made = job.completed(placed, job.traced(placed))
         assert sum(zone.area for zone in made.zones) <= sum(zone.area for zone in job.left_by(plain)) + 1e-9
         assert undercut(made.zones) <= undercut(job.left_by(plain)) + 1e-9
         across = _chart(part.faces[0], axis, feed).frame[1]

@@ -7,7 +7,7 @@ import pytest
 
 from toolaxis.path.parametrization import Cut, IsoChart, columns
 from toolaxis.path.pass_count import measure
-from toolaxis.path.step_over import _root, _Strips, lines, space
+from toolaxis.path.step_over import _borrow, _root, _Strips, lines, space
 from toolaxis.path.trim_intervals import table
 from toolaxis.tools.tool import Tool
 
@@ -44,14 +44,14 @@ def test_strips_are_measured_only_where_something_is_to_be_covered() -> None:
     face = flat(40.0, 30.0).trimmed((np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),))
     chart, cut = IsoChart(face, "u"), Cut(Tool.torus(4, 0.5), leaning(15.0), 0.02, 0.0)
     across = lines(chart, cut)
-    strips = _Strips(chart, cut, across)
+    material = table(columns(chart, across.along), len(across.along))
+    strips = _Strips(chart, cut, across, material)
     front = np.where(across.along < 0.25, 0.9, np.inf)
     near = strips.watch_front(front, 0.9)
     assert near.sum() == (across.along < 0.25).sum()
     measured = strips.at(0.9)[near]
     strips.watch_front(np.zeros(len(across.along)), 0.0)
     assert measured == pytest.approx(strips.at(0.9)[near], rel=1e-12)
-    material = table(columns(chart, across.along), len(across.along))
     made = space(chart, cut, across, material)
     zero = (made.halves == 0).all(axis=2)
     assert not zero[0].any() and zero[-1].mean() > 0.2
@@ -83,3 +83,12 @@ def test_a_ball_counts_the_same_under_every_axis() -> None:
     lengths = [measure(IsoChart(face, "v"), Cut(ball, leaning(lead, turn), 0.02, 0.0)).length
                for lead, turn in ((2.0, 0.0), (25.0, 60.0), (40.0, 200.0))]
     assert lengths == pytest.approx([lengths[0]] * 3, rel=1e-3)
+
+
+def test_lines_beside_the_material_borrow_the_strips_of_their_neighbours() -> None:
+    halves = np.array([[0.0, 0.0], [2.0, 3.0], [0.0, 1.0], [np.nan, 0.0], [1.0, 4.0], [0.0, 0.0]])
+    beside = np.array([True, False, False, True, False, True])
+    made = _borrow(halves, beside)
+    assert made[[0, 3, 5]].tolist() == [[2.0, 3.0], [1.0, 3.0], [1.0, 4.0]]
+    assert made[[1, 2, 4]].tolist() == halves[[1, 2, 4]].tolist(), "a line on the material without a strip keeps none"
+    assert np.array_equal(_borrow(np.zeros((3, 2)), np.ones(3, dtype=bool)), np.zeros((3, 2)))

@@ -93,14 +93,16 @@ class FurtherPasses(NamedTuple):
         return undercut(self.zones)
 
 
-def complete_passes(placed: Layout, traced: Callable[[Layout], ToolPath], left: Callable[[ToolPath], tuple[Zone, ...]],
-                    reach: Reach | None = None) -> FurtherPasses:
+def complete_passes(placed: Layout, path: ToolPath, traced: Callable[[Layout], ToolPath],
+                    left: Callable[[ToolPath], tuple[Zone, ...]], reach: Reach | None = None) -> FurtherPasses:
     """Passes with as many further short ones as it takes to leave little on which the cutter may stand.
 
     Parameters
     ----------
     placed : Layout
         Of passes with a fixed axis, along parameters or planes.
+    path : ToolPath
+        Of that layout.
     traced : callable
         Makes the tool path of a layout.
     left : callable
@@ -120,7 +122,6 @@ def complete_passes(placed: Layout, traced: Callable[[Layout], ToolPath], left: 
 
     **Properties**: 1. it never leaves more than the layout did.
     """
-    path = traced(placed)
     made, plain = FurtherPasses(placed, path, left(path)), path.length(Motion.CUT)
     for _ in range(_ROUNDS if len(placed.pieces) else 0):
         further = add_passes_over_zones(made.placed, made.zones, reach)

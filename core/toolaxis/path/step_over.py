@@ -183,11 +183,22 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
 class _Strips:
     """Half widths along passes, remembered for the last place asked for.
 
-    They are zero on lines that have nothing to be covered near the pass: there the surface may go on in any way.
+    They are zero on lines that have nothing to be covered near the pass: there the surface may go on in any way.  So it
+    may beside the material, where a line at the pass helps only to interpolate: without a strip it borrows the nearest
+    lines' narrowest one.
+
+    Parameters
+    ----------
+    chart : Chart
+    cut : Cut
+    across : Lines
+    material : (m, k, 2) array
+        What is to be covered on each of all lines, padded with inf.
     """
 
-    def __init__(self, chart: Chart, cut: Cut, across: Lines) -> None:
+    def __init__(self, chart: Chart, cut: Cut, across: Lines, material: Array) -> None:
         self.chart, self.cut, self.across = chart, cut, across
+        self._material = material[np.searchsorted(across.along, across.measured)]
         self._step = np.nan
         _, _, s0, s1 = chart.bounds
         self._far = _NEAR * cut.tool.radius * (s1 - s0) / extents(chart)[1]
@@ -233,7 +244,10 @@ class _Strips:
         if step != self._step:
             along = self.across.measured[self._needed]
             self.measured = np.zeros((len(self.across.measured), 2))
-            self.measured[self._needed] = self.chart.half_widths(self.cut, along, np.full(len(along), step))
+            found = self.chart.half_widths(self.cut, along, np.full(len(along), step))
+            some = self._material[self._needed]
+            beside = ~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1)
+            self.measured[self._needed] = _borrow(found, beside)
             self._step, self.halves = step, self.across.spread(self.measured)
         return self.halves
 
@@ -271,6 +285,20 @@ class _Strips:
         return f"face {self.chart.face.label} at u {u:.4g}, v {v:.4g}"
 
 
+def _borrow(halves: Array, beside: Bools) -> Array:
+    """Half widths (n, 2) of neighbouring lines, those beside the material that have none replaced by their neighbours'.
+    """
+    none = ~(np.isfinite(halves) & (halves > 0)).all(axis=1)
+    empty, good = np.flatnonzero(none & beside), np.flatnonzero(~none)
+    if not len(empty) or not len(good):
+        return halves
+    place = np.searchsorted(good, empty)
+    before, after = good[np.maximum(place - 1, 0)], good[np.minimum(place, len(good) - 1)]
+    found = halves.copy()
+    found[empty] = np.minimum(halves[before], halves[after])
+    return found
+
+
 def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Progress = NO_PROGRESS) -> Spacing:
     """Lay passes over a face as far apart as the scallop height allows.
 
@@ -299,7 +327,7 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
     border.
     """
     _, _, s0, s1 = chart.bounds
-    strips, top = _Strips(chart, cut, across), last_of(material)
+    strips, top = _Strips(chart, cut, across, material), last_of(material)
     front = first_from(material, np.full(len(across.along), s0))
     steps: list[float] = []
     halves: list[Array] = []

@@ -19,6 +19,7 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.regions.cells import FaceCells, screening_axes
+from toolaxis.regions.prices import fits_hollows
 from toolaxis.regions.reach_screen import screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.direction_grid import ring
@@ -150,7 +151,8 @@ def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO
     width = mean_width(face)
     least = max(_WORTH * face.area, _SQUARES * 2 * tool.radius * min(2 * tool.radius, width))
     size = min(_SIZE * tool.radius, _ACROSS * width)
-    coarse = _Reach(FaceCells.sized(face, max(size, (face.area / _COARSE) ** 0.5)), tool, kept, least)
+    coarse = _Reach(FaceCells.sized(face, max(size, (face.area / _COARSE) ** 0.5)), tool, kept, job.worth.scallop,
+                    least)
     some = screening_axes([coarse.cells], kept.limits)
     for first in range(0, len(some), _TOGETHER):
         progress.report("division by reach", first, len(some))
@@ -158,7 +160,8 @@ def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO
     found = _Cover(coarse).find()
     if not found:
         return ReachDivision((), tuple(_parts(face.outline)), len(coarse.axes))
-    fine = _Reach(FaceCells.sized(face, max(size / _FINER, (face.area / _FINE) ** 0.5)), tool, kept, least, edges=1)
+    fine = _Reach(FaceCells.sized(face, max(size / _FINER, (face.area / _FINE) ** 0.5)), tool, kept, job.worth.scallop,
+                  least, edges=1)
     progress.report("division by reach", 1, 2)
     chosen = _Cover(fine).fill(list(fine.screen(coarse.axes[found])), coarse.axes)
     return _Borders(fine).divide(chosen, len(coarse.axes))
@@ -172,14 +175,18 @@ class _Reach:
     cells : FaceCells
     tool : Tool
     scene : ReachScene
+    scallop : float
+        mm
     least : float
         Area of a sub-surface at least, mm^2.
     edges : int
         Cells beside those that are in the way that are left out.
     """
 
-    def __init__(self, cells: FaceCells, tool: Tool, scene: ReachScene, least: float, edges: int = 0) -> None:
-        self.cells, self.tool, self.scene, self.least, self._edges = cells, tool, scene, least, edges
+    def __init__(self, cells: FaceCells, tool: Tool, scene: ReachScene, scallop: float, least: float,
+                 edges: int = 0) -> None:
+        self.cells, self.tool, self.scene, self.scallop, self.least = cells, tool, scene, scallop, least
+        self._edges = edges
         self._place = tuple(cells.index.T)
         self.axes = np.empty((0, 3))
         #: What each axis reaches, (k, n).
@@ -191,6 +198,7 @@ class _Reach:
         """Look at axes; their numbers."""
         cells, before = self.cells, len(self.axes)
         free = screen_reach(cells, [self.tool], axes, self.scene)[0]
+        free &= fits_hollows(cells, self.tool, axes, self.scallop, self.scene.allowance)
         seen = seen_cells(cells, self.tool, axes, self.scene.tolerance.min_lead)
         angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
         roomy = angle <= np.pi / 2 - self.tool.half_angle - _ROOM

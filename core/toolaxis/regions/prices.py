@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.strip.cutter_parameters import CAP
+from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters
 from toolaxis.contact.strip.second_order import relative_forms
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.width_correction import lean_ratios, lean_table, screening_cutter
@@ -16,6 +16,7 @@ from toolaxis.regions.cells import FaceCells
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: Axes that are looked at together.
 _TOGETHER = 64
@@ -52,8 +53,7 @@ def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: fl
     **Properties**: 1. moving face and axes together changes nothing; 2. all lengths scale.
     """
     rows = np.asarray(unit(as_rows(axes, 3, "axes")))
-    left = np.cross(cells.normal, cells.tangent)
-    forms = np.column_stack([cells.tangent, left, cells.normal, cells.form])
+    forms = _forms_of(cells)
     found = np.empty((len(tools), len(rows), len(cells)))
     for number, tool in enumerate(tools):
         for first in range(0, len(rows), _TOGETHER):
@@ -62,13 +62,40 @@ def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: fl
     return found
 
 
+def fits_hollows(cells: FaceCells, tool: Tool, axes: ArrayLike, scallop: float, allowance: float = 0.0) -> Bools:
+    """Whether a tool bends more than the face at the contacts of cells: else it leaves no strip there, (k, n).
+
+    Parameters
+    ----------
+    cells : FaceCells
+    tool : Tool
+    axes : (k, 3) array_like
+        Tool axes, tip to spindle.
+    scallop, allowance : float
+        mm
+    """
+    return np.asarray(_least_bend(_forms_of(cells), unit(as_rows(axes, 3, "axes")),
+                                  screening_cutter(tool, scallop, allowance))[0] > 0)
+
+
+def _forms_of(cells: FaceCells) -> Array:
+    """Tangents along and across, normals, and second fundamental forms in their frame, (n, 12)."""
+    return np.column_stack([cells.tangent, np.cross(cells.normal, cells.tangent), cells.normal, cells.form])
+
+
+def _least_bend(forms: Array, axes: Array, cutter: CutterParameters) -> tuple[Array, Array, Array, Array]:
+    """Smaller eigenvalue of the difference of the second forms of cutter and face, (k, n), and its three entries."""
+    along, across = (axes @ forms[:, first:first + 3].T for first in (0, 3))
+    ff, fk, kk = relative_forms(forms, (along, across), cutter)
+    return (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk), ff, fk, kk
+
+
 def _widest(forms: Array, tool: Tool, axes: Array, heights: tuple[float, float]) -> Array:
     """Widths for one tool, (k, n)."""
     scallop, allowance = heights
     cutter, table = screening_cutter(tool, scallop, allowance), lean_table(tool, scallop)
     along, across, up = (axes @ forms[:, first:first + 3].T for first in (0, 3, 6))
-    ff, fk, kk = relative_forms(forms, (along, across), cutter)
-    least = (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk)
+    least, ff, fk, kk = _least_bend(forms, axes, cutter)
     turn = np.arctan2(2 * fk, ff - kk) / 2  # of the eigenvector of the larger eigenvalue: the feed
     cosine, sine = np.cos(turn), np.sin(turn)
     free = (least > 0) & (up >= cutter.sin - 1e-9)

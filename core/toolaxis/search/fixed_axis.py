@@ -200,17 +200,20 @@ class FaceProblem:
         axis : (3,) array
         feed : str
         """
-        return self.completed(self.laid(axis, feed)).path
+        placed = self.laid(axis, feed)
+        return self.completed(placed, self.traced(placed)).path
 
-    def completed(self, placed: Layout) -> FurtherPasses:
+    def completed(self, placed: Layout, path: ToolPath) -> FurtherPasses:
         """Passes with the further ones that it takes to leave little on which the cutter may stand.
 
         Parameters
         ----------
         placed : Layout
+        path : ToolPath
+            Of that layout.
         """
         axis = placed.cut.axis
-        return complete_passes(placed, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+        return complete_passes(placed, path, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
 
     def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
@@ -534,12 +537,15 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
-    made = job.completed(placed)
-    proof = _proven(job, made.path)
-    if proof.witness is not None and made.placed is not placed:  # further passes are no reason to refuse an axis
-        path = job.traced(placed)
-        made = FurtherPasses(placed, path, job.left_by(path))
-        proof = _proven(job, path)
+    plain = job.traced(placed)
+    proof = _proven(job, plain)
+    made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
+    if made.placed is not placed:
+        of_all = _proven(job, made.path)
+        if of_all.witness is None:
+            proof = of_all
+        else:  # further passes are no reason to refuse an axis
+            made = FurtherPasses(placed, plain, job.left_by(plain))
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
