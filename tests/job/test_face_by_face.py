@@ -154,7 +154,7 @@ def test_a_part_taken_apart_is_the_one_with_the_other_skins() -> None:
 
 
 def test_an_impeller_skin_of_other_people(shared_parts: Path) -> None:
-    """Found: as one face nothing of it had an axis, for strips were asked of lines beside it; its faces had one by one."""
+    """Found: as one face nothing of it had an axis, for strips were asked of lines beside it."""
     pytest.importorskip("OCP")
     made = ta.plan(shared_parts / "kj66_impeller.step", "ball:4", 0.01, faces=[(2, 7, 9)], workers=1)
     asked = sum(op.face.area for op in made.operations)
