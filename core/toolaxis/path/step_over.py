@@ -246,7 +246,7 @@ class _Strips:
             self.measured = np.zeros((len(self.across.measured), 2))
             found = self.chart.half_widths(self.cut, along, np.full(len(along), step))
             some = self._material[self._needed]
-            beside = ~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1)
+            beside = np.asarray(~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1))
             self.measured[self._needed] = _borrow(found, beside)
             self._step, self.halves = step, self.across.spread(self.measured)
         return self.halves
