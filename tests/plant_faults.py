@@ -56,7 +56,7 @@ FAULTS = (
     Fault(CORE + "numeric/vectors.py", "np.eye(3) + s * k +", "np.eye(3) - s * k +", ("numeric",)),
     Fault(CORE + "shape/differential.py", "mean + spread, mean - spread, d1", "mean - spread, mean + spread, d1",
           ("shape",)),
-    Fault(CORE + "skin/seen_face.py", "second.append(bend - sx * aside", "second.append(bend + sx * aside",
+    Fault(CORE + "skin/place_kernel.py", "bend[n, c] - first[0, c] * x", "bend[n, c] + first[0, c] * x",
           ("skin",)),
     Fault(CORE + "tools/tool.py", "self.stickout - self.holder[0, 1]]", "self.stickout]", ("tools",)),
     Fault(CORE + "contact/placement.py", "(tool.corner_radius + allowance) * normal",

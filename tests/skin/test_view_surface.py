@@ -10,6 +10,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -18,6 +19,7 @@ from toolaxis.skin import view_surface
 from toolaxis.skin.find import find_skins
 from toolaxis.skin.join import join
 from toolaxis.skin.pieces import own_pieces
+from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.unite import unite
 from toolaxis.skin.view_surface import ViewSurface
 
@@ -44,6 +46,30 @@ def test_points_normals_and_curvatures_are_those_of_the_members(united: Face, wh
     assert (united.normal(uv) * whole.normal(found.uv)).sum(axis=1).min() > 1 - 1e-12
     mine, theirs = united.curvature(uv), whole.curvature(found.uv)
     assert np.abs(mine.k1 - theirs.k1).max() < 1e-9 and np.abs(mine.k2 - theirs.k2).max() < 1e-9
+
+
+def ring() -> Face:
+    """A ring around z: closed in u, and seen whole from above."""
+    turn = np.linspace(0, 2 * np.pi, 13)
+    rows = [np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(13, 0.2 * r * r)]) for r in (4.0, 6.0, 8.0, 9.0)]
+    return Face.from_bspline(np.stack(rows, axis=1))
+
+
+def test_the_kernel_finds_what_its_plain_twin_finds(united: Face) -> None:
+    assert isinstance(united.surface, ViewSurface)
+    seen = [*united.surface.seen, SeenFace(ring(), np.eye(3)[:2], np.zeros(3))]
+    for one in seen:
+        assert one._has_kernel == _compiled.available
+        low, high = one.box
+        places = low - 0.1 * (high - low) + PLACES * 1.2 * (high - low)
+        places = places[one.contains(places)]
+        assert len(places) > 100
+        uv = one._find_plainly(places, one._begin(places))
+        assert np.abs(one.find(places) - uv).max() < 1e-9
+        for mine, plain in zip(one.evaluate(places), one._evaluate_plainly(uv), strict=True):
+            assert np.abs(mine - plain).max() < 1e-7
+        assert np.abs(one.project(one.evaluate(places).point) - places).max() < 1e-9
+    assert np.isfinite(seen[-1].periods[0])
 
 
 def test_derivatives_are_those_of_the_points(united: Face) -> None:

@@ -39,11 +39,12 @@ class FacesInView:
         places : (n, 2) array
         """
         owner = np.full(len(places), -1, dtype=np.intp)
-        for k, one in enumerate(self.seen):
-            left = np.flatnonzero(owner < 0)
-            if not len(left):
-                return owner
-            owner[left[one.contains(places[left])]] = k
+        low, high = self._boxes
+        near = np.asarray(((places >= low[:, None]) & (places <= high[:, None])).all(axis=2))
+        for k in np.flatnonzero(near.any(axis=1)):
+            left = np.flatnonzero(near[k] & (owner < 0))
+            if len(left):
+                owner[left[self.seen[k].contains(places[left])]] = k
         gap = np.flatnonzero(owner < 0)
         gap = gap[inside(self._around, places[gap])] if len(gap) else gap
         if len(gap):
@@ -74,6 +75,11 @@ class FacesInView:
         places : (n, 2) array
         """
         return np.asarray(self._which[self._borders.query(places)[1]], dtype=np.intp)
+
+    @cached_property
+    def _boxes(self) -> Array:
+        """Lower and upper corners of the faces' outlines, (2, k, 2)."""
+        return np.stack([one.box for one in self.seen], axis=1)
 
     @cached_property
     def _around(self) -> EdgeIndex:

@@ -7,18 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs, stations, walk
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
+from toolaxis.skin.place_kernel import FAR, ITERATIONS, LAST, PARALLEL, PlaceFrame, find_places, turn_into_plane
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: Places along each parameter, and pieces of the longest loop, from which a point is looked for.
 _GRID, _PIECES = 24, 192
-#: Newton steps, the step after which the next one is below rounding, and the longest step, as shares of the parameter
-#: range.
-_ITERATIONS, _LAST, _FAR = 30, 1e-8, 0.25
 #: Ends of a parameter range that lie nearer to each other than this share of the face's diagonal are the same.
 _SAME = 1e-6
 
@@ -113,18 +114,40 @@ class SeenFace:
         ----------
         places : (n, 2) array
         """
+        uv = self._begin(places)
+        if self._has_kernel:
+            find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv,
+                        np.empty((len(uv), 6, 3)))
+            return uv
+        return self._find_plainly(places, uv)
+
+    def _begin(self, places: Array) -> Array:
+        """The parameters of the nearest sample to each place, (n, 2)."""
+        breathe()
+        return self.samples[self._tree.query(places)[1]].copy()
+
+    @cached_property
+    def _has_kernel(self) -> bool:
+        return _compiled.available and type(self.face.surface) is NurbsSurface
+
+    @cached_property
+    def _frame(self) -> PlaceFrame:
         (u0, u1), (v0, v1) = self.face.surface.domain
-        low, span = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
-        uv = self.samples[self._tree.query(places)[1]].copy()
+        ends = np.array([[u0, u1 - u0, self.periods[0]], [v0, v1 - v0, self.periods[1]]])
+        return PlaceFrame(np.ascontiguousarray(self.rows, dtype=float), np.asarray(self.origin, dtype=float), ends)
+
+    def _find_plainly(self, places: Array, uv: Array) -> Array:
+        """The plain twin of `toolaxis.skin.place_kernel.find_places`."""
+        low, span = self._frame.ends[:, 0], self._frame.ends[:, 1]
         todo = np.arange(len(uv))
-        for _ in range(_ITERATIONS):
+        for _ in range(ITERATIONS):
             d = self.face.evaluate(uv[todo])
             miss = places[todo] - self.project(d.point)
             move = _solve(d.su @ self.rows.T, d.sv @ self.rows.T, miss)
             size = (np.abs(move) / span).max(axis=1)
-            move *= np.minimum(1.0, _FAR / np.maximum(size, np.finfo(float).tiny))[:, None]
+            move *= np.minimum(1.0, FAR / np.maximum(size, np.finfo(float).tiny))[:, None]
             uv[todo] = self._wrap(uv[todo] + move, low)
-            todo = todo[size > _LAST]
+            todo = todo[size > LAST]
             if not len(todo):
                 break
         return uv
@@ -136,7 +159,17 @@ class SeenFace:
         ----------
         places : (n, 2) array
         """
-        d = self.face.evaluate(self.find(places))
+        if not self._has_kernel:
+            return self._evaluate_plainly(self.find(places))
+        uv = self._begin(places)
+        table = np.empty((len(uv), 6, 3))
+        find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv, table)
+        turn_into_plane(self._frame.rows, table)
+        return Derivatives(*(table[:, k] for k in range(6)))
+
+    def _evaluate_plainly(self, uv: Array) -> Derivatives:
+        """The plain twin of `toolaxis.skin.place_kernel.turn_into_plane`, at parameters (n, 2)."""
+        d = self.face.evaluate(uv)
         a, b = d.su @ self.rows.T, d.sv @ self.rows.T
         det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
@@ -163,7 +196,7 @@ def _solve(a: Array, b: Array, right: Array) -> Array:
     """Solutions (n, 2) of a x + b y = right, all (n, 2); none moves where a and b have one direction."""
     det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     size = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
-    good = np.abs(det) > 1e-14 * size
+    good = np.abs(det) > PARALLEL * size
     found = np.column_stack([right[:, 0] * b[:, 1] - right[:, 1] * b[:, 0],
                              a[:, 0] * right[:, 1] - a[:, 1] * right[:, 0]])
     return np.asarray(np.where(good[:, None], found / np.where(good, det, 1.0)[:, None], 0.0))

@@ -1,0 +1,109 @@
+"""The point of a surface that lies at a place of a plane, by Newton's method: the kernel."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
+from toolaxis.numeric.jit import jit
+
+Array = NDArray[np.float64]
+
+ITERATIONS, LAST, FAR = 30, 1e-8, 0.25
+"""Newton steps, the step after which the next one is below rounding, and the longest step, as shares of the range."""
+PARALLEL = 1e-14
+"""Share of their lengths' product below which the cross product of two directions tells that they are one."""
+
+
+class PlaceFrame(NamedTuple):
+    """A plane, and the range of a surface's parameters.
+
+    rows : (2, 3) array, coordinates in the plane are rows @ (p - origin);  origin : (3,) array, mm
+    ends : (2, 3) array, least value of u and of v, its range, and the range in which it is closed, infinite if open
+    """
+
+    rows: Array
+    origin: Array
+    ends: Array
+
+
+@jit
+def _seen(rows: Array, k: int, vector: Array) -> float:
+    """Coordinate k of a vector in the plane."""
+    return float(rows[k, 0] * vector[0] + rows[k, 1] * vector[1] + rows[k, 2] * vector[2])
+
+
+@jit
+def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, out: Array) -> None:
+    """Parameters of a surface at places of a plane, with the six vectors there.
+
+    Parameters
+    ----------
+    data : SurfaceData
+    frame : PlaceFrame
+    places : (n, 2) array
+    uv : (n, 2) array
+        Where to begin; receives the parameters.
+    out : (n, 6, 3) array
+        Receives S, Su, Sv, Suu, Suv, Svv.
+    """
+    rows, origin, ends = frame
+    work, step = np.empty((6, 26)), np.empty(2)
+    for i in range(places.shape[0]):
+        d = out[i]
+        for _ in range(ITERATIONS):
+            surface_derivatives(data, uv[i, 0], uv[i, 1], d, work)
+            x = places[i, 0] - (_seen(rows, 0, d[0]) - _seen(rows, 0, origin))
+            y = places[i, 1] - (_seen(rows, 1, d[0]) - _seen(rows, 1, origin))
+            ax, ay, bx, by = _seen(rows, 0, d[1]), _seen(rows, 1, d[1]), _seen(rows, 0, d[2]), _seen(rows, 1, d[2])
+            det = ax * by - ay * bx
+            step[0], step[1] = 0.0, 0.0
+            if abs(det) > PARALLEL * np.sqrt(ax * ax + ay * ay) * np.sqrt(bx * bx + by * by):
+                step[0], step[1] = (x * by - y * bx) / det, (ax * y - ay * x) / det
+            size = max(abs(step[0]) / ends[0, 1], abs(step[1]) / ends[1, 1])
+            shorter = FAR / size if size > FAR else 1.0
+            for k in range(2):
+                uv[i, k] += shorter * step[k]
+                if np.isfinite(ends[k, 2]):
+                    uv[i, k] = ends[k, 0] + (uv[i, k] - ends[k, 0]) % ends[k, 2]
+            if size <= LAST:
+                break
+        surface_derivatives(data, uv[i, 0], uv[i, 1], d, work)
+
+
+@jit
+def turn_into_plane(rows: Array, table: Array) -> None:
+    """Vectors S, Su, Sv, Suu, Suv, Svv turned into derivatives with the place in the plane, in place.
+
+    Places in the plane move evenly: what the second derivatives would move aside, u and v take back.
+
+    Parameters
+    ----------
+    rows : (2, 3) array
+    table : (n, 6, 3) array
+    """
+    rate, first, bend = np.empty((2, 2)), np.empty((2, 3)), np.empty((3, 3))
+    for i in range(table.shape[0]):
+        d = table[i]
+        ax, ay, bx, by = _seen(rows, 0, d[1]), _seen(rows, 1, d[1]), _seen(rows, 0, d[2]), _seen(rows, 1, d[2])
+        det = ax * by - ay * bx
+        if not abs(det) > 0.0:
+            det = np.finfo(np.float64).tiny
+        # rates of u and v with x, and with y
+        rate[0, 0], rate[0, 1], rate[1, 0], rate[1, 1] = by / det, -ay / det, -bx / det, ax / det
+        for k in range(2):
+            for c in range(3):
+                first[k, c] = d[1, c] * rate[k, 0] + d[2, c] * rate[k, 1]
+        for n in range(3):
+            p, q = (0 if n < 2 else 1), (0 if n < 1 else 1)
+            for c in range(3):
+                bend[n, c] = (d[3, c] * rate[p, 0] * rate[q, 0] + d[5, c] * rate[p, 1] * rate[q, 1]
+                              + d[4, c] * (rate[p, 0] * rate[q, 1] + rate[p, 1] * rate[q, 0]))
+        for n in range(3):
+            x, y = _seen(rows, 0, bend[n]), _seen(rows, 1, bend[n])
+            for c in range(3):
+                d[3 + n, c] = bend[n, c] - first[0, c] * x - first[1, c] * y
+        for k in range(2):
+            for c in range(3):
+                d[1 + k, c] = first[k, c]
