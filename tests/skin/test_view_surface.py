@@ -51,8 +51,9 @@ def test_points_normals_and_curvatures_are_those_of_the_members(united: Face, wh
 def ring() -> Face:
     """A ring around z: closed in u, and seen whole from above."""
     turn = np.linspace(0, 2 * np.pi, 13)
-    rows = [np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(13, 0.2 * r * r)]) for r in (4.0, 6.0, 8.0, 9.0)]
-    return Face.from_bspline(np.stack(rows, axis=1))
+    radius = np.array([4.0, 6.0, 8.0, 9.0])
+    height = np.broadcast_to(0.2 * radius**2, (13, 4))
+    return Face.from_bspline(np.stack([np.outer(np.cos(turn), radius), np.outer(np.sin(turn), radius), height], axis=-1))
 
 
 def test_the_kernel_finds_what_its_plain_twin_finds(united: Face) -> None:
