@@ -53,7 +53,8 @@ def ring() -> Face:
     turn = np.linspace(0, 2 * np.pi, 13)
     radius = np.array([4.0, 6.0, 8.0, 9.0])
     height = np.broadcast_to(0.2 * radius**2, (13, 4))
-    return Face.from_bspline(np.stack([np.outer(np.cos(turn), radius), np.outer(np.sin(turn), radius), height], axis=-1))
+    x, y = np.outer(np.cos(turn), radius), np.outer(np.sin(turn), radius)
+    return Face.from_bspline(np.stack([x, y, height], axis=-1))
 
 
 def test_the_kernel_finds_what_its_plain_twin_finds(united: Face) -> None:
