@@ -182,10 +182,8 @@ def _planned_and_judged(part: dict[str, Any], words: list[str], areas: Mapping[i
     bounds, place = where
     folder = place / "plan"
     usual = [*_COMMAND, "plan", *words, "--out", str(folder), "--workers", "1", "--no-pictures"]
-    named = [*usual, "--faces", ",".join(map(str, areas))]
-    planned = run(python(*(usual if whole else named)), bounds, place)
-    if whole and planned.code == 2 and any("blades" in reason for reason in last_reasons(planned)):
-        planned = run(python(*named), bounds, place)  # a part with blades is planned with several tools by its faces
+    faces = () if whole else ("--faces", ",".join(map(str, areas)))
+    planned = run(python(*usual, *faces), bounds, place)
     part["processes"]["plan"] = _process(planned)
     plan, judged, verdict = _read(folder / "plan.json"), None, None
     if plan is not None and any(op["cl_file"] for op in plan["operations"]):
