@@ -1,7 +1,8 @@
 """The nearest point of a trimmed face to given points."""
 
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,9 @@ Array = NDArray[np.float64]
 
 #: Nearest samples from which the search sets out, inside and on the border.
 STARTS = 4
+#: Steps at most, the least share of Newton's step that is tried, and the share of a parameter's range below which
+#: a step is nothing.
+_STEPS, _LEAST_SHARE, _NOTHING = 30, 0.005, 1e-13
 
 
 class NearestPoints(NamedTuple):
@@ -60,12 +64,53 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
                            for x, y in zip(inner, best, strict=True)))
 
 
-def _starts(samples: Array, targets: Array) -> NDArray[np.int64]:
-    """Numbers of the nearest samples to each target, (n, k)."""
+class _FaceSamples:
+    """Points of a face from which searches set out, kept with it: many ask for the nearest points of one face.
+
+    Attributes
+    ----------
+    grid : (m, 2) array
+        Parameters of points inside.
+    borders : list of (k,) array
+        Positions of points along each loop.
+    """
+
+    def __init__(self, face: Face, samples: int) -> None:
+        u0, u1, v0, v1 = face.bounds
+        self.grid = face.grid(samples, samples)
+        self.borders = [stations(loop, ((u1 - u0) / samples, (v1 - v0) / samples)) for loop in face.outline]
+        self._inside = _tree(face, self.grid)
+        self._along = [_tree(face, walk(loop, at)) for loop, at in zip(face.outline, self.borders, strict=True)]
+
+    def starts_inside(self, targets: Array) -> NDArray[np.int64]:
+        """Numbers of the nearest points inside to each target, (n, k)."""
+        return _starts(self._inside, targets)
+
+    def starts_along(self, loop: int, targets: Array) -> NDArray[np.int64]:
+        """Numbers of the nearest points of a loop to each target, (n, k)."""
+        return _starts(self._along[loop], targets)
+
+
+_KNOWN: WeakKeyDictionary[Face, dict[int, _FaceSamples]] = WeakKeyDictionary()
+
+
+def _samples_of(face: Face, samples: int) -> _FaceSamples:
+    known = _KNOWN.setdefault(face, {})
+    if samples not in known:
+        known[samples] = _FaceSamples(face, samples)
+    return known[samples]
+
+
+def _tree(face: Face, uv: Array) -> Any:
     from scipy.spatial import cKDTree
 
-    count = min(STARTS, len(samples))
-    return np.asarray(cKDTree(samples).query(targets, k=count)[1], dtype=np.int64).reshape(len(targets), count)
+    return cKDTree(face.evaluate(uv).point) if len(uv) else None
+
+
+def _starts(tree: Any, targets: Array) -> NDArray[np.int64]:
+    """Numbers of the nearest points of a tree to each target, (n, k)."""
+    count = min(STARTS, tree.n)
+    return np.asarray(tree.query(targets, k=count)[1], dtype=np.int64).reshape(len(targets), count)
 
 
 def _answer(face: Face, targets: Array, uv: Array) -> NearestPoints:
@@ -79,27 +124,29 @@ def _pick(found: list[NearestPoints]) -> NearestPoints:
 
 
 def _from_inside(face: Face, targets: Array, samples: int) -> NearestPoints | None:
-    grid = face.grid(samples, samples)
-    if not len(grid):
+    known = _samples_of(face, samples)
+    if not len(known.grid):
         return None
-    start = _starts(face.evaluate(grid).point, targets)
-    return _pick([_descend(face, targets, grid[column]) for column in start.T])
+    return _pick([_descend(face, targets, known.grid[column]) for column in known.starts_inside(targets).T])
 
 
 def _descend(face: Face, targets: Array, uv: Array) -> NearestPoints:
     """Newton steps down the squared distance, halved until they descend, as long as they stay on the face."""
     u0, u1, v0, v1 = face.bounds
     low, high = np.array([u0, v0]), np.array([u1, v1])
-    best, share = _answer(face, targets, uv), np.ones(len(uv))
-    for _ in range(30):
-        trial = np.clip(best.uv + share[:, None] * _newton(face, targets, best.uv), low, high)
-        found = _answer(face, targets, trial)
-        better = (found.distance < best.distance) & face.contains(trial)
-        if not better.any() and (share < 0.01).all():
+    best, share, rows = _answer(face, targets, uv), np.ones(len(uv)), np.arange(len(uv))
+    for _ in range(_STEPS):
+        start = best.uv[rows]
+        trial = np.clip(start + share[rows, None] * _newton(face, targets[rows], start), low, high)
+        found = _answer(face, targets[rows], trial)
+        better = (found.distance < best.distance[rows]) & face.contains(trial)
+        for mine, theirs in zip(best, found, strict=True):
+            mine[rows[better]] = theirs[better]
+        share[rows] = np.where(better, 1.0, 0.5 * share[rows])
+        moved = (np.abs(trial - start) > _NOTHING * (high - low)).any(axis=1)
+        rows = rows[moved & (share[rows] >= _LEAST_SHARE)]
+        if not len(rows):
             break
-        share = np.where(better, 1.0, 0.5 * share)
-        best = NearestPoints(*(np.where(better if x.ndim == 1 else better[:, None], x, y)
-                               for x, y in zip(found, best, strict=True)))
     return best
 
 
@@ -118,11 +165,9 @@ def _newton(face: Face, targets: Array, uv: Array) -> Array:
 
 
 def _from_border(face: Face, targets: Array, samples: int) -> NearestPoints:
-    u0, u1, v0, v1 = face.bounds
-    found = []
-    for loop in face.outline:
-        position = stations(loop, ((u1 - u0) / samples, (v1 - v0) / samples))
-        start = _starts(face.evaluate(walk(loop, position)).point, targets)
+    found, known = [], _samples_of(face, samples)
+    for number, loop in enumerate(face.outline):
+        position, start = known.borders[number], known.starts_along(number, targets)
         gap = partial(_gap, face, targets, loop)
         for column in start.T[:2]:
             before = np.where(column > 0, position[column - 1], position[-1] - len(loop))
