@@ -250,8 +250,8 @@ def _print_total(result: Mapping[str, Any]) -> None:
     rows = [row for part in result["parts"] for row in part["rows"]]
     verified = [row for row in rows if row["verified"]]
     areas = [_share(part) for part in result["parts"] if part["rows"]]
-    known = [part["whole"] for part in result["parts"] if part.get("whole")]
-    told = [(one["verified"] + one["unreachable"]) / one["area"] for one in known if one["area"] > 0]
+    known = [(part["whole"], _areas(part)[0]) for part in result["parts"] if part.get("whole")]
+    told = [(one["verified"] + one["unreachable"]) / area for one, area in known if area > 0]
     print(f"\n{len(result['parts'])} parts, {len(rows)} faces drawn, {len(verified)} verified "
           f"({_percent(len(verified), len(rows))} %); verified share of the drawn area, mean over parts "
           f"{100 * sum(areas) / max(len(areas), 1):.1f} %")
@@ -270,7 +270,10 @@ def _print_total(result: Mapping[str, Any]) -> None:
 def _areas(part: Mapping[str, Any]) -> tuple[float, float]:
     """Area that was asked for, and what of it is verified, mm^2."""
     if part.get("whole"):
-        return part["whole"]["area"], part["whole"]["verified"]
+        asked = part["whole"]["area"]
+        if part["outcome"] == "cancelled":  # which knows only of the faces that were begun
+            asked = max(asked, part["sculptured_area"])
+        return asked, part["whole"]["verified"]
     return sum(row["area"] for row in part["rows"]), sum(row["verified_area"] for row in part["rows"])
 
 
