@@ -29,7 +29,7 @@ class PlaceFrame(NamedTuple):
 
 
 @jit
-def _seen(rows: Array, k: int, vector: Array) -> float:
+def _part(rows: Array, k: int, vector: Array) -> float:
     """Coordinate k of a vector in the plane."""
     return float(rows[k, 0] * vector[0] + rows[k, 1] * vector[1] + rows[k, 2] * vector[2])
 
@@ -54,9 +54,9 @@ def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, 
         d = out[i]
         for _ in range(ITERATIONS):
             surface_derivatives(data, uv[i, 0], uv[i, 1], d, work)
-            x = places[i, 0] - (_seen(rows, 0, d[0]) - _seen(rows, 0, origin))
-            y = places[i, 1] - (_seen(rows, 1, d[0]) - _seen(rows, 1, origin))
-            ax, ay, bx, by = _seen(rows, 0, d[1]), _seen(rows, 1, d[1]), _seen(rows, 0, d[2]), _seen(rows, 1, d[2])
+            x = places[i, 0] - (_part(rows, 0, d[0]) - _part(rows, 0, origin))
+            y = places[i, 1] - (_part(rows, 1, d[0]) - _part(rows, 1, origin))
+            ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
             det = ax * by - ay * bx
             step[0], step[1] = 0.0, 0.0
             if abs(det) > PARALLEL * np.sqrt(ax * ax + ay * ay) * np.sqrt(bx * bx + by * by):
@@ -86,7 +86,7 @@ def turn_into_plane(rows: Array, table: Array) -> None:
     rate, first, bend = np.empty((2, 2)), np.empty((2, 3)), np.empty((3, 3))
     for i in range(table.shape[0]):
         d = table[i]
-        ax, ay, bx, by = _seen(rows, 0, d[1]), _seen(rows, 1, d[1]), _seen(rows, 0, d[2]), _seen(rows, 1, d[2])
+        ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
         det = ax * by - ay * bx
         if not abs(det) > 0.0:
             det = np.finfo(np.float64).tiny
@@ -101,7 +101,7 @@ def turn_into_plane(rows: Array, table: Array) -> None:
                 bend[n, c] = (d[3, c] * rate[p, 0] * rate[q, 0] + d[5, c] * rate[p, 1] * rate[q, 1]
                               + d[4, c] * (rate[p, 0] * rate[q, 1] + rate[p, 1] * rate[q, 0]))
         for n in range(3):
-            x, y = _seen(rows, 0, bend[n]), _seen(rows, 1, bend[n])
+            x, y = _part(rows, 0, bend[n]), _part(rows, 1, bend[n])
             for c in range(3):
                 d[3 + n, c] = bend[n, c] - first[0, c] * x - first[1, c] * y
         for k in range(2):

@@ -80,14 +80,14 @@ def with_unreachable(plan: Plan, jobs: Sequence[PlanningJob], progress: Progress
     by_operation: dict[int, list[tuple[OpenFace, float]]] = {}
     for k, area in found.results.items():
         by_operation.setdefault(places[k].operation, []).append((places[k], area))
-    made = {op.number: _told(op, by_operation.get(op.number, [])) for op in plan.operations}
+    made = {op.number: _with_areas(op, by_operation.get(op.number, [])) for op in plan.operations}
     if plan.blades is not None and job.axis_limits is None:  # with limits another axis is held on each blade
         for number, original in plan.blades.copies.items():
             made[number] = _as_of(made[number], made[original])
     return replace(plan, operations=tuple(made[op.number] for op in plan.operations))
 
 
-def _told(op: Operation, found: Sequence[tuple[OpenFace, float]]) -> Operation:
+def _with_areas(op: Operation, found: Sequence[tuple[OpenFace, float]]) -> Operation:
     """An operation that tells of areas that are out of reach."""
     zones = list(op.zones)
     for place, area in found:
