@@ -25,10 +25,9 @@ _FLAT = 1e-4
 class OpenPlace(NamedTuple):
     """A place that no operation machines.
 
-    label : str, of the sub-surface;  area : float, mm^2;  unreachable : float, mm^2 of it, proven to be out of reach of
-    every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float,
-    least radius of its hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work
-    ended the search there.
+    label : str, of the sub-surface;  area : float, mm^2;  unreachable : float, mm^2 of it that are proven to be out of
+    reach of every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float, least radius of its
+    hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work ended the search there.
     """
 
     label: str

@@ -38,10 +38,10 @@ class Operation:
         Where the rotary axes of the plan's machine stand, rad; empty without one.
     rest_of : tuple of int
         Numbers of the operations with larger tools that left it; empty where it is not such a rest.
-    unreachable : float
-        Area that is proven to be out of reach of every tool of the plan, mm^2, where there is no path.
     traceback : str
         Where the program failed on it, of the exception; plan.json names the file that has it.
+    unreachable : float
+        Area that is proven to be out of reach of every tool of the plan, mm^2, where there is no path.
     """
 
     number: int

@@ -114,12 +114,14 @@ class SeenFace:
         ----------
         places : (n, 2) array
         """
+        return self._find_by_kernel(places)[0] if self._has_kernel else self._find_plainly(places, self._begin(places))
+
+    def _find_by_kernel(self, places: Array) -> tuple[Array, Array]:
+        """The parameters, and the six vectors S, Su, Sv, Suu, Suv, Svv there, (n, 6, 3)."""
         uv = self._begin(places)
-        if self._has_kernel:
-            find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv,
-                        np.empty((len(uv), 6, 3)))
-            return uv
-        return self._find_plainly(places, uv)
+        table = np.empty((len(uv), 6, 3))
+        find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv, table)
+        return uv, table
 
     def _begin(self, places: Array) -> Array:
         """The parameters of the nearest sample to each place, (n, 2)."""
@@ -161,9 +163,7 @@ class SeenFace:
         """
         if not self._has_kernel:
             return self._evaluate_plainly(self.find(places))
-        uv = self._begin(places)
-        table = np.empty((len(uv), 6, 3))
-        find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv, table)
+        table = self._find_by_kernel(places)[1]
         turn_into_plane(self._frame.rows, table)
         return Derivatives(*(table[:, k] for k in range(6)))
 

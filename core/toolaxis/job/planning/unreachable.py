@@ -29,7 +29,7 @@ def scene_of(job: PlanningJob) -> ReachScene:
     return ReachScene.of(job.part, job.obstacles, job.inputs.tolerance, job.axis_limits, job.inputs.allowance)
 
 
-def prove_unreachable(face: Face, jobs: Sequence[PlanningJob], scene: ReachScene, share: float = 1.0) -> OutOfReach:
+def prove_unreachable(face: Face, jobs: Sequence[PlanningJob], scene: ReachScene, share: float) -> OutOfReach:
     """What of a face is out of reach of the tools of several jobs.
 
     Parameters
