@@ -215,6 +215,27 @@ def test_what_the_proof_refuses_is_not_given(make, monkeypatch):
     assert any(reason.startswith("refused") and "0.003 mm" in reason for reason in found.reasons)
 
 
+def test_few_motions_that_the_proof_refuses_are_left_out(make, monkeypatch):
+    face, refused, kept = make.seeded(78), [], []
+
+    def strict(path, *rest, **more):
+        cutting = np.flatnonzero(path.kind[1:] == Motion.CUT)
+        if not refused:
+            some = cutting[[40, 41]]
+            refused.extend(((path.cc[some] + path.cc[some + 1]) / 2).tolist())
+            return PathCheck(Violation(GOUGE, 0.001, "1", distance=-0.003), blocked=some)
+        kept.append(path.cc[cutting])
+        return prove(path, *rest, **more)
+
+    plain = best_axis(face, TOOL, H)
+    monkeypatch.setattr("toolaxis.search.fixed_axis.prove", strict)
+    found = best_axis(face, TOOL, H)
+    np.testing.assert_array_equal(found.axis, plain.axis)
+    assert found.outcome == "feasible" and not any(reason.startswith("refused") for reason in found.reasons)
+    away = np.linalg.norm(kept[0][:, None] - np.array(refused)[None], axis=2).min(axis=0)
+    assert (away > 0.01).all()
+
+
 def test_cancelling_gives_what_is_known(make):
     seen = []
 

@@ -182,13 +182,23 @@ class IsoChart:
     @cached_property
     def _poles(self) -> tuple[float, float]:
         """Steps shortly after a lower and before an upper border that is a point; infinite where there is none."""
+        return self._find_poles(1)
+
+    @cached_property
+    def _poles_along(self) -> tuple[float, float]:
+        """The same of the along parameter: there all passes meet."""
+        return self._find_poles(0)
+
+    def _find_poles(self, which: int) -> tuple[float, float]:
         a0, a1, s0, s1 = self._range
-        places = np.repeat([s0, (s0 + s1) / 2, s1], 5)
-        points = self.face.evaluate(self.uv(np.tile(np.linspace(a0, a1, 5), 3), places)).point
+        low_end, high_end = (s0, s1) if which else (a0, a1)
+        line = np.linspace(a0, a1, 5) if which else np.linspace(s0, s1, 5)
+        one, other = np.tile(line, 3), np.repeat([low_end, (low_end + high_end) / 2, high_end], 5)
+        points = self.face.evaluate(self.uv(one, other) if which else self.uv(other, one)).point
         low, high = (np.ptp(points[row], axis=0).max() < 1e-9 * np.ptp(points, axis=0).max()
                      for row in (slice(0, 5), slice(10, 15)))
-        near = _POLE * (s1 - s0)
-        return s0 + near if low else -np.inf, s1 - near if high else np.inf
+        near = _POLE * (high_end - low_end)
+        return low_end + near if low else -np.inf, high_end - near if high else np.inf
 
     @cached_property
     def loops(self) -> tuple[Array, ...]:
@@ -233,6 +243,7 @@ class IsoChart:
         A strip that reaches a pole ends there.
         """
         step = np.clip(step, *self._poles)
+        along = np.clip(along, *self._poles_along)
         found = np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
                                        cut.allowance))
         for side in (0, 1):

@@ -97,7 +97,7 @@ def _overlaps(material: Array, low: Array, high: Array) -> Bools:
 def _stretches_on_material(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
     """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
     along = spacing.lines.along
-    halves = np.array([spacing.lines.spread(h) for h in spacing.halves]).reshape(-1, len(along), 2)
+    halves = np.array([spacing.lines.spread_widths(h) for h in spacing.halves]).reshape(-1, len(along), 2)
     low, high = spacing.steps[:, None] - halves[..., 0], spacing.steps[:, None] + halves[..., 1]
     need = _overlaps(material[None], low, high)
     line, i = np.nonzero(need[:, 1:] != need[:, :-1])

@@ -28,6 +28,8 @@ PITCH = 0.02
 #: Relative error of interpolated half widths that is accepted at the narrowest places of a pass, and elsewhere.
 _INTERPOLATION, _ELSEWHERE = 5e-4, 3e-3
 _NARROW = 1.1
+#: By how much half widths between two measured lines may lie beyond those on them, as a share of these.
+_BEYOND = 0.1
 #: Strips overlap by up to this share of the narrowest one, half as much on average.
 _ACCURACY = 4e-4
 _MOST_PASSES = 20_000
@@ -59,16 +61,29 @@ class Lines:
         All lines; the measured ones are among them.
     index, weight : (m, 4) array
         Measured lines, and their weights, that interpolate to each line by a cubic.
+    before : (m,) array
+        The measured line before each line; the last but one for the last.
     """
 
     measured: Array
     along: Array
+    before: NDArray[np.intp]
     index: NDArray[np.intp]
     weight: Array
 
     def spread(self, values: Array) -> Array:
         """Values (n, ...) on the measured lines, interpolated to all lines (m, ...)."""
         return np.asarray(np.einsum("mk,mk...->m...", self.weight, values[self.index]))
+
+    def spread_widths(self, halves: Array) -> Array:
+        """Half widths (n, 2) on the measured lines, interpolated to all lines (m, 2).
+
+        A line keeps near those of its two neighbours: beside one strip that is many times as wide as the others a cubic
+        would fall below zero, and no pass could follow.
+        """
+        one, other = halves[self.before], halves[self.before + 1]
+        low, high = (1 - _BEYOND) * np.minimum(one, other), (1 + _BEYOND) * np.maximum(one, other)
+        return np.clip(self.spread(halves), low, high)
 
 
 def lines(chart: Chart, cut: Cut) -> Lines:
@@ -110,14 +125,17 @@ def _grid(chart: Chart, gaps: int, count: int) -> Lines:
     between = max(count // len(measured), 2)
     share = np.arange(between) / between
     along = np.append((measured[:-1, None] + np.diff(measured)[:, None] * share).ravel(), measured[-1])
-    index, weight = _stencil(measured, along)
-    return Lines(measured, along, index, weight)
+    return Lines(measured, along, _before(measured, along), *_stencil(measured, along))
+
+
+def _before(nodes: Array, places: Array) -> NDArray[np.intp]:
+    """The node before each place; the last but one behind the last."""
+    return np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, len(nodes) - 2)
 
 
 def _stencil(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
     """Four nodes around each place, and the weights of the cubic through them."""
-    gap = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, len(nodes) - 2)
-    index = np.clip(gap - 1, 0, len(nodes) - 4)[:, None] + np.arange(4)
+    index = np.clip(_before(nodes, places) - 1, 0, len(nodes) - 4)[:, None] + np.arange(4)
     four = nodes[index]
     weight = np.ones((len(places), 4))
     for k in range(4):
@@ -248,7 +266,7 @@ class _Strips:
             some = self._material[self._needed]
             beside = np.asarray(~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1))
             self.measured[self._needed] = _borrow(found, beside)
-            self._step, self.halves = step, self.across.spread(self.measured)
+            self._step, self.halves = step, self.across.spread_widths(self.measured)
         return self.halves
 
     def check(self, cutting: Bools) -> None:

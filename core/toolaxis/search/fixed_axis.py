@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
@@ -19,6 +20,7 @@ from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
+from toolaxis.path.leaving_out import leave_out
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout, lay_out, pass_length
@@ -97,6 +99,8 @@ CROSSING = 5.0
 _ATTEMPTS = 4
 #: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
 _SEARCHED, _ORDERED = 0.5, 0.4
+#: How often motions that the proof refuses are left out of passes before their axis is refused.
+_LEFT_OUT = 3
 #: Where further passes make the cut so many times as long, the other feed is tried too.
 _LONGER = 1.02
 
@@ -117,6 +121,8 @@ class FaceProblem:
     progress : Progress
     direction : str
         "zigzag", "climb" or "conventional".
+    left_out : (n, 3) array
+        Contacts, mm, that passes keep away from besides all on which the cutter may not stand.
     """
 
     feasibility: Feasibility
@@ -125,6 +131,7 @@ class FaceProblem:
     chord: float
     progress: Progress = NO_PROGRESS
     direction: str = "zigzag"
+    left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     @property
     def box(self) -> Array:
@@ -143,6 +150,37 @@ class FaceProblem:
         clear = max(CROSSING, height_over(self.worth.scallop) + OVER)
         return float(np.maximum(low * axis, high * axis).sum()) + clear
 
+    def reach(self, uv: Array, axis: Array) -> NDArray[np.bool_]:
+        """Whether the cutter may stand at parameters of the face, (n,).
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        axis : (3,) array
+        """
+        free = self.feasibility.reach(uv, axis)
+        if len(self.left_out):
+            away = cKDTree(self.left_out).query(self.worth.face.evaluate(uv).point)[0]
+            free = free & (away > self.aside)
+        return free
+
+    @property
+    def aside(self) -> float:
+        """How far passes keep from what is left out, mm: half the narrowest strip on a plane."""
+        tool = self.worth.tool
+        return float(np.sqrt(2 * self.worth.scallop * (tool.corner_radius or tool.radius)))
+
+    def without(self, ends: Array) -> "FaceProblem":
+        """The same with further contacts left out, from one end of a motion to the other, (m, 2, 3) mm.
+
+        Parameters
+        ----------
+        ends : (m, 2, 3) array
+        """
+        parts = [np.linspace(first, last, int(np.ceil(np.linalg.norm(last - first) / self.aside)) + 1)
+                 for first, last in ends]
+        return replace(self, left_out=np.concatenate([self.left_out, *parts]))
+
     def laid(self, axis: Array, feed: str) -> Layout:
         """The passes with an axis, cut out where the tool must not go, before they are traced.
 
@@ -156,7 +194,7 @@ class FaceProblem:
         InvalidInput, UnsupportedGeometry
             When the axis leaves no strip, or passes of this kind do not go with the face.
         """
-        cut, reach = self.worth.cut(axis), lambda uv: self.feasibility.reach(uv, axis)
+        cut, reach = self.worth.cut(axis), lambda uv: self.reach(uv, axis)
         found: list[Layout] = []
         refused: list[InvalidInput | UnsupportedGeometry] = []
         for pattern in self.worth.patterns:
@@ -213,7 +251,7 @@ class FaceProblem:
             Of that layout.
         """
         axis = placed.cut.axis
-        return complete_passes(placed, path, self.traced, self.left_by, lambda uv: self.feasibility.reach(uv, axis))
+        return complete_passes(placed, path, self.traced, self.left_by, lambda uv: self.reach(uv, axis))
 
     def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
@@ -225,7 +263,7 @@ class FaceProblem:
         """
         worth = self.worth
         return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress)
+                         lambda uv: ~self.reach(uv, path.axis[0]), self.progress)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -537,8 +575,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
-    plain = job.traced(placed)
-    proof = _proven(job, plain)
+    job, placed, plain, proof = _proven_without_refused(job, placed)
     made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
     if made.placed is not placed:
         of_all = _proven(job, made.path)
@@ -557,6 +594,22 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
                         ideal=job.worth.ideal_length(one.axis))
     return CheckedCandidate(one, found, proof, path, made.longer)
+
+
+def _proven_without_refused(job: FaceProblem, placed: Layout) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
+    """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
+    path = job.traced(placed)
+    proof = _proven(job, path)
+    for _ in range(_LEFT_OUT):
+        if not len(proof.blocked):
+            break
+        fewer, ends = leave_out(placed, path, proof.blocked, job.chord)
+        if not len(ends) or not len(fewer.pieces):
+            break
+        job, placed = job.without(ends), fewer
+        path = job.traced(placed)
+        proof = _proven(job, path)
+    return job, placed, path, proof
 
 
 def _proven(job: FaceProblem, path: ToolPath) -> PathCheck:

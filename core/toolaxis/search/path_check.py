@@ -23,6 +23,8 @@ _BATCH = 400
 _ROUGH = 0.005
 #: How far the nearest face of a motion is looked for that turns out to keep its distances, mm.
 _FAR = 50.0
+#: Share of the motions up to which those that break a limit are worth being left out.
+FEW = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +39,14 @@ class PathCheck:
         Upper bound of the depth below the skin and below the faces behind its convex edges, mm.
     clearance : dict of str to float
         Lower bound per component that is known, mm; the cutter's is to what it does not machine or touch harmlessly.
+    blocked : (k,) array of int
+        All motions that are not proven to keep every limit, where they are few; empty where they are many.
     """
 
     witness: Violation | None
     gouge: float = 0.0
     clearance: dict[str, float] = field(default_factory=dict)
+    blocked: NDArray[np.intp] = field(default_factory=lambda: np.empty(0, dtype=np.intp))
 
 
 def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *, most: float = 20.0,
@@ -73,11 +78,19 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    witness, blocked = None, np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        found = _find_violation(tool, group, moves)
-        if found is not None:
-            return PathCheck(found)
+        rows = _find_blocked(tool, group, moves)
+        if not len(rows):
+            continue
+        blocked[rows] = True
+        if witness is None:
+            witness = worst_motion(tool, group, moves[rows], group.required, group.required)
+        if blocked.sum() > FEW * len(moves):
+            return PathCheck(witness)
+    if witness is not None:
+        return PathCheck(witness, blocked=np.flatnonzero(blocked))
     gouge = 0.0
     clearance: dict[str, float] = {}
     known = {"cutter", *tool.outlines}
@@ -115,11 +128,10 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
     return np.tile(row, (len(group.faces), 1))
 
 
-def _find_violation(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation | None:
-    """The worst motion that is not proven to keep its distances from a group, or None."""
-    blocked = keeps_limits(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1))).blocked
-    rows = np.flatnonzero(blocked >= 0)
-    return worst_motion(tool, group, moves[rows], group.required, group.required) if len(rows) else None
+def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array) -> NDArray[np.intp]:
+    """The motions that are not proven to keep their distances from a group."""
+    found = keeps_limits(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1)))
+    return np.flatnonzero(found.blocked >= 0)
 
 
 def worst_motion(tool: Tool, group: CheckSurfaces, moves: Array, required: Array, cutoff: Array) -> Violation:
