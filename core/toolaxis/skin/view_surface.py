@@ -16,14 +16,15 @@ from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
+from toolaxis.skin.tangent_planes import TangentPlanes, heights_beyond
 
 Array = NDArray[np.float64]
 
 #: Points of the grid along the longer side at first and at most, and how exact the spline through them is to be on the
 #: mean of the worst tenth, mm.
 _COARSE, _FINE, _EXACT = 49, 193, 1e-3
-#: Points along the size of the outline, and in all, from which heights beyond it are told; places taken at once.
-_ALONG, _BORDER, _AT_ONCE = 200, 800, 4000
+#: Points along the size of the outline, and in all, from which heights beyond it are told.
+_ALONG, _BORDER = 200, 800
 #: How far tangent planes rise or fall beyond the outline at most, as a share of the size: steep ones level off.
 _RISE = 0.04
 #: Parts of the range at whose ends nothing about the surface is smooth.
@@ -172,14 +173,9 @@ def _heights_beyond(view: FacesInView, frame: Array, origin: Array, places: Arra
     d = view.evaluate(border, view.nearest(border))
     height = (d.point - origin) @ frame[2]
     slope = np.column_stack([d.su @ frame[2], d.sv @ frame[2]])
-    found = np.empty(len(places))
-    for first in range(0, len(places), _AT_ONCE):
-        way = places[first:first + _AT_ONCE, None] - border
-        weight = 1.0 / np.maximum((way**2).sum(axis=2), (1e-3 * step) ** 2) ** 2
-        rise = (way * slope).sum(axis=2)
-        plane = height + rise / (1 + np.abs(rise) / (_RISE * size))
-        found[first:first + _AT_ONCE] = (plane * weight).sum(axis=1) / weight.sum(axis=1)
-    return found
+    planes = TangentPlanes(np.ascontiguousarray(border), np.ascontiguousarray(height), np.ascontiguousarray(slope),
+                           1e-3 * step, _RISE * size)
+    return heights_beyond(planes, places)
 
 
 def _spline_through(lines: list[Array], heights: Array, frame: Array, origin: Array) -> NurbsSurface:
