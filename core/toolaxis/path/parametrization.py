@@ -1,6 +1,6 @@
 """Two parameters to cut by: one runs along the passes, the other steps from pass to pass."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -33,6 +33,9 @@ _EDGE = 1e-5
 
 #: As many bounds of distances as take as long as a contact with its tip.
 _POINT = 5
+
+#: Ratios by which widths that were measured on what stands for a face are corrected, least and greatest.
+_CORRECTED = (0.4, 2.5)
 
 #: Places each way from which the size of a chart is taken.
 _EXTENT = 9
@@ -246,12 +249,20 @@ class IsoChart:
         along = np.clip(along, *self._poles_along)
         found = np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
                                        cut.allowance))
+        if self._stand_in is not None:
+            found = _corrected(found, self.screen(cut, along, step), self._stand_in.screen(cut, along, step))
         for side in (0, 1):
             if np.isfinite(self._poles[side]):
                 room = np.abs(self._range[2 + side] - step)
                 found[:, side] = np.where(found[:, side] > (1 - _AT) * room, np.maximum(found[:, side], room),
                                           found[:, side])
         return found
+
+    @cached_property
+    def _stand_in(self) -> "IsoChart | None":
+        """The chart of what stands for the face where strips are measured; None where that is the face itself."""
+        surface = self.face.surface.stand_in
+        return None if surface is None else IsoChart(replace(self.face, surface=surface), self.feed)
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
@@ -268,6 +279,17 @@ class IsoChart:
         across = "v" if self.feed == "u" else "u"
         return np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, across,
                                       cut.allowance))
+
+
+def _corrected(halves: Array, exact: Array, rough: Array) -> Array:
+    """Half widths (n, 2) measured on what stands for a face, by the ratio of the second-order widths (n,) of both.
+
+    Where nothing was measured the second-order width of the face is taken.
+    """
+    known = (exact > 0) & (rough > 0)
+    ratio = np.where(known, exact / np.where(known, rough, 1.0), 1.0)
+    none = ~(halves > 0).all(axis=1) & (exact > 0)
+    return np.where(none[:, None], exact[:, None] / 2, halves * np.clip(ratio, *_CORRECTED)[:, None])
 
 
 def extents(chart: Chart) -> tuple[float, float]:

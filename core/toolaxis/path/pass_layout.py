@@ -23,6 +23,8 @@ _RUN_OUT = 1.05
 #: where that makes fewer; how exactly the ends are found, in radii of the cutter, and as a share of the range.
 _REACH_SAMPLES = 192
 _ENDS, _LEAST_ENDS = 2e-4, 2e-7
+#: Where between two passes it is looked what they leave, as shares of their distance, and at how many places in all.
+_BETWEEN, _MOST_PLACES = (0.3, 0.4, 0.5, 0.6, 0.7), 200_000
 #: Points of a pass from which its length is told.
 _ALONG = 65
 
@@ -164,6 +166,32 @@ def sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
     """
     radius = cut.tool.radius / max(length, np.finfo(float).tiny)
     return span * max(1 / _REACH_SAMPLES, PITCH * radius), span * max(_LEAST_ENDS, min(_ENDS * radius, 1.0))
+
+
+def places_between(placed: Layout) -> Array:
+    """Parameters (n, 2) of the face between neighbouring passes, among them those at which their strips meet.
+
+    There lies what passes leave too high where widths were measured on what only stands for the face.
+
+    Parameters
+    ----------
+    placed : Layout
+    """
+    spacing = placed.spacing
+    if len(spacing.steps) < 2:
+        return np.empty((0, 2))
+    measured = spacing.lines.measured
+    along = np.sort(np.concatenate([measured, (measured[1:] + measured[:-1]) / 2]))
+    place = np.arange(len(along)) / 2
+    low, high = np.floor(place).astype(int), np.ceil(place).astype(int)
+    halves = (spacing.halves[:, low] + spacing.halves[:, high]) / 2
+    first, last = spacing.steps[:-1, None], spacing.steps[1:, None]
+    meeting = (first + halves[:-1, :, 1] + last - halves[1:, :, 0]) / 2
+    meeting = np.clip(np.nan_to_num(meeting), first, last)
+    others = [np.broadcast_to(first + share * (last - first), meeting.shape) for share in _BETWEEN]
+    stride = max(1, (1 + len(others)) * meeting.size // _MOST_PLACES)
+    rows = np.concatenate([one.ravel()[::stride] for one in (meeting, *others)])
+    return placed.chart.uv(np.tile(np.tile(along, len(meeting))[::stride], 1 + len(others)), rows)
 
 
 def pass_length(placed: Layout) -> float:

@@ -86,9 +86,7 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
 
 def _place(op: Operation, piece: OpenFace) -> OpenPlace:
     face = piece.face
-    uv = face.grid(_CELLS, _CELLS)
-    if not len(uv):
-        uv = face.outline[0]
+    uv = face.places_on(_CELLS)
     points = face.evaluate(uv).point
     middle = points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))]
     hollow = float(face.curvature(uv).k1.max(initial=0.0))

@@ -18,6 +18,8 @@ Indices = NDArray[np.int64]
 
 #: Cells each way at least and at most, their size in radii of the smallest cutter, and the turn of normals over each.
 _FEWEST, _MOST, _SIZE, _TURN = 12, 32, 0.8, np.radians(5)
+#: Cells each way at least, and the turn of normals over each, where few are to do.
+_FEW, _FAR_TURN = 6, np.radians(10)
 #: Cells each way at most where most of the lattice is beside the face.
 _MOST_SPARSE = 256
 #: How often cells are halved each way where none of them has a sample on the face.
@@ -80,7 +82,21 @@ class FaceCells:
         -----
         **Properties**: 1. areas add up to that of the face; 2. moving the face moves the contacts.
         """
-        return _cells_of(face, _shape_for(face, _SIZE * radius, _MOST))
+        return _cells_of(face, _shape_for(face, _SIZE * radius, (_FEWEST, _MOST)))
+
+    @staticmethod
+    def few(face: Face, radius: float) -> "FaceCells":
+        """As few cells of a face as will do to choose tools for it.
+
+        There are at least 6 each way, and normals turn by 10 degrees over one.
+
+        Parameters
+        ----------
+        face : Face
+        radius : float
+            Cells are about so large, mm.
+        """
+        return _cells_of(face, _shape_for(face, _SIZE * radius, (_FEW, _MOST), _FAR_TURN))
 
     @staticmethod
     def sized(face: Face, size: float) -> "FaceCells":
@@ -93,7 +109,7 @@ class FaceCells:
             Of a cell each way, mm; normals turn by 5 degrees over one, and there are at least 12 and at most 256 each
             way.
         """
-        return _cells_of(face, _shape_for(face, size, _MOST_SPARSE))
+        return _cells_of(face, _shape_for(face, size, (_FEWEST, _MOST_SPARSE)))
 
     def pick(self, rows: Indices) -> "FaceCells":
         """Some of the cells.
@@ -119,16 +135,16 @@ def _cells_of(face: Face, shape: tuple[int, int]) -> FaceCells:
     return samples.cells()
 
 
-def _shape_for(face: Face, size: float, most: int) -> tuple[int, int]:
-    """Cells along u and along v."""
+def _shape_for(face: Face, size: float, bounds: tuple[int, int], greatest: float = _TURN) -> tuple[int, int]:
+    """Cells along u and along v, within bounds for either; normals turn by no more than the greatest turn over one."""
     coarse = Lattice(face, (_FEWEST, _FEWEST))
     counts = []
     for way, lengths in enumerate(coarse.lengths):
         normals = np.moveaxis(coarse.normals, way, 0)
         turn = np.median(np.asarray(angle_between(normals[1:], normals[:-1])).sum(axis=0))
         side = np.median(lengths.sum(axis=way))
-        wanted = max(side / size, turn / _TURN)
-        counts.append(int(np.clip(np.ceil(wanted), _FEWEST, most)))
+        wanted = max(side / size, turn / greatest)
+        counts.append(int(np.clip(np.ceil(wanted), *bounds)))
     return counts[0], counts[1]
 
 

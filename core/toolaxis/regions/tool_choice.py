@@ -35,12 +35,14 @@ class ToolChain(NamedTuple):
     seconds : cutting time and index moves, s
     charge : for what none of them reaches and others would, s
     first : share that the first of them reaches under its axis of what it reaches under any
+    share : share of the face that it reaches under that axis
     """
 
     tools: tuple[int, ...]
     seconds: float
     charge: float
     first: float = 0.0
+    share: float = 0.0
 
     @property
     def cost(self) -> float:
@@ -120,22 +122,24 @@ class _Charges(NamedTuple):
 
 
 def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) -> Iterator[ToolChain]:
-    under_any = reached.any(axis=1) @ prices.area
+    under_any, whole = reached.any(axis=1) @ prices.area, float(prices.area.sum())
 
-    def _longer(tools: tuple[int, ...], seconds: float, left: Bools, first: float) -> Iterator[ToolChain]:
+    def _longer(tools: tuple[int, ...], seconds: float, left: Bools,
+                begun: tuple[float, float]) -> Iterator[ToolChain]:
         for tool in range(tools[-1] if tools else 0, len(prices.seconds)):
             step = _best_step(prices, reached[tool], tool, left)
             if step is None:
                 continue
             chain, rest = (*tools, tool), left & ~step.cells
             spent = seconds + step.seconds + charges.move
-            own = first if tools else float(prices.area[step.cells].sum() / under_any[tool])
-            yield ToolChain(chain, spent, charges.of(rest), own)
+            area = float(prices.area[step.cells].sum())
+            own = begun if tools else (area / float(under_any[tool]), area / whole)
+            yield ToolChain(chain, spent, charges.of(rest), *own)
             if len(chain) < most and rest.any():
                 yield from _longer(chain, spent, rest, own)
 
     if charges.possible.any():
-        yield from _longer((), 0.0, charges.possible, 0.0)
+        yield from _longer((), 0.0, charges.possible, (0.0, 0.0))
 
 
 def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:

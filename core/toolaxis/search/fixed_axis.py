@@ -23,7 +23,7 @@ from toolaxis.path.cl_points import trace
 from toolaxis.path.leaving_out import leave_out
 from toolaxis.path.links import Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
-from toolaxis.path.pass_layout import Layout, lay_out, pass_length
+from toolaxis.path.pass_layout import Layout, lay_out, pass_length, places_between
 from toolaxis.path.pass_pattern import pattern_name, pattern_names
 from toolaxis.path.planes import PlaneChart
 from toolaxis.path.rest_material import left_over, may_stay
@@ -251,19 +251,32 @@ class FaceProblem:
             Of that layout.
         """
         axis = placed.cut.axis
-        return complete_passes(placed, path, self.traced, self.left_by, lambda uv: self.reach(uv, axis))
+        ridges = self.ridges(placed)
+        return complete_passes(placed, path, self.traced, lambda made: self.left_by(made, ridges),
+                               lambda uv: self.reach(uv, axis))
 
-    def left_by(self, path: ToolPath) -> tuple[Zone, ...]:
+    def ridges(self, placed: Layout) -> Array | None:
+        """Parameters (k, 2) between passes at which it must be looked what they leave; None where widths were exact.
+
+        Parameters
+        ----------
+        placed : Layout
+        """
+        return places_between(placed) if placed.chart.face.surface.stand_in is not None else None
+
+    def left_by(self, path: ToolPath, ridges: Array | None = None) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
 
         Parameters
         ----------
         path : ToolPath
             With one fixed axis.
+        ridges : (k, 2) array, optional
+            Where strips of neighbouring passes meet.
         """
         worth = self.worth
         return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.reach(uv, path.axis[0]), self.progress)
+                         lambda uv: ~self.reach(uv, path.axis[0]), self.progress, ridges)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -582,7 +595,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         if of_all.witness is None:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
-            made = FurtherPasses(placed, plain, job.left_by(plain))
+            made = FurtherPasses(placed, plain, job.left_by(plain, job.ridges(placed)))
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))

@@ -238,6 +238,16 @@ class Face:
         uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
         return uv[self.contains(uv)]
 
+    def places_on(self, count: int) -> Array:
+        """Centres of count x count cells of the parameter range that lie on the face, or its outline where none does.
+
+        Parameters
+        ----------
+        count : int
+        """
+        within = self.grid(count, count)
+        return within if len(within) else np.concatenate(self.outline)
+
     @cached_property
     def outline(self) -> tuple[Array, ...]:
         """The loops that bound the face in (u, v); the domain's rectangle where it is not trimmed."""

@@ -135,6 +135,11 @@ class NurbsSurface:
         return cls(np.asarray(ku, dtype=float), np.asarray(kv, dtype=float), control, (degree[0], degree[1]))
 
     @property
+    def stand_in(self) -> "NurbsSurface | None":
+        """What stands for the surface where kernels take its numbers; None where these are its own."""
+        return None
+
+    @property
     def domain(self) -> Domain:
         """Ranges of u and v."""
         (pu, pv), ku, kv = self.degree, self.knots_u, self.knots_v

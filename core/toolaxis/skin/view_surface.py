@@ -70,7 +70,7 @@ class ViewSurface(NurbsSurface):
         return tuple(np.linspace(*ends, _PARTS + 1)[1:-1] for ends in self.domain)  # type: ignore[return-value]
 
     @cached_property
-    def spline(self) -> NurbsSurface:  # type: ignore[override]
+    def stand_in(self) -> NurbsSurface:  # type: ignore[override]
         """The smooth spline that stands for the faces where strips are measured."""
         return NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
 

@@ -80,7 +80,7 @@ def frame_of(face: Face, found: Orientation, datum: ArrayLike) -> WorkCoordinate
     datum : (3,) array_like
         Its origin, mm.
     """
-    points = face.evaluate(face.grid(16, 16)).point
+    points = face.evaluate(face.places_on(16)).point
     middle = points[int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
     assert found.axis is not None
     return work_coordinates(found.axis, feeds_over(face, found.feed), datum, middle)

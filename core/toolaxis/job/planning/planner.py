@@ -64,8 +64,9 @@ Array = NDArray[np.float64]
 
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
-#: Share of the limit of work for a sub-surface, by its share of the area of a plan with several tools, and at least.
-_WORK_OF_SHARE, _LEAST_WORK = 3.0, 0.15
+#: How many times the limit of work a sub-surface is allowed by its share of the area of a plan with several tools, at
+#: least and at most.
+_WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK = 6.0, 0.5, 4.0
 #: Why a sub-surface is divided before an axis for all of it is looked for.
 _IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
@@ -460,7 +461,7 @@ class PlanningJob:
     def _times_of_work(self, face: Face) -> float:
         """How many times the limit of work a sub-surface is allowed."""
         if self.asked_area > 0:
-            return float(np.clip(_WORK_OF_SHARE * face.area / self.asked_area, _LEAST_WORK, 1.0))
+            return float(np.clip(_WORK_OF_SHARE * face.area / self.asked_area, _LEAST_WORK, _MOST_WORK))
         return (MOVING if self._strategy.moves else 1.0) * len(face.numbers)
 
     def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:

@@ -33,8 +33,9 @@ Array = NDArray[np.float64]
 LEAST_AREA = 0.01
 #: Angle between the axes that are screened, rad, and cells of a face for it, about.
 APART, _CELLS = np.radians(20), 200
-#: Share of what a tool reaches of a face under any axis that it must reach under one to be asked for the whole face.
-WHOLE = 0.8
+#: Share of what a tool reaches of a face under any axis that it must reach under one to be asked for the whole face,
+#: and share of the face.
+WHOLE, MUCH = 0.8, 0.3
 #: Share of a skin's area below which what is machined of it makes its faces be planned one by one.
 APART_BELOW = 0.5
 #: Share of a face that is out of reach where no tool is asked for it.
@@ -142,7 +143,7 @@ class RackPlanner:
                 continue
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             tool = chain.tools[0] if chain.tools else max(allowed)
-            self._waiting.append(_Waiting(face, (), tool, in_pieces=0 < chain.first < WHOLE))
+            self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain)))
 
     def _refuse(self, face: Face, scene: ReachScene) -> Operation | None:
         """The operation of a face that no tool reaches; None where that is not proven."""
@@ -194,7 +195,7 @@ class RackPlanner:
             self._left_by[len(self._done)] = origin.left_by
             self._done.append(op)
         if following is not None:
-            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, following.first < WHOLE))
+            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, _in_pieces(following)))
 
     def _next_tool(self, rest: Face, tool: int) -> ToolChain | None:
         """The tools that finish what another one left; None where no smaller one reaches anything of it."""
@@ -290,6 +291,11 @@ def outcome_of_rack(operations: Sequence[Operation]) -> str:
     return "incomplete" if lost or account.open > LEFT_OPEN * account.area else "complete"
 
 
+def _in_pieces(chain: ToolChain) -> bool:
+    """Whether the first tool of a chain reaches too little of a face under one axis to be asked for all of it."""
+    return chain.first < WHOLE or chain.share < MUCH
+
+
 def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
     """What waits for a tool, that of one sub-surface together; rests apart from what no tool has machined yet.
 
@@ -331,7 +337,7 @@ class _Screen:
         self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
 
     def _cells(self, face: Face) -> FaceCells:
-        return FaceCells.of(face, max(self._jobs[-1].tool.radius, float(np.sqrt(face.area / _CELLS))))
+        return FaceCells.few(face, max(self._jobs[-1].tool.radius, float(np.sqrt(face.area / _CELLS))))
 
     def chains(self, face: Face, begin: int) -> tuple[ToolChain, ...]:
         """Chains of tools for a face, from a tool on.

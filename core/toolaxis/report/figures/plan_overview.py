@@ -43,7 +43,7 @@ def overview_picture(plan: Plan) -> Figure:
     """
     copies = {} if plan.blades is None else plan.blades.copies
     operations = tuple(op for op in plan.operations if op.number not in copies)
-    normals = np.array([mean_direction(op.face.normal(places_on(op.face, 12))) for op in operations])
+    normals = np.array([mean_direction(op.face.normal(op.face.places_on(12))) for op in operations])
     middle = mean_direction(normals)
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
     arrow = (0.22 if len(operations) <= _MANY else 0.16) * float(np.linalg.norm(np.ptp(corners, axis=0)))
@@ -124,19 +124,6 @@ def view_onto(middle: Array) -> tuple[Array, Array]:
     return middle + 0.45 * side - 0.65 * np.cross(middle, side), middle if abs(middle[2]) >= 0.9 else up
 
 
-def places_on(face: Face, count: int) -> Array:
-    """Parameters of places on a face, (n, 2): those of an even grid, and on its border where it is a sliver.
-
-    Parameters
-    ----------
-    face : Face
-    count : int
-        Places each way over the range.
-    """
-    grid = face.grid(count, count)
-    return grid if len(grid) else np.concatenate(face.outline)
-
-
 def root_of(op: Operation) -> Array:
     """The point of a sub-surface nearest to its middle, (3,) mm.
 
@@ -144,7 +131,7 @@ def root_of(op: Operation) -> Array:
     ----------
     op : Operation
     """
-    points = op.face.evaluate(places_on(op.face, 16)).point
+    points = op.face.evaluate(op.face.places_on(16)).point
     return np.asarray(points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))])
 
 

@@ -87,7 +87,7 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
     made = figure(12.5, 6.2)
     close, whole = made.subplots(1, 2, width_ratios=(1.25, 1.0))
     axis = op.frame.z
-    normal = mean_direction(op.face.normal(op.face.grid(16, 16)))
+    normal = mean_direction(op.face.normal(op.face.places_on(16)))
     back = normal + 0.55 * op.frame.x - 0.75 * op.frame.y
     _close_up(close, op, (back, axis))
     _with_tool(whole, plan, op, (np.cross(axis, np.cross(normal + 0.4 * op.frame.x - 0.9 * op.frame.y, axis))
@@ -379,7 +379,7 @@ def widths_picture(lines: Sequence[tuple[Array, Array]], area: tuple[Face, Tool]
     face, tool = area
     made = figure(12.5, 5.6)
     plan, graph = made.subplots(1, 2, width_ratios=(1.15, 1.0))
-    seen = camera_onto(face.normal(face.grid(16, 16)), np.concatenate([contact for contact, _ in lines]))
+    seen = camera_onto(face.normal(face.places_on(16)), np.concatenate([contact for contact, _ in lines]))
     every = np.concatenate([width for _, width in lines])
     norm = Normalize(float(np.nanmin(every)), float(np.nanpercentile(every, 99)))
     image = None

@@ -96,7 +96,7 @@ def free_angle_picture(turning: FreeAxisMotion, op: Operation) -> Figure:
     made = figure(12.5, 5.6)
     grid = made.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     plan, graph, rate = made.add_subplot(grid[:, 0]), made.add_subplot(grid[0, 1]), made.add_subplot(grid[1, 1])
-    seen = camera_onto(op.face.normal(op.face.grid(16, 16)),
+    seen = camera_onto(op.face.normal(op.face.places_on(16)),
                        np.concatenate([contact for contact, _ in turning.passes]))
     every = np.concatenate([angle for _, angle in turning.passes])
     norm = Normalize(float(every.min()), float(every.max()))
