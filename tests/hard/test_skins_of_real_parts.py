@@ -7,14 +7,15 @@ between passes lay between the places at which it was looked for.
 import numpy as np
 
 import toolaxis as ta
+from toolaxis.cad.load import load
 from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess
 
 SCALLOP = 0.005
 
 
-def test_next_to_nothing_stays_between_passes(parts):
-    part = parts("ftc07_in.stp")
+def test_next_to_nothing_stays_between_passes(shared_parts):
+    part = load(shared_parts / "ftc07_in.stp")
     tool = next(tool for tool in load_library(None).tools if tool.shop_name.startswith("Tapered ball D6"))
     made = ta.plan(part, tool, SCALLOP, faces=[(54, 59, 60, 61)], workers=1)
     (op,) = made.operations
