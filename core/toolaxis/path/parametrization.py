@@ -248,7 +248,7 @@ class IsoChart:
         step = np.clip(step, *self._poles)
         along = np.clip(along, *self._poles_along)
         found = np.asarray(step_widths(self.face, cut.tool, self.uv(along, step), cut.axis, cut.scallop, self.feed,
-                                       cut.allowance))
+                                       cut.allowance, march=self._stand_in is None))
         if self._stand_in is not None:
             found = _corrected(found, self.screen(cut, along, step), self._stand_in.screen(cut, along, step))
         for side in (0, 1):

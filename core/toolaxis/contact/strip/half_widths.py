@@ -49,6 +49,8 @@ class StripOptions(NamedTuple):
     """Arc lengths in normal sections across the feed, instead of changes of the step parameter."""
     newton: bool = True
     """False leaves every exit to the march, to compare the two ways."""
+    march: bool = True
+    """False gives 0 where Newton's method finds no exit that is confirmed."""
 
 
 class StripContacts(NamedTuple):
@@ -168,7 +170,10 @@ def _guess_exit(frame: ContactFrame, cutter: CutterParameters, axis: Triple, h: 
 @jit_uncounted_inline
 def _exit_on_side(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], stride: float,
                   work: Workspace) -> tuple[float, int]:
-    """s of the first exit on one side, and steps of the march; guess = (s, w), with s = 0 where there is none."""
+    """s of the first exit on one side, and steps of the march; guess = (s, w), with s = 0 where there is none.
+
+    Nothing is marched for a stride of 0.
+    """
     if guess[0] != 0.0:
         for part in range(BOTTOM + 1 if sweep.cutter.flat > 0.0 else BOTTOM):
             found = solve_exit(sweep, axis, guess, part, work.scratch)
@@ -176,6 +181,8 @@ def _exit_on_side(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], 
                 if is_first_exit(sweep, axis, found):
                     return found.s, 0
                 break
+    if stride == 0.0:
+        return 0.0, 0
     s, steps = exit_by_marching(sweep, axis, stride, work.tips, work.scratch)
     return s, _BEFORE_MARCH + steps
 
@@ -223,6 +230,8 @@ def half_widths(surface: OrientedSurface, cutter: CutterParameters, contacts: St
             stride = _STRIDE * radius
             if width > 0.0:
                 stride = min(stride, max(width / 6.0, 0.05 * stride))
+            if not options.march:
+                stride = 0.0
             s = width / abs(frame.cross_left) if width > 0.0 and options.newton else 0.0
             w = s * (frame.cross_feed + work.guesses[i, 1] * frame.cross_left) / frame.pace
             for side in range(2):

@@ -105,7 +105,7 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
 
 
 def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: str = "u",
-                allowance: float = 0.0) -> Array:
+                allowance: float = 0.0, *, march: bool = True) -> Array:
     """Exact half widths in the step parameter, along the cross iso-curve.
 
     Parameters
@@ -114,6 +114,8 @@ def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
         As in `strip_width`.
     feed : "u" or "v"
         The parameter that varies along the pass; the step parameter is the other one.
+    march : bool
+        False gives 0 where Newton's method finds no exit that is confirmed: there the march takes many times as long.
 
     Returns
     -------
@@ -129,7 +131,7 @@ def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     count, axes = len(as_rows(uv, 2, "uv")), unit(as_rows(axis, 3, "axis"))
     if len(axes) not in (1, count):
         raise InvalidInput(f"{len(axes)} axes for {count} contacts: give one axis, or one for each contact")
-    return np.asarray(_take_step_widths(face, tool, uv, axes[None], feed, (scallop, allowance))[0])
+    return np.asarray(_take_step_widths(face, tool, uv, axes[None], feed, (scallop, allowance), march)[0])
 
 
 def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike, scallop: float, feed: str = "u",
@@ -158,12 +160,12 @@ def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike
 
 
 def _take_step_widths(face: Face, tool: Tool, uv: ArrayLike, axes: Array, feed: str,
-                      heights: tuple[float, float]) -> Array:
+                      heights: tuple[float, float], march: bool = True) -> Array:
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
     inputs = kernel_inputs(face, tool, *heights)
     asked = as_rows(uv, 2, "uv")
     contacts, along = kernel_contacts(face.outside_folds(asked), feed, heights[0])
-    widths = take_half_widths(*inputs, contacts, axes, StripOptions(along, False))
+    widths = take_half_widths(*inputs, contacts, axes, StripOptions(along, False, march=march))
     aside = (asked - contacts.uv)[:, 1 - along, None] * np.array([1.0, -1.0])
     return np.where(widths > 0.0, np.maximum(widths + aside, 0.0), 0.0)
