@@ -122,7 +122,8 @@ class FaceProblem:
     direction : str
         "zigzag", "climb" or "conventional".
     left_out : (n, 3) array
-        Contacts, mm, that passes keep away from besides all on which the cutter may not stand.
+        Contacts, mm, that passes keep away from besides all on which the cutter may not stand; what stays there is
+        undercut.
     """
 
     feasibility: Feasibility
@@ -276,7 +277,7 @@ class FaceProblem:
         """
         worth = self.worth
         return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.reach(uv, path.axis[0]), self.progress, ridges)
+                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress, ridges)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
