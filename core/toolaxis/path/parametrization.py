@@ -243,7 +243,7 @@ class IsoChart:
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end; at a pole those before it.
 
-        A strip that reaches a pole ends there.
+        A strip that reaches a pole ends there.  Of a face for which a spline stands in, they are near, not exact.
         """
         step = np.clip(step, *self._poles)
         along = np.clip(along, *self._poles_along)

@@ -1,7 +1,7 @@
 """A grid over a face on which it is looked where a function is above zero: closely where it is, and along the border.
 
 What passes leave lies at the border nearly always, in pieces much smaller than the face: the function is asked along
-all of the border, at the nodes of coarse cells and where somebody suspects something, and at all fine nodes of the
+all of the border, at the nodes of coarse cells and at places that are given, and at all fine nodes of the
 cells in which that finds something and of those beside them, as far as it goes on. Inside of large pieces it is not
 asked at each node: cells of which all is far above zero are known from their middle.
 """
@@ -31,7 +31,7 @@ _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1]
 
 
 def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
-                whole: Callable[[Array, Array], Bools], suspected: Array | None = None) -> tuple[Lines, Array]:
+                whole: Callable[[Array, Array], Bools], between: Array | None = None) -> tuple[Lines, Array]:
     """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
 
     Parameters
@@ -44,8 +44,8 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     whole : callable
         Takes the middles of cells, (k, 2), with corners and middles of the sides of each, (k, 8, 2), and tells which
         cells are above zero everywhere, (k,) bool; False where that is not known.
-    suspected : (k, 2) array, optional
-        Further parameters at which it is asked, such as where strips of neighbouring passes meet.
+    between : (k, 2) array, optional
+        Further parameters at which it is asked, those beside the face left out.
 
     Returns
     -------
@@ -61,8 +61,8 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     above[inside] = function(nodes[inside]) > 0
     wanted = above[1:, 1:] | above[:-1, 1:] | above[1:, :-1] | above[:-1, :-1]
     asked = [_places(face, loop, size) for loop in face.outline]
-    if suspected is not None:
-        asked.append(suspected[face.contains(suspected)])
+    if between is not None:
+        asked.append(between[face.contains(between)])
     places = np.concatenate(asked)
     wanted[_cells_of(coarse, places[function(places) > 0])] = True
     lines = (_divide_line(coarse[0], parts[0]), _divide_line(coarse[1], parts[1]))

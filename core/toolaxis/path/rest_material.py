@@ -108,7 +108,7 @@ class Excess:
 
 def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
               walls: Callable[[Array], Bools] | None = None, progress: Progress = NO_PROGRESS,
-              ridges: Array | None = None) -> tuple[Zone, ...]:
+              between: Array | None = None) -> tuple[Zone, ...]:
     """Zones that the passes leave higher than the scallop limit.
 
     Parameters
@@ -125,8 +125,8 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     walls : callable, optional
         Takes (n, 2) parameters and tells where the tool may not stand; all zones lie at walls unless given.
     progress : Progress
-    ridges : (k, 2) array, optional
-        Parameters at which the strips of neighbouring passes meet: there zones inside the sub-surface lie.
+    between : (k, 2) array, optional
+        Further parameters at which it is looked, see `toolaxis.path.pass_layout.places_between`.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     -----
     The border of a zone is the line on which the surface, raised by that height, meets the swept cutter: exact at the
     vertices, straight between them, which are a fourteenth of the cutter's radius apart or less. Zones inside the
-    sub-surface that lie between the nodes of a coarse grid, and at no ridge that is given, may be missed; at its border
+    sub-surface that lie between the nodes of a coarse grid, and at no place that is given, may be missed; at its border
     it is looked at closely everywhere, and where something is found, as far as it goes.
 
     **Properties**: 1. zones and machined area are the sub-surface, without overlap.
@@ -153,7 +153,7 @@ def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance:
     progress.check()
     high = Excess(face, tool, path, allowance + FACTOR * scallop)
     deep = Excess(face, tool, path, allowance + DEEP * scallop)
-    lines, values = sample_grid(face, high, _size(face, tool, scallop), high.whole, ridges)
+    lines, values = sample_grid(face, high, _size(face, tool, scallop), high.whole, between)
     nodes = _above(lines, values)
     if not len(nodes):
         return ()

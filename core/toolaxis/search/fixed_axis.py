@@ -252,12 +252,12 @@ class FaceProblem:
             Of that layout.
         """
         axis = placed.cut.axis
-        ridges = self.ridges(placed)
-        return complete_passes(placed, path, self.traced, lambda made: self.left_by(made, ridges),
+        between = self.between(placed)
+        return complete_passes(placed, path, self.traced, lambda made: self.left_by(made, between),
                                lambda uv: self.reach(uv, axis))
 
-    def ridges(self, placed: Layout) -> Array | None:
-        """Parameters (k, 2) between passes at which it must be looked what they leave; None where widths were exact.
+    def between(self, placed: Layout) -> Array | None:
+        """Parameters (k, 2) between passes at which it is looked what they leave; None where strips are exact.
 
         Parameters
         ----------
@@ -265,19 +265,19 @@ class FaceProblem:
         """
         return places_between(placed) if placed.chart.face.surface.stand_in is not None else None
 
-    def left_by(self, path: ToolPath, ridges: Array | None = None) -> tuple[Zone, ...]:
+    def left_by(self, path: ToolPath, between: Array | None = None) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
 
         Parameters
         ----------
         path : ToolPath
             With one fixed axis.
-        ridges : (k, 2) array, optional
-            Where strips of neighbouring passes meet.
+        between : (k, 2) array, optional
+            Parameters between passes, at which it is looked too.
         """
         worth = self.worth
         return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress, ridges)
+                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress, between)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -596,7 +596,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         if of_all.witness is None:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
-            made = FurtherPasses(placed, plain, job.left_by(plain, job.ridges(placed)))
+            made = FurtherPasses(placed, plain, job.left_by(plain, job.between(placed)))
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
