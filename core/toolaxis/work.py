@@ -34,11 +34,19 @@ class Budget:
         In units.
     times : float
         How many times the limit is allowed.
+    more : float
+        How many times the limit is allowed besides once an axis was found: its passes are made and proven once, which
+        takes as much as they are long, and what was done before is lost where that is not finished.
     """
 
-    def __init__(self, limit: float, times: float = 1.0) -> None:
+    def __init__(self, limit: float, times: float = 1.0, more: float = 0.0) -> None:
         self.limit, self.done = limit, 0.0
-        self._stop = limit * times
+        self._stop, self._kept_back = limit * times, limit * more
+
+    def allow_proof(self) -> None:
+        """Allow what was kept back for the passes of an axis that was found; a second time nothing is left of it."""
+        self._stop += self._kept_back
+        self._kept_back = 0.0
 
     def spend(self, bounds: float) -> None:
         """Count work that was done.
@@ -123,6 +131,13 @@ def spend(bounds: float) -> None:
     budget = _SPENT.get()
     if budget is not None:
         budget.spend(bounds)
+
+
+def allow_proof() -> None:
+    """Allow the work that is kept back until an axis is found."""
+    budget = _SPENT.get()
+    if budget is not None:
+        budget.allow_proof()
 
 
 @contextmanager

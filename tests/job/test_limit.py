@@ -15,7 +15,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, limit_work, spend, up_to
+from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, allow_proof, limit_work, spend, up_to
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=50, holder=[(10, 0), (10, 40)])
@@ -138,6 +138,18 @@ def test_a_part_of_what_is_left_can_be_kept() -> None:
     spend(1e9)  # nobody limits it
     with up_to(0.1):
         spend(1e9)
+
+
+def test_work_for_the_proof_is_kept_back_until_an_axis_is_found() -> None:
+    with limit_work(Budget(10.0, 0.5, more=1.0)):
+        spend(5 * UNIT)
+        with pytest.raises(OutOfWork):
+            spend(UNIT)
+        allow_proof()
+        spend(9 * UNIT)
+        allow_proof()  # a second time there is nothing to be had
+        with pytest.raises(OutOfWork):
+            spend(UNIT)
 
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), float("inf")])

@@ -8,7 +8,15 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed, distance_to_removed_numpy
 from toolaxis.numeric.polygons import inside, slabs
 from toolaxis.path.rest_grid import sample_grid
-from toolaxis.path.rest_material import FACTOR, Excess, left_over, machined_regions, may_stay, undercut
+from toolaxis.path.rest_material import (
+    FACTOR,
+    Excess,
+    RestFinder,
+    left_over,
+    machined_regions,
+    may_stay,
+    undercut,
+)
 from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.task import VerificationTask as Judged
@@ -65,6 +73,35 @@ def test_zones_hold_what_dense_points_find(made: tuple[FaceProblem, ToolPath]) -
     clear = np.abs(distance) > 2e-3
     assert (within == (distance > 0))[clear].all()
     assert within.sum() > 50 and clear.sum() > 350
+
+
+def test_a_look_at_further_passes_finds_what_a_first_look_finds(made: tuple[FaceProblem, ToolPath],
+                                                                monkeypatch: pytest.MonkeyPatch) -> None:
+    """It goes on where the last one found something: fewer points are asked for, and the other way round all of them."""
+    job, path = made
+    some = path.kind.copy()
+    some[np.flatnonzero(path.kind == Motion.CUT)[::40]] = Motion.LINK
+    fewer = ToolPath(path.cc, path.cl, path.axis, path.normal, some, path.breaks)
+    asked: list[int] = []
+    ask = Excess.__call__
+    monkeypatch.setattr(Excess, "__call__", lambda self, uv: asked.append(len(uv)) or ask(self, uv))
+
+    def looked(finder: RestFinder, at: ToolPath) -> tuple[list[float], int]:
+        asked.clear()
+        return [zone.area for zone in finder.find(at)], sum(asked)
+
+    def finder() -> RestFinder:
+        return RestFinder(job.worth.face, TOOL, SCALLOP)
+
+    (first, _), (whole, all_asked) = looked(finder(), fewer), looked(finder(), path)
+    assert len(first) > len(whole) and sum(first) > sum(whole) + 4
+    one = finder()
+    assert looked(one, fewer)[0] == first
+    again, few_asked = looked(one, path)
+    assert sum(again) == pytest.approx(sum(whole), rel=1e-3) and len(again) == len(whole)
+    back, _ = looked(one, fewer)
+    assert back == first
+    assert few_asked < all_asked
 
 
 def test_zones_and_machined_area_are_the_face(made: tuple[FaceProblem, ToolPath]) -> None:

@@ -25,6 +25,8 @@ _AT_ONCE, _PAIRS = 4096, 200_000
 _SPECK = 0.01
 #: Cells that are kept; what is divided beyond that is made anew whenever it is asked for.
 _KEPT = 50_000
+#: Cells are halved across one parameter alone where normals turn so many times as much along it as along the other.
+_ONE_WAY = 4.0
 #: As many bounds of distances as take as long as making no cell, and one.
 _QUESTION, _CELL = 3000, 3
 
@@ -34,7 +36,8 @@ class TrimmedFaceCells(NamedTuple):
 
     rect : (n, 4) u0, u1, v0, v1;  bounds : (n, 3) of |Suu|, |Suv|, |Svv|;  crossed : (n,) whether an edge of a loop
     comes near;  inside : (n,) whether the middle lies on the face;  normal : (n, 3) unit normals in the middles;
-    spread : (n,) how far other normals of the cell are from that at most, rad.
+    spread : (n,) how far other normals of the cell are from that at most, rad;  turn : (n, 2) how much of that comes
+    from the width along u and along v, in the same measure.
     """
 
     rect: Array
@@ -43,6 +46,7 @@ class TrimmedFaceCells(NamedTuple):
     inside: Bools
     normal: Array
     spread: Array
+    turn: Array
 
     @property
     def middle(self) -> Array:
@@ -51,9 +55,7 @@ class TrimmedFaceCells(NamedTuple):
 
     def chosen(self, rows: Index | Bools) -> "TrimmedFaceCells":
         """Some of the cells."""
-        return TrimmedFaceCells(self.rect[rows], self.bounds[rows], self.crossed[rows], self.inside[rows],
-                                self.normal[rows],
-                     self.spread[rows])
+        return TrimmedFaceCells(*(column[rows] for column in self))
 
 
 class NormalCells:
@@ -73,7 +75,7 @@ class NormalCells:
         self.roots: tuple[Index | None, TrimmedFaceCells] = np.arange(len(self._cells.rect)), self._cells
 
     def below(self, kept: Index | None, cells: TrimmedFaceCells) -> tuple[Index | None, TrimmedFaceCells]:
-        """The quarters of cells, as far as they may hold a point of the face.
+        """The parts of cells, as far as they may hold a point of the face.
 
         Parameters
         ----------
@@ -106,24 +108,25 @@ class NormalCells:
         bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
         u, v = (part.ravel() for part in np.meshgrid(*(np.arange(len(line) - 1) for line in lines), indexing="ij"))
         rect = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)
-        return self._make_cells(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))[0]
+        made, _ = self._make_cells(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))
+        return made
 
     def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
-        """The quarters of cells, those of one after those of the other, and how many there are of each."""
-        return self._make_cells(_quarter_rectangles(cells.rect), np.repeat(cells.bounds, 4, axis=0),
-                                np.repeat(cells.crossed, 4), len(cells.rect))
+        """The parts of cells, those of one after those of the other, and how many there are of each."""
+        rect, owner = _divide_rectangles(cells.rect, cells.turn)
+        made, met = self._make_cells(rect, cells.bounds[owner], cells.crossed[owner])
+        return made, np.bincount(owner[met], minlength=len(cells.rect))
 
-    def _make_cells(self, rect: Array, bounds: Array, crossed: Bools,
-                    parents: int = 1) -> tuple[TrimmedFaceCells, Index]:
-        """Cells from rectangles, a few thousand at once; of those that an edge may cross, those that hold something."""
+    def _make_cells(self, rect: Array, bounds: Array, crossed: Bools) -> tuple[TrimmedFaceCells, Index]:
+        """Cells from rectangles, a few thousand at once: those that hold something of the face, and their numbers."""
         parts = []
         for first in range(0, len(rect), _AT_ONCE):
             breathe()
             some = slice(first, first + _AT_ONCE)
             parts.append(self._looked(rect[some], bounds[some], crossed[some]))
         found = parts[0] if len(parts) == 1 else TrimmedFaceCells(*map(np.concatenate, zip(*parts, strict=True)))
-        met = found.inside | found.crossed
-        return found.chosen(met), met.reshape(parents, -1).sum(axis=1)
+        met = np.flatnonzero(found.inside | found.crossed)
+        return found.chosen(met), met
 
     def _looked(self, rect: Array, bounds: Array, near: Bools) -> TrimmedFaceCells:
         spend(_QUESTION + _CELL * len(rect))
@@ -132,11 +135,11 @@ class NormalCells:
         crossed, inside = near.copy(), np.ones(len(rect), dtype=bool)
         crossed[near] = self._edges_meet(middle[near], half[near])
         inside[near] = self._face.contains(middle[near])
-        normal, spread = self._normals(middle, half, bounds)
-        return TrimmedFaceCells(rect, bounds, crossed, inside, normal, spread)
+        normal, spread, turn = self._normals(middle, half, bounds)
+        return TrimmedFaceCells(rect, bounds, crossed, inside, normal, spread, turn)
 
-    def _normals(self, middle: Array, half: Array, bounds: Array) -> tuple[Array, Array]:
-        """Normals in the middles of cells, and how far others of the cell are from them at most."""
+    def _normals(self, middle: Array, half: Array, bounds: Array) -> tuple[Array, Array, Array]:
+        """Normals in the middles of cells, how far others of the cell are from them at most, and by which width."""
         d = self._face.evaluate(middle)
         normal = self._face.normal(middle, d)
         hu, hv = half.T
@@ -151,7 +154,8 @@ class NormalCells:
         # In a fold a narrow cell has no normals but those of the cells beside it.
         narrow = np.flatnonzero((share >= 1) & (np.minimum(across_u, across_v) < _SPECK))
         spread[narrow[self._face.folds(middle[narrow]).rows]] = 0.0
-        return normal, spread
+        turn = half * np.column_stack([bounds[:, 0] * sv + bounds[:, 1] * su, bounds[:, 1] * sv + bounds[:, 2] * su])
+        return normal, spread, turn
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:
         """Whether any edge of a loop meets the rectangles with these middles and half sizes (separating axes)."""
@@ -183,9 +187,30 @@ def _grid_lines(knots: Array, low: float, high: float) -> Array:
     return np.sort(np.concatenate([even[apart], inner]))
 
 
-def _quarter_rectangles(rect: Array) -> Array:
-    """The quarters of rectangles, (4 n, 4), those of one after those of the other."""
-    u0, u1, v0, v1 = rect.T
-    u, v = (u0 + u1) / 2, (v0 + v1) / 2
-    quarters = [np.stack([*along, *across], axis=1) for along in ((u0, u), (u, u1)) for across in ((v0, v), (v, v1))]
-    return np.stack(quarters, axis=1).reshape(-1, 4)
+def _divide_rectangles(rect: Array, turn: Array) -> tuple[Array, Index]:
+    """The quarters of rectangles, (n, 4), or their halves where the normals turn along one parameter alone.
+
+    Parameters
+    ----------
+    rect : (n, 4) array
+    turn : (n, 2) array
+        How much the normals turn along each parameter.
+
+    Returns
+    -------
+    parts : (m, 4) array
+        Those of one rectangle after those of the other.
+    owner : (m,) array of int
+        Of which rectangle each is a part.
+    """
+    middle = (rect[:, 0::2] + rect[:, 1::2]) / 2
+    cut = turn * _ONE_WAY >= turn[:, ::-1]
+    parts = np.repeat(rect[:, None], 4, axis=1)
+    wanted = np.ones((len(rect), 4), dtype=bool)
+    for number, (upper_u, upper_v) in enumerate(((False, False), (False, True), (True, False), (True, True))):
+        for axis, upper in enumerate((upper_u, upper_v)):
+            halved = cut[:, axis]
+            parts[halved, number, 2 * axis + (0 if upper else 1)] = middle[halved, axis]
+            if upper:
+                wanted[~halved, number] = False
+    return parts[wanted], np.nonzero(wanted)[0]

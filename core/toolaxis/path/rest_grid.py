@@ -26,6 +26,8 @@ _PIECES, _PLACES = 64, 20_000
 _MEASURED = 16
 #: Cells with no more fine ones along a side are looked at node by node.
 _SMALL = 2
+#: Fine cells along a side of the blocks that are looked at again.
+_BLOCK = 16
 #: Corners and middles of the sides of a cell, as shares of it.
 _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1], [0, 0.5]])
 
@@ -81,9 +83,37 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     return lines, values
 
 
+def sample_again(lines: Lines, values: Array, function: Callable[[Array], Array],
+                 whole: Callable[[Array, Array], Bools]) -> Array:
+    """The lesser of a function at the nodes of a grid and of what was found there before, where that is above zero.
+
+    Parameters
+    ----------
+    lines, values
+        As from `sample_grid`.
+    function, whole
+        As for `sample_grid`.
+
+    Returns
+    -------
+    (m, n) array
+    """
+    above = values > 0
+    rows, columns = (np.arange(0, size - 1, _BLOCK) for size in values.shape)
+    some = np.add.reduceat(np.add.reduceat(above.astype(np.int64), rows, axis=0), columns, axis=1)
+    i, j = np.nonzero(some)
+    ends = [np.append(first[1:], size - 1) for first, size in zip((rows, columns), values.shape, strict=True)]
+    found = values.copy()
+    _ask(function, whole, lines, found, np.column_stack([rows[i], columns[j], ends[0][i], ends[1][j]]), above)
+    return np.where(above, np.minimum(values, found), values)
+
+
 def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Bools], lines: Lines, values: Array,
-         blocks: Ints) -> None:
-    """Put the function at all nodes of blocks, (k, 4) first and last lines of each, into values; 1 where it is sure."""
+         blocks: Ints, among: Bools | None = None) -> None:
+    """Put the function at all nodes of blocks, (k, 4) first and last lines of each, into values; 1 where it is sure.
+
+    Of the nodes that are not sure it is asked only among some, (m, n) bool, where these are given.
+    """
     wanted = np.zeros(values.shape, dtype=bool)
     while len(blocks):
         small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
@@ -97,7 +127,7 @@ def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Boo
         for i0, j0, i1, j1 in blocks[sure]:
             values[i0:i1 + 1, j0:j1 + 1] = 1.0
         blocks = _quarters(blocks[~sure])
-    i, j = np.nonzero(wanted)
+    i, j = np.nonzero(wanted if among is None else wanted & among)
     values[i, j] = function(np.column_stack([lines[0][i], lines[1][j]]))
 
 

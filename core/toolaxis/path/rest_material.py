@@ -1,7 +1,7 @@
 """Zones of a sub-surface that its passes leave higher than the scallop limit, as closed loops with their area."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -14,7 +14,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_polygon, without
 from toolaxis.numeric.polygons import signed_area
-from toolaxis.path.rest_grid import sample_grid
+from toolaxis.path.rest_grid import sample_again, sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -41,8 +41,8 @@ _TRIES = 5
 _FAR = 1e-3
 #: How much farther than its corners and the middles of its sides a cell may reach from its middle.
 _BULGE = 1.2
-#: Halvings of the edges of fine cells that find the border of a zone: to some nanometres.
-_HALVINGS = 14
+#: How closely the border of a zone is found on the edges of fine cells, mm.
+_CLOSE = 1e-4
 #: Share of a face's range of parameters below which a zone is so small that its area is not integrated.
 _CRUMB = 2e-4
 #: Nodes at which it is looked first whether a zone is deep.
@@ -71,11 +71,14 @@ class Excess:
         With one fixed axis.
     height : float
         Above the face, allowance included, mm.
+    motions : pair of (m, 3) arrays, optional
+        Tips at the start and the end of the motions that count; all cutting motions of the path unless given.
     """
 
-    def __init__(self, face: Face, tool: Tool, path: ToolPath, height: float) -> None:
+    def __init__(self, face: Face, tool: Tool, path: ToolPath, height: float,
+                 motions: tuple[Array, Array] | None = None) -> None:
         self._face, self._tool, self._axis, self._height = face, tool, path.axis[0], height
-        self._motions = motions_of(path)
+        self._motions = motions_of(path) if motions is None else motions
 
     def __call__(self, uv: Array) -> Array:
         """Numbers (n,) at parameters (n, 2), beyond the face too: above zero where more than that height is left.
@@ -100,73 +103,144 @@ class Excess:
         return np.asarray(self._distance(at, float(reach.max(initial=0.0))) >= reach)
 
     def _raise_points(self, uv: Array) -> Array:
-        return np.asarray(self._face.evaluate(uv).point + self._height * self._face.normal(uv))
+        d = self._face.evaluate(uv)
+        return np.asarray(d.point + self._height * self._face.normal(uv, d))
 
     def _distance(self, points: Array, most: float) -> Array:
         return distance_to_removed(self._tool, self._axis, *self._motions, points, most, 0.0)
 
 
-def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
-              walls: Callable[[Array], Bools] | None = None, progress: Progress = NO_PROGRESS,
-              between: Array | None = None) -> tuple[Zone, ...]:
-    """Zones that the passes leave higher than the scallop limit.
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What was seen when it was looked at some passes.
 
-    Parameters
+    motions : frozenset of bytes, the cutting motions;  lines : pair of (m,) and (n,) arrays, of the grid;
+    values : (m, n) array, above zero where something is left.
+    """
+
+    motions: frozenset[bytes]
+    lines: tuple[Array, Array]
+    values: Array
+
+
+@dataclass(eq=False)
+class RestFinder:
+    """Finds the zones that passes over one sub-surface leave higher than the scallop limit.
+
+    More passes never leave more.  Where all passes of an earlier look are among those of the next one, it is looked only
+    where they left something, and only at what the others cut of that.
+
+    Attributes
     ----------
     face : Face
         The sub-surface.
     tool : Tool
-    path : ToolPath
-        With one fixed axis; its cutting motions count.
     scallop : float
         Limit of the scallop height, mm.
     allowance : float
         Stock left on the face, mm.
-    walls : callable, optional
-        Takes (n, 2) parameters and tells where the tool may not stand; all zones lie at walls unless given.
+    walls : callable or None
+        Takes (n, 2) parameters and tells where the tool may not stand; all zones lie at walls where there is none.
     progress : Progress
-    between : (k, 2) array, optional
+    between : (k, 2) array or None
         Further parameters at which it is looked, see `toolaxis.path.pass_layout.places_between`.
-
-    Returns
-    -------
-    tuple of Zone
-        The largest first. A zone is what stays higher than `FACTOR` times the limit; small and shallow ones are left
-        out where they are less than `may_stay` together with those that do not lie at walls.
-
-    Raises
-    ------
-    Cancelled
-        When the user asked to stop.
-
-    Notes
-    -----
-    The border of a zone is the line on which the surface, raised by that height, meets the swept cutter: exact at the
-    vertices, straight between them, which are a fourteenth of the cutter's radius apart or less. Zones inside the
-    sub-surface that lie between the nodes of a coarse grid, and at no place that is given, may be missed; at its border
-    it is looked at closely everywhere, and where something is found, as far as it goes.
-
-    **Properties**: 1. zones and machined area are the sub-surface, without overlap.
     """
-    if not len(motions_of(path)[0]):
-        return (Zone(face.outline, face.area),)
-    progress.check()
-    high = Excess(face, tool, path, allowance + FACTOR * scallop)
-    deep = Excess(face, tool, path, allowance + DEEP * scallop)
-    lines, values = sample_grid(face, high, _size(face, tool, scallop), high.whole, between)
-    nodes = _above(lines, values)
-    if not len(nodes):
-        return ()
-    progress.check()
-    found = contours(values, lines, high, _HALVINGS)
-    progress.check()
-    zones = [face.trimmed(loops) for loops in outer_with_holes(split(face.outline, found)[0])]
-    small, large = _partition_by(list(zip(zones, _areas(face, zones), strict=True)),
-                                 lambda one: one[1] <= _SPECK * tool.radius**2 or not _deep(one[0], deep, nodes))
-    told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
-    if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
-        told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
-    return tuple(sorted(told, key=lambda zone: -zone.area))
+
+    face: Face
+    tool: Tool
+    scallop: float
+    allowance: float = 0.0
+    walls: Callable[[Array], Bools] | None = None
+    progress: Progress = NO_PROGRESS
+    between: Array | None = None
+    _last: _Look | None = None
+
+    def find(self, path: ToolPath) -> tuple[Zone, ...]:
+        """The zones that the passes of a path leave, the largest first.
+
+        Parameters
+        ----------
+        path : ToolPath
+            With one fixed axis; its cutting motions count.
+
+        Returns
+        -------
+        tuple of Zone
+            A zone is what stays higher than `FACTOR` times the limit; small and shallow ones are left out where they
+            are less than `may_stay` together with those that do not lie at walls.
+
+        Raises
+        ------
+        Cancelled
+            When the user asked to stop.
+
+        Notes
+        -----
+        The border of a zone is the line on which the surface, raised by that height, meets the swept cutter: exact at
+        the vertices, straight between them, which are a fourteenth of the cutter's radius apart or less.  Zones inside
+        the sub-surface that lie between the nodes of a coarse grid, and at no place that is given, may be missed; at
+        its border it is looked at closely everywhere, and where something is found, as far as it goes.
+
+        **Properties**: 1. zones and machined area are the sub-surface, without overlap; 2. after an earlier look no
+        zone is missed that a first look would find.
+        """
+        if not len(motions_of(path)[0]):
+            return (Zone(self.face.outline, self.face.area),)
+        self.progress.check()
+        high = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop)
+        look = self._last = self._look(path, high)
+        nodes = _above(look.lines, look.values)
+        if not len(nodes):
+            return ()
+        self.progress.check()
+        found = contours(look.values, look.lines, high, _halvings(self.face, self.tool, self.scallop))
+        self.progress.check()
+        return self._zones_in(found, path, nodes)
+
+    def _look(self, path: ToolPath, high: Excess) -> _Look:
+        """What is left at the nodes of a grid."""
+        starts, ends = motions_of(path)
+        rows = _name_motions(starts, ends)
+        motions = frozenset(rows)
+        if self._last is None or not self._last.motions <= motions:
+            size = _size(self.face, self.tool, self.scallop)
+            return _Look(motions, *sample_grid(self.face, high, size, high.whole, self.between))
+        new = np.array([row not in self._last.motions for row in rows])
+        fresh = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop, (starts[new], ends[new]))
+        lines, values = self._last.lines, self._last.values
+        return _Look(motions, lines, sample_again(lines, values, fresh, fresh.whole))
+
+    def _zones_in(self, found: tuple[Array, ...], path: ToolPath, nodes: Array) -> tuple[Zone, ...]:
+        """The zones within loops, the largest first, without what is too small or too shallow to be told."""
+        face, walls = self.face, self.walls
+        deep = Excess(face, self.tool, path, self.allowance + DEEP * self.scallop)
+        zones = [face.trimmed(loops) for loops in outer_with_holes(split(face.outline, found)[0])]
+        small, large = _partition_by(list(zip(zones, _areas(face, zones), strict=True)),
+                                     lambda one: one[1] <= _SPECK * self.tool.radius**2
+                                     or not _deep(one[0], deep, nodes))
+        told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
+        if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
+            told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
+        return tuple(sorted(told, key=lambda zone: -zone.area))
+
+
+def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
+              walls: Callable[[Array], Bools] | None = None) -> tuple[Zone, ...]:
+    """Zones that the passes of one path leave higher than the scallop limit; see `RestFinder.find`.
+
+    Parameters
+    ----------
+    face, tool, path, scallop, allowance, walls
+        As for `RestFinder`.
+    """
+    return RestFinder(face, tool, scallop, allowance, walls).find(path)
+
+
+def _name_motions(starts: Array, ends: Array) -> list[bytes]:
+    """A name for each motion, the same for either way along it."""
+    turned = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))
+    rows = np.where(turned[:, None], np.hstack([ends, starts]), np.hstack([starts, ends]))
+    return [row.tobytes() for row in np.ascontiguousarray(rows)]
 
 
 def _areas(face: Face, zones: Sequence[Face]) -> list[float]:
@@ -268,6 +342,11 @@ def _size(face: Face, tool: Tool, scallop: float) -> float:
     """Size of the cells that outline zones, mm: passes leave pieces as narrow as the ends of their strips."""
     strip = 2 * np.sqrt(2 * (tool.corner_radius or tool.radius) * scallop)
     return float(min(_OF_RADIUS * tool.radius, _OF_STRIP * strip, _OF_FACE * np.sqrt(face.area)))
+
+
+def _halvings(face: Face, tool: Tool, scallop: float) -> int:
+    """How often the edges of fine cells are halved to find the border of a zone."""
+    return max(1, int(np.ceil(np.log2(_size(face, tool, scallop) / _CLOSE))))
 
 
 def _above(lines: tuple[Array, Array], values: Array) -> Array:

@@ -26,7 +26,7 @@ from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout, lay_out, pass_length, places_between
 from toolaxis.path.pass_pattern import pattern_name, pattern_names
 from toolaxis.path.planes import PlaneChart
-from toolaxis.path.rest_material import left_over, may_stay
+from toolaxis.path.rest_material import RestFinder, may_stay
 from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
@@ -67,7 +67,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.tool import Tool
-from toolaxis.work import OutOfWork, better_may_exist, up_to
+from toolaxis.work import OutOfWork, allow_proof, better_may_exist, up_to
 
 Array = NDArray[np.float64]
 
@@ -252,32 +252,30 @@ class FaceProblem:
             Of that layout.
         """
         axis = placed.cut.axis
-        between = self.between(placed)
-        return complete_passes(placed, path, self.traced, lambda made: self.left_by(made, between),
+        return complete_passes(placed, path, self.traced, self._rest_finder(axis, placed).find,
                                lambda uv: self.reach(uv, axis))
 
-    def between(self, placed: Layout) -> Array | None:
-        """Parameters (k, 2) between passes at which it is looked what they leave; None where strips are exact.
-
-        Parameters
-        ----------
-        placed : Layout
-        """
-        return places_between(placed) if placed.chart.face.surface.stand_in is not None else None
-
-    def left_by(self, path: ToolPath, between: Array | None = None) -> tuple[Zone, ...]:
+    def left_by(self, path: ToolPath, placed: Layout | None = None) -> tuple[Zone, ...]:
         """Zones that passes leave higher than the scallop limit, the largest first.
 
         Parameters
         ----------
         path : ToolPath
             With one fixed axis.
-        between : (k, 2) array, optional
-            Parameters between passes, at which it is looked too.
+        placed : Layout, optional
+            Passes of that path: where strips are not exact it is looked between them too.
+        """
+        return self._rest_finder(path.axis[0], placed).find(path)
+
+    def _rest_finder(self, axis: Array, placed: Layout | None) -> RestFinder:
+        """What finds the zones that passes leave; between those of a layout it looks closer where strips are not exact.
         """
         worth = self.worth
-        return left_over(worth.face, worth.tool, path, worth.scallop, worth.allowance,
-                         lambda uv: ~self.feasibility.reach(uv, path.axis[0]), self.progress, between)
+        between = None
+        if placed is not None and worth.face.surface.stand_in is not None:
+            between = places_between(placed)
+        return RestFinder(worth.face, worth.tool, worth.scallop, worth.allowance,
+                          lambda uv: ~self.feasibility.reach(uv, axis), self.progress, between)
 
 
 def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
@@ -447,7 +445,10 @@ def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Ori
         with up_to(_SEARCHED):
             found = how.find(ledger)
     except OutOfWork as reason:
-        result, path = _first_accepted(job, ledger, snap_to_increments(ledger, so_far(ledger)), how)
+        found = snap_to_increments(ledger, so_far(ledger))
+        if found:
+            allow_proof()
+        result, path = _first_accepted(job, ledger, found, how)
         if result.axis is not None:
             return _note_end((result, path))
         return replace(result, outcome="not_found", reasons=(str(reason), *result.reasons)), None
@@ -480,6 +481,8 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
         When the work that was allowed is done, and none was accepted.
     """
     found = snap_to_increments(ledger, found)
+    if found:
+        allow_proof()
     with suppress(OutOfWork), up_to(_ORDERED):
         found = least_made(job.worth, found, job.made)
     return _first_accepted(job, ledger, found, method)
@@ -596,7 +599,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         if of_all.witness is None:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
-            made = FurtherPasses(placed, plain, job.left_by(plain, job.between(placed)))
+            made = FurtherPasses(placed, plain, job.left_by(plain, placed))
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))

@@ -65,8 +65,8 @@ Array = NDArray[np.float64]
 #: How a reason begins that tells why a shared axis does not serve.
 REFUSED = "shared axis refused: "
 #: How many times the limit of work a sub-surface is allowed by its share of the area of a plan with several tools, at
-#: least and at most.
-_WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK = 6.0, 0.5, 4.0
+#: least and at most; and how many times besides for the passes of an axis that was found.
+_WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.5, 4.0, 1.5
 #: Why a sub-surface is divided before an axis for all of it is looked for.
 _IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
@@ -455,7 +455,8 @@ class PlanningJob:
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
-        with limit_work(Budget(self.inputs.limit, self._times_of_work(target.face))):
+        more = _FOR_PASSES if self.asked_area > 0 else 0.0
+        with limit_work(Budget(self.inputs.limit, self._times_of_work(target.face), more)):
             return self._with_axis(target, place, progress)
 
     def _times_of_work(self, face: Face) -> float:
