@@ -77,7 +77,7 @@ def test_zones_hold_what_dense_points_find(made: tuple[FaceProblem, ToolPath]) -
 
 def test_a_look_at_further_passes_finds_what_a_first_look_finds(made: tuple[FaceProblem, ToolPath],
                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
-    """It goes on where the last one found something: fewer points are asked for, and the other way round all of them."""
+    """It goes on where the last one found something, and asks for fewer points."""
     job, path = made
     some = path.kind.copy()
     some[np.flatnonzero(path.kind == Motion.CUT)[::40]] = Motion.LINK

@@ -127,8 +127,8 @@ class _Look:
 class RestFinder:
     """Finds the zones that passes over one sub-surface leave higher than the scallop limit.
 
-    More passes never leave more.  Where all passes of an earlier look are among those of the next one, it is looked only
-    where they left something, and only at what the others cut of that.
+    More passes never leave more.  Where all passes of an earlier look are among those of the next one, it is looked
+    only where they left something, and only at what the others cut of that.
 
     Attributes
     ----------
