@@ -55,7 +55,8 @@ class TrimmedFaceCells(NamedTuple):
 
     def chosen(self, rows: Index | Bools) -> "TrimmedFaceCells":
         """Some of the cells."""
-        return TrimmedFaceCells(*(column[rows] for column in self))
+        return TrimmedFaceCells(self.rect[rows], self.bounds[rows], self.crossed[rows], self.inside[rows],
+                                self.normal[rows], self.spread[rows], self.turn[rows])
 
 
 class NormalCells:
