@@ -16,7 +16,7 @@ from toolaxis.batch.task import BatchTask, PartBytes
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
-from toolaxis.job.inputs.spec import Spec
+from toolaxis.job.inputs.spec import Spec, numbers_to_avoid
 from toolaxis.job.inputs.tool_library import GENERAL_RACK, load_library
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
@@ -32,7 +32,7 @@ from toolaxis.tools.tool import Tool
 
 _INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
            "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
-           "passes": str}
+           "passes": str, "avoid": "avoided"}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
@@ -289,6 +289,8 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return float(value)
     if kind == "count":
         return value
+    if kind == "avoided":
+        return numbers_to_avoid(value)
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

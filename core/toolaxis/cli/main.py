@@ -93,6 +93,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--stickout", type=float, metavar="MM", help="length from the tip to the holder's lower face")
     sub.add_argument("--obstacles", metavar="FILE", action="append", default=[],
                      help="STEP file of bodies to keep clear of; may be repeated")
+    sub.add_argument("--avoid", default="", metavar="LIST",
+                     help="faces such as 3,5-8 that no tool may touch: not machined, and kept clear of as obstacles "
+                          "are, whatever faces they join")
     sub.add_argument("--regions", type=_count, metavar="N|auto",
                      help="sub-surfaces for each face, an axis each; auto: as many as pay")
     sub.add_argument("--orientations", type=_count, metavar="N|auto",

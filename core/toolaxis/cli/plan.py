@@ -9,7 +9,7 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
-from toolaxis.job.inputs.spec import Spec
+from toolaxis.job.inputs.spec import Spec, parse_avoided
 from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
@@ -17,6 +17,7 @@ from toolaxis.plan.choices import FEEDRATE, OBJECTIVES, SPINDLE
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
+from toolaxis.plan.zone import AVOIDED
 from toolaxis.progress import Progress
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
@@ -53,7 +54,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=given.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, passes=spec.inputs.passes,
-                        obstacles=list(spec.obstacles), method=spec.inputs.method, strategy=given.strategy,
+                        obstacles=list(spec.obstacles), avoid=spec.inputs.avoid,
+                        method=spec.inputs.method, strategy=given.strategy,
                         roughness=_roughness(given), feedrate=given.feedrate, spindle=given.spindle,
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
                         compare=given.compare, limit=spec.inputs.limit,
@@ -78,7 +80,7 @@ def _spec(given: Namespace) -> Spec:
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
                         given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
-                        passes=given.passes)
+                        passes=given.passes, avoid=parse_avoided(given.avoid))
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""
@@ -194,5 +196,7 @@ def _say_left_over(op: Operation) -> None:
         say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
             f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
+        if AVOIDED in why:
+            say(f"toolaxis: face {op.face.label}: {why}")
         if why.startswith(("undercut", "one contact", "no contact", *MOTION_WARNINGS)):
             say(f"toolaxis: warning: face {op.face.label}: {why}")

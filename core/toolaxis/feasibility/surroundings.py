@@ -141,7 +141,7 @@ def _harmless(part: Part, number: int) -> set[int]:
     convex = {n for own in skin for n in part.neighbours(own, "convex")}
     corners = _corners(part, skin)
     if len(corners):
-        for edge in part.edges:
+        for edge in part.shared_edges:
             ends = edge.polyline[[0, -1]]
             apart = np.linalg.norm(ends[:, None] - corners[None], axis=2).min()
             if apart <= 1e-6 * part.diagonal:
@@ -150,5 +150,5 @@ def _harmless(part: Part, number: int) -> set[int]:
 
 
 def _corners(part: Part, skin: set[int]) -> Array:
-    ends = [edge.polyline[[0, -1]] for edge in part.edges if skin & set(edge.faces)]
+    ends = [edge.polyline[[0, -1]] for edge in part.shared_edges if skin & set(edge.faces)]
     return np.concatenate(ends) if ends else np.empty((0, 3))

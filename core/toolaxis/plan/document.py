@@ -149,7 +149,8 @@ def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
             "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
             "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
-            "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops]} for zone in op.zones]}
+            "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops], "avoided": list(zone.avoided)}
+                      for zone in op.zones]}
 
 
 def account_document(found: PartAccount) -> Document:
@@ -190,7 +191,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  **account_document(plan.account)},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
-        "inputs": asdict(plan.inputs),
+        "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid)},
         "datum": _rows(plan.datum),
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
@@ -229,7 +230,8 @@ def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Too
         face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
     frame = document["work_coordinates"]
     axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
-    zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"])})
+    zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"]),
+                          "avoided": tuple(zone.get("avoided", ()))})
                   for zone in document.get("zones", ()))
     time = document.get("time")
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
@@ -264,10 +266,12 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
         When the document breaks the schema or names a face that the part does not have.
     """
     check(document)
+    given = dict(document["inputs"])
+    inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"]),
+                           "avoid": tuple(given.get("avoid", ()))})
+    part = part.avoiding(inputs.avoid)
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
-    given = dict(document["inputs"])
-    inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"])})
     tools = tuple(tool_from(one) for one in document["tools"])
     operations = tuple(_operation_from(record, part, tools, path)
                        for record, path in zip(document["operations"], paths, strict=True))

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
+from toolaxis.plan.zone import AVOIDED
 from toolaxis.shape.face import Face
 from toolaxis.work import is_out_of_work
 
@@ -27,7 +28,8 @@ class OpenPlace(NamedTuple):
 
     label : str, of the sub-surface;  area : float, mm^2;  unreachable : float, mm^2 of it that are proven to be out of
     reach of every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float, least radius of its
-    hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work ended the search there.
+    hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work ended the search there;
+    avoided : tuple of str, labels of faces to be avoided that keep the cutter from it.
     """
 
     label: str
@@ -36,6 +38,7 @@ class OpenPlace(NamedTuple):
     point: Array
     radius: float
     limited: bool
+    avoided: tuple[str, ...] = ()
 
 
 class OpenFace(NamedTuple):
@@ -92,7 +95,9 @@ def _place(op: Operation, piece: OpenFace) -> OpenPlace:
     hollow = float(face.curvature(uv).k1.max(initial=0.0))
     proven = op.unreachable if piece.zone is None else op.zones[piece.zone].unreachable
     limited = is_out_of_work(op.orientation.reasons)
-    return OpenPlace(op.face.label, piece.area, proven, middle, 1 / hollow if hollow > _FLAT else np.inf, limited)
+    avoided = () if piece.zone is None else op.zones[piece.zone].avoided
+    radius = 1 / hollow if hollow > _FLAT else np.inf
+    return OpenPlace(op.face.label, piece.area, proven, middle, radius, limited, avoided)
 
 
 def what_closes(place: OpenPlace, smallest: float) -> str:
@@ -104,6 +109,8 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     smallest : float
         Radius of the smallest ball, or corner, of the tools, mm.
     """
+    if place.avoided:
+        return f"nothing: it lies beside face {', '.join(place.avoided)}, {AVOIDED}"
     if place.radius < smallest:
         return f"a ball end of {2 * place.radius:.2g} mm or less"
     if place.unreachable >= _MOSTLY * place.area:

@@ -68,6 +68,8 @@ class PlanInputs:
         `toolaxis.work`.
     passes : str
         One of `PASSES`; passes with a moving axis are iso-parametric, or layers.
+    avoid : tuple of int
+        Numbers of the part's faces that no tool may touch.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class PlanInputs:
     roughness: float = 0.0
     limit: float = LIMIT
     passes: str = ISO
+    avoid: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),

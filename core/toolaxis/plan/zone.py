@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+#: What is said of a face that no tool may touch.
+AVOIDED = "which is to be avoided"
+
 
 @dataclass(frozen=True, eq=False)
 class Zone:
@@ -24,6 +27,8 @@ class Zone:
         Area of it that other operations of the plan machine, mm^2.
     unreachable : float
         Area of what is left then that is proven to be out of reach of every tool of the plan, mm^2.
+    avoided : tuple of str
+        Labels of the faces to be avoided to which the cutter would come too near somewhere on it.
     """
 
     loops: tuple[Array, ...]
@@ -31,3 +36,4 @@ class Zone:
     at_wall: bool = True
     elsewhere: float = 0.0
     unreachable: float = 0.0
+    avoided: tuple[str, ...] = ()

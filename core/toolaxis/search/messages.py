@@ -16,7 +16,7 @@ from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, LIMITS, WANDERS
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between, dot
 from toolaxis.plan.orientation import REASONS
-from toolaxis.plan.zone import Zone
+from toolaxis.plan.zone import AVOIDED, Zone
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -64,6 +64,9 @@ def left_reasons(zones: Sequence[Zone], face: Face) -> tuple[str, ...]:
     words = []
     if at_walls > 0:
         words.append(f"{100 * min(at_walls / face.area, 1.0):.1f} % of the area lies at walls and {LEFT_OVER}")
+    for label in dict.fromkeys(label for zone in zones for label in zone.avoided):
+        area = sum(zone.area for zone in zones if label in zone.avoided)
+        words.append(f"{area:.2f} mm2 beside face {label}, {AVOIDED}, {LEFT_OVER}")
     if any(not zone.at_wall for zone in zones):
         words.append(f"{UNDERCUT}: {stays_high(zones, face)}")
     return tuple(words)

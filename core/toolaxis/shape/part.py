@@ -19,6 +19,8 @@ PLAIN_KINDS = ("plane", "cylinder", "cone")
 
 #: How the warning about a face that cannot be used goes on after its name.
 LEFT_OUT = "was left out"
+#: What is said of a face that is asked for though no tool may touch it.
+AVOIDED_TOO = "is to be machined and to be avoided: take it out of one of the two lists"
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,8 @@ class Part:
         Numbers of the faces that the caller picked; empty where nothing was picked.
     original : Part or None
         The part as it came, where faces of it were joined, see `toolaxis.skin.join.join`.
+    avoided : tuple of int
+        Numbers of the faces that no tool may touch: they are walls to all others, however they meet them.
 
     Raises
     ------
@@ -77,6 +81,7 @@ class Part:
     warnings: tuple[str, ...] = ()
     selected: tuple[int, ...] = ()
     original: "Part | None" = None
+    avoided: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.faces:
@@ -86,7 +91,7 @@ class Part:
         if twice:
             raise InvalidInput(f"face number {twice[0]} occurs twice: give every face of a part its own number")
         named = [number for edge in self.edges for number in edge.faces]
-        named += [*self.selected, *(number for body in self.bodies for number in body.faces)]
+        named += [*self.selected, *self.avoided, *(number for body in self.bodies for number in body.faces)]
         missing = sorted(set(named) - set(numbers))
         if missing:
             raise InvalidInput(f"face {missing[0]} is named by an edge, a body or the selection but is not in the part")
@@ -123,10 +128,15 @@ class Part:
     def _by_number(self) -> dict[int, Face]:
         return {face.number: face for face in self.faces}
 
+    @property
+    def shared_edges(self) -> tuple[Edge, ...]:
+        """The edges along which a tool may touch both faces: all but those of faces that are to be avoided."""
+        return tuple(edge for edge in self.edges if not set(edge.faces) & set(self.avoided))
+
     @cached_property
     def _adjacent(self) -> dict[int, list[tuple[int, str]]]:
         table: dict[int, list[tuple[int, str]]] = {}
-        for edge in self.edges:
+        for edge in self.shared_edges:
             a, b = edge.faces
             if a != b:
                 table.setdefault(a, []).append((b, edge.kind))
@@ -151,7 +161,7 @@ class Part:
         return self._by_number[number]
 
     def neighbours(self, number: int, kind: str | None = None) -> tuple[int, ...]:
-        """Numbers of the faces that share an edge with a face, of one kind of edge if given."""
+        """Numbers of the faces that share an edge with a face, of one kind of edge if given; none that is avoided."""
         self.face(number)
         return tuple(sorted({other for other, how in self._adjacent.get(number, ()) if kind in (None, how)}))
 
@@ -191,8 +201,9 @@ class Part:
 
     @property
     def sculptured(self) -> tuple[Face, ...]:
-        """The faces that are not planes, cylinders or cones."""
-        return tuple(face for face in self.faces if face.kind not in PLAIN_KINDS)
+        """The faces that are not planes, cylinders or cones, without those that are to be avoided."""
+        return tuple(face for face in self.faces
+                     if face.kind not in PLAIN_KINDS and face.number not in self.avoided)
 
     @cached_property
     def seams(self) -> tuple[Seam, ...]:
@@ -214,6 +225,24 @@ class Part:
     def left_out(self) -> tuple[str, ...]:
         """Warnings about faces of the file that could not be used: nothing is kept clear of them."""
         return tuple(warning for warning in self.warnings if LEFT_OUT in warning)
+
+    def avoiding(self, numbers: Sequence[int]) -> "Part":
+        """The part with faces that no tool may touch.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            A joined face stands for all faces that it consists of.
+
+        Raises
+        ------
+        InvalidInput
+            When the part has no such face.
+        """
+        found = {self.face(number) for number in numbers}
+        own = {number for face in found for number in face.numbers}
+        original = None if self.original is None else self.original.avoiding(sorted(own))
+        return replace(self, avoided=tuple(sorted(face.number for face in found)), original=original)
 
     def with_warnings(self, *warnings: str) -> "Part":
         """The part with further warnings."""

@@ -65,7 +65,7 @@ def find_skins(part: Part, width: float = 0.0) -> Skins:
 
     **Properties**: 1. every sculptured face is in one of them, or single; 2. moving the part changes nothing.
     """
-    open_ = {face.number: face for face in part.faces if not face.members
+    open_ = {face.number: face for face in part.faces if not face.members and face.number not in part.avoided
              and (face.kind not in PLAIN_KINDS or mean_width(face) < width)}
     beside = neighbours_of(part, open_)
     order = sorted(open_, key=lambda n: (-open_[n].area, n))

@@ -10,7 +10,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER, corner_at, joins
 from toolaxis.shape.joining.shared_boundary import GAP
-from toolaxis.shape.part import Part
+from toolaxis.shape.part import AVOIDED_TOO, Part
 from toolaxis.skin.smooth_faces import join_faces
 
 #: Angle between the two directions of an iso-curve at a join above which that is told, rad.
@@ -78,7 +78,8 @@ def with_skins(part: Part, skins: Sequence[Face]) -> Part:
     bodies = tuple(replace(body, faces=_rename(body.faces, name)) for body in part.bodies)
     told = [sentence for skin in skins for sentence in _corner_warning(skin)]
     return replace(part, faces=tuple(faces), edges=edges, bodies=bodies, selected=_rename(part.selected, name),
-                   warnings=(*part.warnings, *told), original=part.original or part)
+                   avoided=_rename(part.avoided, name), warnings=(*part.warnings, *told),
+                   original=part.original or part)
 
 
 def take_apart(part: Part, numbers: Collection[int]) -> Part:
@@ -121,6 +122,9 @@ def _check_faces(part: Part, faces: Iterable[int]) -> list[int]:
             raise InvalidInput(f"face {number} is to be joined with itself: name each face once")
         if part.face(number).members:
             raise InvalidInput(f"face {part.face(number).label} is joined already: join all of them at once")
+    avoided = [n for n in numbers if n in part.avoided]
+    if avoided and len(avoided) < len(numbers):
+        raise InvalidInput(f"face {avoided[0]} {AVOIDED_TOO}")
     return numbers
 
 

@@ -15,7 +15,7 @@ from toolaxis.plan.plan import PlanInputs
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
-from toolaxis.shape.part import Part
+from toolaxis.shape.part import AVOIDED_TOO, Part
 from toolaxis.skin.find import find_skins
 from toolaxis.skin.join import join, with_skins
 from toolaxis.tools.tool import Tool
@@ -142,6 +142,49 @@ def parse_faces(text: str) -> Numbers | SomeSkins | str:
     return tuple(dict.fromkeys(numbers))
 
 
+def parse_avoided(text: str) -> tuple[int, ...]:
+    """Numbers of faces to be avoided from their short form.
+
+    Parameters
+    ----------
+    text : str
+        "3,5-8"; empty for none.
+
+    Raises
+    ------
+    InvalidInput
+        When the text is not of that form.
+    """
+    if not text.strip():
+        return ()
+    plain = [piece.strip() for piece in text.split(",")]
+    if not all(piece.replace("-", "", 1).isdigit() for piece in plain):
+        raise InvalidInput(f"faces to be avoided {text!r} are not understood: write numbers such as 3,5-8")
+    found = parse_faces(text)
+    return tuple(number for number in found if isinstance(number, int))
+
+
+def numbers_to_avoid(given: Iterable[int] | int | str | None) -> tuple[int, ...]:
+    """Numbers of the faces to be avoided, each once.
+
+    Parameters
+    ----------
+    given : int, iterable of int, text such as "3,5-8", or None
+
+    Raises
+    ------
+    InvalidInput
+        When one is no number of a face.
+    """
+    if isinstance(given, str):
+        return tuple(sorted(parse_avoided(given)))
+    found = () if given is None else tuple(given) if isinstance(given, Iterable) else (given,)
+    wrong = [number for number in found if isinstance(number, bool) or not isinstance(number, Integral)]
+    if wrong:
+        raise InvalidInput(f"face {wrong[0]!r} to be avoided is no number of a face: give whole numbers from 1")
+    return tuple(sorted({int(number) for number in found}))
+
+
 def offset_from(text: str) -> NDArray[np.float64]:
     """A work offset from three numbers X,Y,Z, mm.
 
@@ -181,12 +224,20 @@ def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
     if isinstance(asked, SomeSkins):
         raise InvalidInput("skins are chosen before faces: give toolaxis.plan the list itself")
     if isinstance(asked, str):
-        return part.faces
+        found = tuple(face for face in part.faces if face.number not in part.avoided)
+        if not found:
+            raise InvalidInput(f"all {len(part.faces)} faces of the part are to be avoided: leave one at least to be "
+                               "machined")
+        return found
     if asked is None:
         found = tuple(part.face(number) for number in part.selected) or part.sculptured
+        if not found and part.avoided:
+            raise InvalidInput("all sculptured faces of the part are to be avoided: leave one at least, or choose "
+                               "faces by number")
         if not found:
             raise InvalidInput(f"none of the part's {len(part.faces)} faces is sculptured (all are planes, cylinders "
                                "or cones): choose faces by number, or all")
+        check_not_avoided(part, found)
         return found
     numbers = list(asked) if isinstance(asked, Iterable) else [asked]
     if not numbers:
@@ -194,7 +245,28 @@ def choose_faces(part: Part, faces: Iterable[int] | int | str | None) -> tuple[F
     wrong = [number for number in numbers if not isinstance(number, Integral)]
     if wrong:
         raise InvalidInput(f"face {wrong[0]!r} is no number of a face: give whole numbers from 1, or all")
-    return tuple(part.face(int(number)) for number in dict.fromkeys(numbers))
+    chosen = tuple(part.face(int(number)) for number in dict.fromkeys(numbers))
+    check_not_avoided(part, chosen)
+    return chosen
+
+
+def check_not_avoided(part: Part, faces: Iterable[Face]) -> None:
+    """Check that no face that is to be machined is to be avoided too.
+
+    Parameters
+    ----------
+    part : Part
+    faces : iterable of Face
+        Of the part.
+
+    Raises
+    ------
+    InvalidInput
+        When one is.
+    """
+    avoided = [face for face in faces if face.number in part.avoided]
+    if avoided:
+        raise InvalidInput(f"face {avoided[0].label} {AVOIDED_TOO}")
 
 
 def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | None,
@@ -244,12 +316,16 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
 
 def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[Face, ...]:
     """Some skins, each as one face, by the numbers that `toolaxis inspect` gives them."""
-    found = find_skins(part).faces
+    found = find_skins(part.avoiding(())).faces  # numbered as for the part alone
     for number in numbers:
         if not 1 <= number <= len(found):
             raise InvalidInput(f"skin {number} does not exist: the part has {len(found)} of two faces or more, see "
                                "toolaxis inspect")
-    return tuple(found[number - 1] for number in numbers)
+    skins = tuple(found[number - 1] for number in numbers)
+    avoided = [number for skin in skins for number in skin.numbers if number in part.avoided]
+    if avoided:
+        raise InvalidInput(f"face {avoided[0]} {AVOIDED_TOO}")
+    return skins
 
 
 def _where_apart(reasons: tuple[str, ...]) -> str:

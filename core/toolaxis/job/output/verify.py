@@ -117,20 +117,27 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                                 obstacles=[face for body in plan.obstacles for face in body.faces])
 
     targets = own_pieces(op.face)
+    whole = plan.part.original or plan.part
+    avoided = tuple(face for face in whole.faces if face.number in plan.inputs.avoid)
+    touched = [face for face in avoided if face.number in op.face.numbers]
+    if touched:
+        raise InvalidInput(f"operation {op.name} machines face {touched[0].label}, which is to be avoided: make the "
+                           "plan again")
 
     def _of(*roles: str) -> tuple[Face, ...]:
         return tuple(own for group in around if group.role in roles for face in group.faces
                      if (face.number, face.label) != (op.face.number, op.face.label) and face not in targets
-                     for own in own_pieces(face))
+                     for own in own_pieces(face)
+                     if own not in avoided and (group.role == OTHER or own.number not in plan.inputs.avoid))
 
     left = tuple(own for zone in op.zones if zone.at_wall
                  for own in own_pieces(op.face.trimmed(zone.loops), only_exact=True))
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
     return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
-                            plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING), _of(OTHER),
-                            op.tool.outlines,
-                            plan.inputs.tolerance, left, op.orientation.axis if op.orientation.lead is None else None,
+                            plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING),
+                            (*_of(OTHER), *avoided), op.tool.outlines, plan.inputs.tolerance, left,
+                            op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
                             before=_end_of(last, op.tool))

@@ -2,7 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
+
+from toolaxis.contact.clearance.clearance import clearance
 from toolaxis.errors import Cancelled, fault
+from toolaxis.feasibility.surroundings import MARGIN
 from toolaxis.job.planning.edit_axis import search_task
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.parallel import abreast
@@ -21,6 +25,8 @@ from toolaxis.strategies.registry import strategy_of
 #: A sub-surface narrower than the cutter is left to the clean-up tool as a whole where its operation would leave more
 #: than this share of it: what it machines is not worth an operation.
 WHOLLY = 0.9
+#: Places each way on a zone at which it is looked which faces keep the cutter from it.
+_PLACES = 12
 
 
 def add_clean_up_zones(plan: Plan, workers: int = 1, progress: Progress = NO_PROGRESS) -> Plan:
@@ -111,9 +117,27 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
     if not zones:
         return ()
     height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
+    zones = _name_avoided(plan, op, zones)
     others = [Excess(op.face, other.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
     return tuple(also_machined(op.face, zone, others) for zone in zones)
+
+
+def _name_avoided(plan: Plan, op: Operation, zones: tuple[Zone, ...]) -> tuple[Zone, ...]:
+    """Zones with the faces to be avoided to which the cutter of an operation would come too near on them."""
+    avoided = [plan.part.face(number) for number in plan.part.avoided]
+    if not avoided:
+        return zones
+    assert op.path is not None
+    axis, least = op.path.axis[0], plan.inputs.tolerance.cutter_clearance + MARGIN
+    alone = replace(op.tool, shank=None, holder=None, stickout=None)
+    found = []
+    for zone in zones:
+        uv = np.concatenate([*zone.loops, op.face.trimmed(zone.loops).places_on(_PLACES)])
+        named = tuple(face.label for face in avoided if zone.at_wall and (
+            clearance(op.face, alone, uv, axis, face, allowance=plan.inputs.allowance) < least).any())
+        found.append(replace(zone, avoided=named))
+    return tuple(found)
 
 
 def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Operation:

@@ -14,7 +14,7 @@ from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
-from toolaxis.job.inputs.spec import choose_faces, with_joined, with_rings
+from toolaxis.job.inputs.spec import check_not_avoided, choose_faces, numbers_to_avoid, with_joined, with_rings
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
@@ -57,7 +57,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
          objective: str | None = None, strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
-         passes: str = ISO, obstacles: Any = None, method: str = "sphere",
+         passes: str = ISO, obstacles: Any = None, avoid: Sequence[int] | str | None = None, method: str = "sphere",
          feedrate: float | None = None, spindle: float | None = None, tolerance: ToleranceLike = None,
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
@@ -107,6 +107,10 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         their strips are wide, "auto" the shorter of the first and the last; all but "iso" with fixed axes only.
     obstacles : Part, anything that `toolaxis.load` takes, or a list of these, optional
         Further bodies to keep clear of.
+    avoid : sequence of int or text such as "3,5-8", optional
+        Faces of the part that no tool may touch: they are not machined, and cutter, shank and holder keep the distances
+        from them that they keep from obstacles, however they meet the faces that are machined.  A part of which some
+        are to be avoided is planned face by face, its blades not told apart.
     method : str
         How each sub-surface gets its axis: "sphere" (the best of the hemisphere), "sectors" (projection planes and
         sectors) or "jerk" (the rotary angles at which the machine's linear axes together have most jerk along the
@@ -176,11 +180,14 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words,
                         FEEDRATE if feedrate is None else float(feedrate),
                         SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
-                        chosen.roughness if roughness is None else float(roughness), float(limit), passes)
+                        chosen.roughness if roughness is None else float(roughness), float(limit), passes,
+                        numbers_to_avoid(avoid))
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
-    loaded, asked, pattern = load(part), faces is not None, None
+    loaded, asked, pattern = load(part).avoiding(inputs.avoid), faces is not None, None
+    inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
+    check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:
         check_rack_inputs(RackInputs(method, chosen.moves, regions is not None, orientations is not None, bool(given),
                                      compare))
@@ -204,7 +211,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
         made = _plan_rack(jobs, choose_faces(loaded, numbers), (whole_part, most_tools), progress)
         return _order_operations(made, progress)
-    whole = faces is None and not loaded.original and not loaded.selected and method in METHODS
+    untouched = not loaded.original and not loaded.selected and not loaded.avoided
+    whole = faces is None and untouched and method in METHODS
     return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
 
 
@@ -236,7 +244,7 @@ def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     """The blades of a part; None where it has none, or they cannot be told apart."""
-    if part.original or part.selected:
+    if part.original or part.selected or part.avoided:
         return None
     with activate_progress(progress), suppress(Exception):  # its faces are planned as those of any part then
         return find_pattern(part, progress)[0]

@@ -165,7 +165,8 @@ def zone_rows(plan: Plan) -> Rows:
             continue
         for k, zone in enumerate(op.zones, 1):
             box = op.face.evaluate(zone.loops[0]).point
-            why = "the whole sub-surface" if op.left else (
+            beside = f"beside face {', '.join(zone.avoided)}, to be avoided" if zone.avoided else ""
+            why = "the whole sub-surface" if op.left else beside or (
                 "at a wall or an obstacle" if zone.at_wall else "undercut at the border")
             rows.append([op.name, str(k), f"{zone.area:.2f}", f"{zone.elsewhere:.2f}", why,
                          _vector(box.min(axis=0), 2), _vector(box.max(axis=0), 2)])
@@ -183,7 +184,7 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     source : str
         Where the part came from.
     """
-    given = asdict(plan.inputs)
+    given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid))}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
     units = {"scallop": "mm", "allowance": "mm", "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
