@@ -34,6 +34,7 @@ from toolaxis.post.read_nc import read_nc
 from toolaxis.progress import Progress
 from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.search.messages import COUNTED, left_reasons, nothing_to_cut, sentence
+from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.shape.seams import seam_warnings
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.registry import strategies
@@ -41,6 +42,7 @@ from toolaxis.strategies.strategy import Asked
 from toolaxis.strategies.two_point.postures import REASONS as CONTACTS
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.axis_limits import machine_faults
+from toolaxis.verify.held_side import HeldSide
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
@@ -151,7 +153,8 @@ def test_axes_that_a_machine_does_not_hold():
 def test_what_is_left_to_clean_up():
     face = wavy(1, 0.3)
     left = face.outline
-    zones = (Zone(left, 0.3 * face.area, at_wall=True, avoided=("7",)), Zone(left, 0.1 * face.area, at_wall=False))
+    zones = (Zone(left, 0.3 * face.area, at_wall=True, avoided=("7", HELD_SIDE)),
+             Zone(left, 0.1 * face.area, at_wall=False))
     all_german(left_reasons(zones, face))
 
 
@@ -179,6 +182,11 @@ def test_reasons_of_the_judge(lowered):
         assert part in text, found.reasons
     all_german(found.reasons)
     all_german([*judge(replace(lowered, surroundings=(), outlines={}), spacing=0.5).reasons])
+    for height in (-0.1, 60.0):  # the cutter near it, and the tool in it
+        side = HeldSide(np.array([0, 0, height]), np.array([0, 0, -1.0]))
+        held = judge(replace(lowered, held=side), spacing=0.5).reasons
+        assert any("the held side, needed" in why for why in held), held
+        all_german(held)
 
 
 def test_warnings_of_a_part():

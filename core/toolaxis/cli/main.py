@@ -96,6 +96,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--avoid", default="", metavar="LIST",
                      help="faces such as 3,5-8 that no tool may touch: not machined, and kept clear of as obstacles "
                           "are, whatever faces they join")
+    sub.add_argument("--held", default="", metavar="SPEC",
+                     help="side that is held in the clamping, in coordinates of the part: z<12.5, x>-3, or "
+                          "plane:x,y,z,nx,ny,nz (a point of its plane, a direction into it); no tool goes there, and "
+                          "what lies in it is not machined")
     sub.add_argument("--regions", type=_count, metavar="N|auto",
                      help="sub-surfaces for each face, an axis each; auto: as many as pay")
     sub.add_argument("--orientations", type=_count, metavar="N|auto",

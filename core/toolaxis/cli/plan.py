@@ -19,6 +19,7 @@ from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.progress import Progress
+from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
@@ -54,7 +55,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=given.objective, allowance=spec.inputs.allowance,
                         direction=spec.inputs.direction, passes=spec.inputs.passes,
-                        obstacles=list(spec.obstacles), avoid=spec.inputs.avoid,
+                        obstacles=list(spec.obstacles), avoid=spec.inputs.avoid, held=spec.inputs.held,
                         method=spec.inputs.method, strategy=given.strategy,
                         roughness=_roughness(given), feedrate=given.feedrate, spindle=given.spindle,
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
@@ -80,7 +81,7 @@ def _spec(given: Namespace) -> Spec:
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
                         given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
-                        passes=given.passes, avoid=parse_avoided(given.avoid))
+                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""
@@ -196,7 +197,7 @@ def _say_left_over(op: Operation) -> None:
         say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
             f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
-        if AVOIDED in why:
+        if AVOIDED in why or f"beside the {HELD_SIDE}" in why:
             say(f"toolaxis: face {op.face.label}: {why}")
         if why.startswith(("undercut", "one contact", "no contact", *MOTION_WARNINGS)):
             say(f"toolaxis: warning: face {op.face.label}: {why}")

@@ -86,6 +86,8 @@ def stands_free(scene: InterferenceScene, places: Array, axis: Array, asked: tup
     itself, roles = asked
     free = np.ones(len(places), dtype=bool)
     for group in scene.groups:
+        if group.held is not None and group.role in roles:
+            free &= group.held.depth(places) <= 0
         some = np.flatnonzero(free)
         if group.role in roles and len(some):
             tool = _extend_tool(scene.tool, places, axis, group) if group.role == OTHER else scene.tool

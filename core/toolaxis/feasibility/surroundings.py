@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.bounding.bounding_tree import BoundingTree, forest
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HELD_SIDE, HalfSpace
 from toolaxis.shape.part import Part
 from toolaxis.shape.seams import Mismatch, mismatch_of
 from toolaxis.tolerances import Tolerance
@@ -36,12 +37,15 @@ class CheckSurfaces:
         Least signed distance of cutter, shank and holder, mm.
     mismatch : Mismatch or None
         By how much the faces stand out over others that the cutter touches: no depth of the cutter's.
+    held : HalfSpace or None
+        The side that is held, whose plane is one of the faces: no tip may lie in it, as the plane alone does not tell.
     """
 
     role: str
     faces: tuple[Face, ...]
     required: Array
     mismatch: Mismatch | None = None
+    held: HalfSpace | None = None
 
     @cached_property
     def cells(self) -> BoundingTree:
@@ -50,8 +54,10 @@ class CheckSurfaces:
 
     @cached_property
     def box(self) -> Array:
-        """Corners of the box around the faces, (2, 3) mm."""
-        boxes = np.array([face.box for face in self.faces])
+        """Corners of the box around the faces, (2, 3) mm, of the plane of a held side only its middle: a tool that is
+        drawn back comes no nearer to it."""
+        boxes = np.array([face.box if face.label != HELD_SIDE else np.tile(face.box.mean(axis=0), (2, 1))
+                          for face in self.faces])
         return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
 
 
@@ -92,7 +98,7 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
         numbers = _harmless(part, face.number)
         around = part.surroundings(face.number)
         touching = tuple(f for f in around if f.number in numbers)
-        others = [*(f for f in around if f.number not in numbers), *others]
+        others = [*(f for f in around if f.number not in numbers), *part.held_faces, *others]
     own, touching, others = (tuple(one for whole in some for one in whole.own_faces)
                              for some in (own, touching, others))
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
@@ -101,7 +107,8 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
     skin_off, touching_off = mismatch_of(own, edges, touched, allowance), mismatch_of(touching, edges, touched)
     groups = (CheckSurfaces(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
               CheckSurfaces(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
-              CheckSurfaces(OTHER, others, np.array([tolerance.cutter_clearance, *far])))
+              CheckSurfaces(OTHER, others, np.array([tolerance.cutter_clearance, *far]),
+                            held=None if part is None else part.held))
     return tuple(group for group in groups if group.faces)
 
 

@@ -14,6 +14,7 @@ from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.choices import ISO
+from toolaxis.plan.held_face import HeldFace
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
@@ -188,7 +189,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "faces": len((plan.part.original or plan.part).faces), "warnings": list(plan.part.warnings),
                  "joined": [list(face.numbers) for face in plan.part.faces if face.members],
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
-                 **account_document(plan.account)},
+                 **account_document(plan.account),
+                 "held": [one._asdict() for one in plan.held]},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
         "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid)},
@@ -269,7 +271,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     given = dict(document["inputs"])
     inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"]),
                            "avoid": tuple(given.get("avoid", ()))})
-    part = part.avoiding(inputs.avoid)
+    part = part.avoiding(inputs.avoid).holding(inputs.held_side)
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     tools = tuple(tool_from(one) for one in document["tools"])
@@ -281,4 +283,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 tuple(Baseline(**one) for one in document.get("baselines", ())),
                 blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")),
                 _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
-                tuple(Fault(sentence) for sentence in document.get("faults", ())))
+                tuple(Fault(sentence) for sentence in document.get("faults", ())),
+                held=tuple(HeldFace(**one) for one in document["part"].get("held", ())))

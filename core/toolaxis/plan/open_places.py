@@ -9,6 +9,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.work import is_out_of_work
 
 Array = NDArray[np.float64]
@@ -109,6 +110,8 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     smallest : float
         Radius of the smallest ball, or corner, of the tools, mm.
     """
+    if HELD_SIDE in place.avoided:
+        return "another clamping: it lies beside the held side"
     if place.avoided:
         return f"nothing: it lies beside face {', '.join(place.avoided)}, {AVOIDED}"
     if place.radius < smallest:

@@ -12,11 +12,13 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.choices import DIRECTIONS, FEEDRATE, FIELD, ISO, OBJECTIVES, PASSES, PLANES, SPINDLE
+from toolaxis.plan.held_face import HeldFace
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
+from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -70,6 +72,8 @@ class PlanInputs:
         One of `PASSES`; passes with a moving axis are iso-parametric, or layers.
     avoid : tuple of int
         Numbers of the part's faces that no tool may touch.
+    held : str
+        The side that is held in the clamping, in the short form of the command; empty for none.
 
     Raises
     ------
@@ -91,6 +95,7 @@ class PlanInputs:
     limit: float = LIMIT
     passes: str = ISO
     avoid: tuple[int, ...] = ()
+    held: str = ""
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -107,9 +112,21 @@ class PlanInputs:
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")
+        _ = self.held_side
         _check_choice("objective", self.objective, OBJECTIVES)
         _check_choice("direction", self.direction, DIRECTIONS)
         _check_choice("passes", self.passes, PASSES)
+
+    @property
+    def held_side(self) -> HalfSpace | None:
+        """The side that is held.
+
+        Raises
+        ------
+        InvalidInput
+            When its short form is not understood.
+        """
+        return parse_half_space(self.held) if self.held else None
 
     @property
     def chord(self) -> float:
@@ -229,6 +246,8 @@ class Plan:
         Where the program failed on no single sub-surface, as in timing the whole: the plan is incomplete then.
     at_points : bool
         Whether the method checks the cutter on the machined face at points only; not written, as the method tells it.
+    held : tuple of HeldFace
+        What of the faces that were asked for lies in the side that is held: no operation is to machine it.
     """
 
     part: Part
@@ -246,6 +265,7 @@ class Plan:
     in_the_way: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
     at_points: bool = False
+    held: tuple[HeldFace, ...] = ()
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.

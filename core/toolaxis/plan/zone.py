@@ -28,7 +28,7 @@ class Zone:
     unreachable : float
         Area of what is left then that is proven to be out of reach of every tool of the plan, mm^2.
     avoided : tuple of str
-        Labels of the faces to be avoided to which the cutter would come too near somewhere on it.
+        Labels of the faces to be avoided to which the cutter would come too near somewhere on it; "held side" too.
     """
 
     loops: tuple[Array, ...]

@@ -35,7 +35,7 @@ class ReachScene:
     allowance : float
         Stock left on the faces, mm.
     faces : tuple of Face
-        All faces of the part and the obstacles, skins as the faces that they consist of.
+        All faces of the part, the plane of its held side, and the obstacles, skins as the faces that they consist of.
     tree : ReachTree
         Of these faces.
     """
@@ -68,7 +68,7 @@ class ReachScene:
             When obstacles are not faces.
         """
         beside = faces_of(obstacles)
-        faces = tuple(own for face in (*part.faces, *beside) for own in face.own_faces)
+        faces = tuple(own for face in (*part.faces, *part.held_faces, *beside) for own in face.own_faces)
         return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces,
                           merge_reach_trees([cells(face) for face in faces]))
 

@@ -118,7 +118,7 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = _of_part(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
+    notes = _of_part(plan), _held(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
     return table(title, columns, rows, "\n".join(filter(None, notes)))
 
 
@@ -158,6 +158,19 @@ def _of_part(plan: Plan) -> str:
     proven = f"proven out of reach: {found.unreachable:.1f} mm2; " if found.unreachable >= 0.05 else ""
     return (f"machined: {found.machined:.1f} of {found.area:.1f} mm2 ({share:.1f} %) with {len(plan.used_tools)} of "
             f"{len(plan.tools)} tools; {proven}open: {found.open:.1f} mm2")
+
+
+def _held(plan: Plan) -> str:
+    """What of the faces is held in the clamping, and so is not asked for; empty where no side is held."""
+    if not plan.inputs.held:
+        return ""
+    area = sum(one.area for one in plan.held)
+    if not plan.held:
+        return f"held in this clamping ({plan.inputs.held}): nothing of the faces that are asked for"
+    shown = [one.label if one.whole else f"{one.label} ({one.area:.1f} mm2 of it)" for one in plan.held]
+    more = f" and {len(shown) - _OPEN_ROWS} more" if len(shown) > _OPEN_ROWS else ""
+    return (f"held in this clamping ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
+            f"{', '.join(shown[:_OPEN_ROWS])}{more}")
 
 
 def _over_ideal(operations: Sequence[Operation]) -> str:

@@ -10,12 +10,13 @@ from toolaxis.collision.machine_collision import MachineSurroundings, free_solut
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import CheckSurfaces
 from toolaxis.feasibility.violations import FREE, LIMITS, Violation
-from toolaxis.machine.limits import ROUNDING, AllOf, AxisLimits
+from toolaxis.machine.limits import ROUNDING, AllOf, AxisLimits, Cone
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.plan.orientation import Orientation
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.local_search import CountedAxis, count_row
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HalfSpace
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -42,6 +43,19 @@ def intersect_limits(machine: MachineLike | None, limits: AxisLimits | str | Non
     """
     found = [machine_limits(one) for one in (machine, limits) if one is not None]
     return AllOf(tuple(found)) if len(found) > 1 else found[0] if found else None
+
+
+def limit_axes(limits: AxisLimits | None, held: HalfSpace | None) -> AxisLimits | None:
+    """Limits of the axis with those of a held side: no tool comes from there, as what holds it would stand in it.
+
+    Parameters
+    ----------
+    limits : AxisLimits or None
+    held : HalfSpace or None
+    """
+    if held is None:
+        return limits
+    return intersect_limits(limits, Cone(-held.normal, np.pi / 2))
 
 
 def mounting_of(limits: AxisLimits | None) -> Mounting | None:

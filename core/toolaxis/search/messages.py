@@ -19,6 +19,7 @@ from toolaxis.plan.orientation import REASONS
 from toolaxis.plan.zone import AVOIDED, Zone
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.seams import GREATEST
 from toolaxis.tolerances import Tolerance
@@ -66,7 +67,10 @@ def left_reasons(zones: Sequence[Zone], face: Face) -> tuple[str, ...]:
         words.append(f"{100 * min(at_walls / face.area, 1.0):.1f} % of the area lies at walls and {LEFT_OVER}")
     for label in dict.fromkeys(label for zone in zones for label in zone.avoided):
         area = sum(zone.area for zone in zones if label in zone.avoided)
-        words.append(f"{area:.2f} mm2 beside face {label}, {AVOIDED}, {LEFT_OVER}")
+        if label == HELD_SIDE:
+            words.append(f"{area:.2f} mm2 beside the held side {LEFT_OVER}")
+        else:
+            words.append(f"{area:.2f} mm2 beside face {label}, {AVOIDED}, {LEFT_OVER}")
     if any(not zone.at_wall for zone in zones):
         words.append(f"{UNDERCUT}: {stays_high(zones, face)}")
     return tuple(words)
@@ -174,6 +178,8 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     """A component that is too near to a face."""
     name, needed = _COMPONENTS[found.reason - CUTTER], _clearances(feasibility.tolerance)[found.reason - CUTTER]
     which = f"face {found.label}" if found.label else "what stands around"
+    if found.label == HELD_SIDE:
+        which = "the held side"
     behind = found.reason == CUTTER and _behind_edges(found, feasibility)
     if not np.isfinite(found.distance):
         return f"the {name} comes too near to {which}{_at(found)}: {needed:g} mm is required"

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.adjacency import Edge, edges_from_borders
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HalfSpace
 from toolaxis.shape.joining.edge_matching import match_edges, sides_of
 from toolaxis.shape.seams import Seam, seam_warnings, seams
 
@@ -65,6 +66,8 @@ class Part:
         The part as it came, where faces of it were joined, see `toolaxis.skin.join.join`.
     avoided : tuple of int
         Numbers of the faces that no tool may touch: they are walls to all others, however they meet them.
+    held : HalfSpace or None
+        The side that is held in the clamping: nothing of a tool may go there.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class Part:
     selected: tuple[int, ...] = ()
     original: "Part | None" = None
     avoided: tuple[int, ...] = ()
+    held: HalfSpace | None = None
 
     def __post_init__(self) -> None:
         if not self.faces:
@@ -244,6 +248,20 @@ class Part:
         original = None if self.original is None else self.original.avoiding(sorted(own))
         return replace(self, avoided=tuple(sorted(face.number for face in found)), original=original)
 
+    def holding(self, side: HalfSpace | None) -> "Part":
+        """The part with a side that is held.
+
+        Parameters
+        ----------
+        side : HalfSpace or None
+        """
+        return replace(self, held=side, original=None if self.original is None else self.original.holding(side))
+
+    @cached_property
+    def held_faces(self) -> tuple[Face, ...]:
+        """The plane in which the held side ends, as a face that stands in the way of tools; none where none is held."""
+        return () if self.held is None else (self.held.plane_beside(self.box),)
+
     def with_warnings(self, *warnings: str) -> "Part":
         """The part with further warnings."""
         return replace(self, warnings=(*self.warnings, *warnings))
@@ -261,7 +279,8 @@ class Part:
         edges = tuple(replace(edge, polyline=edge.polyline @ m[:3, :3].T + m[:3, 3], gap=scale * edge.gap,
                               step=scale * edge.step) for edge in self.edges)
         original = None if self.original is None else self.original.transformed(m)
-        return replace(self, faces=faces, edges=edges, original=original)
+        held = None if self.held is None else self.held.transformed(m)
+        return replace(self, faces=faces, edges=edges, original=original, held=held)
 
 
 def _number_face(face: Face, number: int) -> Face:

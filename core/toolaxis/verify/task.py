@@ -12,6 +12,7 @@ from toolaxis.machine.machine import Machine
 from toolaxis.shape.face import Face
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
+from toolaxis.verify.held_side import HeldSide
 
 Array = NDArray[np.float64]
 
@@ -61,6 +62,8 @@ class VerificationTask:
     rotary : tuple of float
         Where the machine's rotary axes stand at the first location, rad: with them, place and tool length its bodies
         are judged.
+    held : HeldSide, optional
+        The side that is held in the clamping: every component keeps its clearance from it on all motions.
     before : tuple of tip, axis and rotary angles, optional
         Where the operation before ends: the index move from there is judged for bodies too; without one the way down
         from above.
@@ -87,6 +90,7 @@ class VerificationTask:
     tool_length: float | None = None
     rotary: tuple[float, ...] = ()
     before: tuple[Array, Array, tuple[float, ...]] | None = None
+    held: HeldSide | None = None
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):

@@ -15,6 +15,7 @@ from toolaxis.verify.axis_limits import machine_faults
 from toolaxis.verify.component_clearance import FAR, Clearance, clearance
 from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
+from toolaxis.verify.held_side import distance_to_held_side
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
 from toolaxis.verify.material_removal import Removal, RestMaterial
@@ -318,6 +319,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
+                *_held_reasons(task),
                 *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
@@ -386,6 +388,23 @@ def _link_reasons(task: VerificationTask, place: MapPoint | None) -> list[str]:
         return []
     return [f"a {motion_of(task, place.motion)} goes {place.value:.4f} mm into what the passes leave on face "
             f"{place.face} at {spot(place.point)}: links must stay clear of it"]
+
+
+def _held_reasons(task: VerificationTask) -> list[str]:
+    """What is to be said of components that come too near to the held side."""
+    if task.held is None:
+        return []
+    reasons = []
+    components = {"cutter": cutter_solid(task.profile),
+                  **{name: frustum_solids(outline, name) for name, outline in task.outlines.items()}}
+    for name, solids in components.items():
+        found = distance_to_held_side((task.tips, task.axes, task.kind), solids, task.held)
+        need = _clearance_of(task, name)
+        if found.distance < need:
+            verb = f"is {found.distance:.4f} mm from" if found.distance >= 0 else (
+                f"is {-found.distance:.4f} mm inside")
+            reasons.append(f"{name} {verb} the held side, needed {need} mm, on the {motion_of(task, found.motion)}")
+    return reasons
 
 
 def _room_reasons(task: VerificationTask, rooms: dict[str, Clearance | str]) -> list[str]:

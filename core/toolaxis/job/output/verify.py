@@ -16,9 +16,11 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.shape.face import Face
+from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.skin.pieces import own_pieces
 from toolaxis.tools.tool import Tool
 from toolaxis.verify.component_clearance import Clearance
+from toolaxis.verify.held_side import HeldSide
 from toolaxis.verify.maps import MapPoint, MapZone
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.turned_copies import OperationMeasurement, TurnedCopies, transfer_measurement
@@ -128,7 +130,8 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
         return tuple(own for group in around if group.role in roles for face in group.faces
                      if (face.number, face.label) != (op.face.number, op.face.label) and face not in targets
                      for own in own_pieces(face)
-                     if own not in avoided and (group.role == OTHER or own.number not in plan.inputs.avoid))
+                     if own not in avoided and own.label != HELD_SIDE
+                     and (group.role == OTHER or own.number not in plan.inputs.avoid))
 
     left = tuple(own for zone in op.zones if zone.at_wall
                  for own in own_pieces(op.face.trimmed(zone.loops), only_exact=True))
@@ -140,7 +143,13 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                             op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                            before=_end_of(last, op.tool))
+                            before=_end_of(last, op.tool), held=_held_side(plan))
+
+
+def _held_side(plan: Plan) -> HeldSide | None:
+    """The side that is held, from the inputs in plan.json."""
+    side = plan.inputs.held_side
+    return None if side is None else HeldSide(side.point, side.normal)
 
 
 def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:

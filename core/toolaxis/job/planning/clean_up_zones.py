@@ -124,8 +124,8 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
 
 
 def _name_avoided(plan: Plan, op: Operation, zones: tuple[Zone, ...]) -> tuple[Zone, ...]:
-    """Zones with the faces to be avoided to which the cutter of an operation would come too near on them."""
-    avoided = [plan.part.face(number) for number in plan.part.avoided]
+    """Zones with the faces to be avoided, and the held side, to which the cutter would come too near on them."""
+    avoided = [*(plan.part.face(number) for number in plan.part.avoided), *plan.part.held_faces]
     if not avoided:
         return zones
     assert op.path is not None

@@ -21,7 +21,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.fixed_axis import FaceProblem, check_candidate, task
 from toolaxis.search.local_search import count_row
-from toolaxis.search.machine_limits import intersect_limits, nearest_held_axis
+from toolaxis.search.machine_limits import intersect_limits, limit_axes, nearest_held_axis
 from toolaxis.search.messages import sentence
 from toolaxis.search.sectors import roman_axis
 from toolaxis.shape.face import Face
@@ -30,14 +30,14 @@ Array = NDArray[np.float64]
 
 
 def _limits(plan: Plan) -> AxisLimits | None:
-    """The limits that the plan was made with, its machine's among them.
+    """The limits that the plan was made with, its machine's and those of the held side among them.
 
     Raises
     ------
     InvalidInput
         When they were of a class that has no short form: leaving them out could call a forbidden axis free.
     """
-    return intersect_limits(plan.machine, plan.inputs.limits or None)
+    return limit_axes(intersect_limits(plan.machine, plan.inputs.limits or None), plan.part.held)
 
 
 def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> FaceProblem:

@@ -19,6 +19,7 @@ from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_libra
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.failures import fail_operation
+from toolaxis.job.planning.held_side import cut_face, cut_faces
 from toolaxis.job.planning.parallel import check_workers
 from toolaxis.job.planning.planner import PlanningJob, went_on
 from toolaxis.job.planning.rack import RackPlanner
@@ -57,7 +58,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
          objective: str | None = None, strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
-         passes: str = ISO, obstacles: Any = None, avoid: Sequence[int] | str | None = None, method: str = "sphere",
+         passes: str = ISO, obstacles: Any = None, avoid: Sequence[int] | str | None = None, held: str = "",
+         method: str = "sphere",
          feedrate: float | None = None, spindle: float | None = None, tolerance: ToleranceLike = None,
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
@@ -111,6 +113,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         Faces of the part that no tool may touch: they are not machined, and cutter, shank and holder keep the distances
         from them that they keep from obstacles, however they meet the faces that are machined.  A part of which some
         are to be avoided is planned face by face, its blades not told apart.
+    held : str
+        The side that is held in the clamping: "z<12.5", "x>-3", or "plane:x,y,z,nx,ny,nz" with a point of its plane and
+        a direction into it, in coordinates of the part.  Cutter, shank and holder keep the distances from it that they
+        keep from obstacles, on links too, and no axis comes from there.  What of the faces lies in it is not machined
+        and stands in the plan's `held`, for another clamping.  Such a part is planned face by face, its blades not told
+        apart, and without sub-surfaces given by hand.
     method : str
         How each sub-surface gets its axis: "sphere" (the best of the hemisphere), "sectors" (projection planes and
         sectors) or "jerk" (the rotary angles at which the machine's linear axes together have most jerk along the
@@ -181,11 +189,11 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                         FEEDRATE if feedrate is None else float(feedrate),
                         SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
-                        numbers_to_avoid(avoid))
+                        numbers_to_avoid(avoid), held)
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
-    loaded, asked, pattern = load(part).avoiding(inputs.avoid), faces is not None, None
+    loaded, asked, pattern = load(part).avoiding(inputs.avoid).holding(inputs.held_side), faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:
@@ -203,17 +211,25 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
                                   *rack.warnings)
+    if held and given:
+        raise InvalidInput("a held side does not go with sub-surfaces given by hand: faces are cut where it begins; "
+                           "leave one of both out")
+    if held and chosen.in_layers:
+        raise InvalidInput(f"a held side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
+                           "leave one of both out")
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
+    free, in_clamping = cut_faces(loaded, choose_faces(loaded, numbers))
     if len(rack.tools) > 1:
         whole_part = None if pattern is None else replace(pattern, part=loaded)
         jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
-        made = _plan_rack(jobs, choose_faces(loaded, numbers), (whole_part, most_tools), progress)
-        return _order_operations(made, progress)
-    untouched = not loaded.original and not loaded.selected and not loaded.avoided
+        made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
+        return replace(_order_operations(made, progress), held=in_clamping)
+    untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
     whole = faces is None and untouched and method in METHODS
-    return _order_operations(_plan_part(job, choose_faces(loaded, numbers), (whole, compare), progress), progress)
+    made = _plan_part(job, free, (whole, compare), progress)
+    return replace(_order_operations(made, progress), held=in_clamping)
 
 
 def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,
@@ -244,7 +260,7 @@ def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     """The blades of a part; None where it has none, or they cannot be told apart."""
-    if part.original or part.selected or part.avoided:
+    if part.original or part.selected or part.avoided or part.held:
         return None
     with activate_progress(progress), suppress(Exception):  # its faces are planned as those of any part then
         return find_pattern(part, progress)[0]
@@ -310,6 +326,7 @@ def _compare_methods(job: PlanningJob, made: Plan, faces: Sequence[Face], progre
     # A skin that was taken apart is none in the plan's part.
     there = [face for face in made.part.faces if set(face.numbers) <= set(asked)]
     there.sort(key=lambda face: asked.index(face.number))
+    there = [face for face in (cut_face(one, made.part.held) for one in there) if face is not None]
     pieces = [target.face for target in smooth_pieces(there, job.tool) if target.ended is None]
     return went_on(went_on(made, _in_time), lambda plan: compare_methods(
         plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))

@@ -1,6 +1,6 @@
 """Sub-surfaces, axes and operations of one plan: what `toolaxis.plan` sets going."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
@@ -17,6 +17,7 @@ from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
 from toolaxis.job.planning.face_by_face import compare_areas, is_better, loses_area, name_faces
 from toolaxis.job.planning.failures import fail_face, fail_operation
+from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.sub_surfaces import (
     Target,
@@ -49,7 +50,7 @@ from toolaxis.regions.scene import ReachScene
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.fixed_axis import task as search_task
 from toolaxis.search.infeasibility import tight_fillet
-from toolaxis.search.machine_limits import intersect_limits
+from toolaxis.search.machine_limits import intersect_limits, limit_axes
 from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
@@ -307,14 +308,13 @@ class PlanningJob:
         if not self.one_by_one:
             return plan
         given = {one.face for one in self.division}
-        skins = [face for face in self.part.faces
-                 if face.members and face.number not in given]
+        skins = self._free_parts(face for face in self.part.faces if face.members and face.number not in given)
         own = {skin.number: [op for op in plan.operations if op.face.number == skin.number] for skin in skins}
         lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
         if not lost:
             return plan
         apart = replace(self, part=take_apart(self.part, [skin.number for skin in lost]), whole=(), division=())
-        faces = [apart.part.face(number) for skin in lost for number in skin.numbers]
+        faces = self._free_parts(apart.part.face(number) for skin in lost for number in skin.numbers)
         other = apart._as_asked(faces, progress.within("faces one by one"))
         if other.outcome == "cancelled":  # what is finished is kept
             return replace(plan, outcome="cancelled")
@@ -330,6 +330,11 @@ class PlanningJob:
             rows += taken[op.face.number] if first else [] if op.face.number in taken else [op]
         made = tuple(replace(op, number=k) for k, op in enumerate(rows, 1))
         return replace(plan, part=part, operations=made, outcome=_outcome(made))
+
+    def _free_parts(self, faces: Iterable[Face]) -> list[Face]:
+        """What of faces is not held in the clamping."""
+        cut = (cut_face(face, self.part.held) for face in faces)
+        return [face for face in cut if face is not None]
 
     def _reached(self, face: Face, scene: ReachScene, progress: Progress) -> ReachDivision | None:
         """How a face is divided by what axes reach; None where that is no use."""
@@ -529,8 +534,8 @@ class PlanningJob:
 
     @property
     def axis_limits(self) -> AxisLimits | None:
-        """All limits of the axis, the machine's among them."""
-        return intersect_limits(self.machine, self.limits)
+        """All limits of the axis, the machine's and those of the held side among them."""
+        return limit_axes(intersect_limits(self.machine, self.limits), self.part.held)
 
     @property
     def obstacles(self) -> tuple[Face, ...]:

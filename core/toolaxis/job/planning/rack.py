@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import Cancelled
 from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better
 from toolaxis.job.planning.failures import fail_face
+from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
@@ -225,7 +226,8 @@ class RackPlanner:
             return
         apart = take_apart(part, [skin.number for skin in lost])
         other = RackPlanner([replace(self.jobs[k], part=apart) for k in sorted(self._allowed)])
-        made = other.plan([apart.face(number) for skin in lost for number in skin.numbers], progress)
+        cut = (cut_face(apart.face(number), apart.held) for skin in lost for number in skin.numbers)
+        made = other.plan([face for face in cut if face is not None], progress)
         if made.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         for skin in lost:

@@ -13,6 +13,7 @@ from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.tables import number
+from toolaxis.shape.half_space import HELD_SIDE
 
 Array = NDArray[np.float64]
 Seconds = Mapping[str, float]
@@ -166,6 +167,8 @@ def zone_rows(plan: Plan) -> Rows:
         for k, zone in enumerate(op.zones, 1):
             box = op.face.evaluate(zone.loops[0]).point
             beside = f"beside face {', '.join(zone.avoided)}, to be avoided" if zone.avoided else ""
+            if HELD_SIDE in zone.avoided:
+                beside = f"beside the {HELD_SIDE}"
             why = "the whole sub-surface" if op.left else beside or (
                 "at a wall or an obstacle" if zone.at_wall else "undercut at the border")
             rows.append([op.name, str(k), f"{zone.area:.2f}", f"{zone.elsewhere:.2f}", why,
