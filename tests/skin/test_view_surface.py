@@ -126,6 +126,18 @@ def test_pieces_of_it_are_pieces_of_the_members(united: Face) -> None:
     assert own_pieces(united) == surface.members
 
 
+def test_all_parts_of_a_piece_that_falls_apart_are_pieces_of_the_members(united: Face) -> None:
+    """Found: members of which only a further part of the piece has something were left out, and so not judged."""
+    u0, u1, v0, v1 = united.bounds
+    wide, high = 0.1 * (u1 - u0), 0.1 * (v1 - v0)
+    corner = np.array([[0, 0], [wide, 0], [wide, high], [0, high]])
+    parts = [corner + [u0 + a * wide, v0 + b * high] for a in (3, 6) for b in (3, 6)]
+    assert united.contains(np.concatenate(parts)).all()
+    for k in range(4):
+        piece = united.trimmed((*parts[k:], *parts[:k]), united.label + "b")
+        assert sum(one.area for one in own_pieces(piece)) == pytest.approx(piece.area, rel=1e-3)
+
+
 def test_holes_stay_holes_and_gaps_close(whole: Face) -> None:
     """A hole across two patches, the second of which lies 8 um higher."""
     cut = 0.5

@@ -106,7 +106,8 @@ def _carry_over_all(seen: SeenFace, parts: list[Loops]) -> list[Loops] | None:
 
 def _common(member: Loops, piece: Loops) -> list[Loops] | None:
     """What two polygons with holes have in common, the first one itself where that is all of it; None if unknown."""
-    box, other = (np.stack([loops[0].min(axis=0), loops[0].max(axis=0)]) for loops in (member, piece))
+    corners = (np.concatenate(loops) for loops in (member, piece))  # of all parts where a piece falls apart
+    box, other = (np.stack([one.min(axis=0), one.max(axis=0)]) for one in corners)
     if (box[0] > other[1]).any() or (other[0] > box[1]).any():
         return []
     try:
