@@ -56,7 +56,7 @@ def beside_seam() -> Plan:
 
 
 def test_an_avoided_face_is_a_wall_whatever_edge_it_shares() -> None:
-    part = pair().avoiding([2])
+    part = pair().avoid_faces([2])
     (own, wall) = group_surroundings(part.face(1), Tolerance(), part=part)
     assert [face.number for face in own.faces] == [1] and [face.number for face in wall.faces] == [2]
     assert wall.role == OTHER and wall.required[0] == CLEAR
@@ -65,7 +65,7 @@ def test_an_avoided_face_is_a_wall_whatever_edge_it_shares() -> None:
 
 
 def test_the_default_selection_leaves_avoided_faces_out() -> None:
-    part = pair().avoiding([2])
+    part = pair().avoid_faces([2])
     assert [face.number for face in choose_faces(part, None)] == [1]
     assert [face.number for face in choose_faces(part, "all")] == [1]
     with pytest.raises(InvalidInput, match="face 2 is to be machined and to be avoided"):
@@ -74,10 +74,10 @@ def test_the_default_selection_leaves_avoided_faces_out() -> None:
 
 def test_avoided_faces_are_joined_to_nothing_that_is_machined() -> None:
     with pytest.raises(InvalidInput, match="face 2 is to be machined and to be avoided"):
-        ta.join(pair().avoiding([2]), (1, 2))
-    joined = ta.join(pair(), (1, 2)).avoiding([1])
+        ta.join(pair().avoid_faces([2]), (1, 2))
+    joined = ta.join(pair(), (1, 2)).avoid_faces([1])
     assert joined.avoided == (1,) and joined.original is not None and joined.original.avoided == (1, 2)
-    assert ta.join(pair().avoiding([1, 2]), (1, 2)).avoided == (1,)
+    assert ta.join(pair().avoid_faces([1, 2]), (1, 2)).avoided == (1,)
 
 
 @pytest.mark.parametrize("given, numbers",

@@ -113,15 +113,15 @@ def test_a_face_is_cut_where_the_held_side_begins(text: str, left: float | None)
 def test_areas_of_a_bent_face_add_up() -> None:
     bent = sheet()
     part = ta.Part.from_faces([bent])
-    free, (held,) = cut_faces(part.holding(parse_half_space("plane:9,7,1,1,0.4,0.3")), [bent])
-    (other,), (rest,) = cut_faces(part.holding(parse_half_space("plane:9,7,1,-1,-0.4,-0.3")), [bent])
+    free, (held,) = cut_faces(part.hold_side(parse_half_space("plane:9,7,1,1,0.4,0.3")), [bent])
+    (other,), (rest,) = cut_faces(part.hold_side(parse_half_space("plane:9,7,1,-1,-0.4,-0.3")), [bent])
     assert not held.whole and free[0].area + held.area == pytest.approx(bent.area, rel=1e-9)
     assert other.area == pytest.approx(held.area, rel=1e-6) and rest.area == pytest.approx(free[0].area, rel=1e-6)
 
 
 def test_a_tool_that_is_all_inside_stands_not_free() -> None:
     """The plane alone does not tell: nothing of such a tool is near it."""
-    part = ta.Part.from_faces([sheet()]).holding(parse_half_space("z<300"))
+    part = ta.Part.from_faces([sheet()]).hold_side(parse_half_space("z<300"))
     groups = group_surroundings(part.face(1), CLEAR, part=part)
     (wall,) = [group for group in groups if group.role == OTHER]
     assert [face.label for face in wall.faces] == [HELD_SIDE]

@@ -124,10 +124,10 @@ def test_holding_leaves_out_solutions_that_leave_the_travel() -> None:
     mounting = Mounting(stepped(), place, 80.0)
     axis = mounting.axis_at([radians(10.0), radians(30.0)])
     assert len(mounting.solutions(axis)) == 2
-    one_sided = [p for p in axes_around(200, 2) * 260.0 if len(mounting.holding([p], axis)) == 1]
+    one_sided = [p for p in axes_around(200, 2) * 260.0 if len(mounting.hold_side([p], axis)) == 1]
     assert one_sided
     for point in one_sided[:5]:
-        (angles,) = mounting.holding([point], axis)
+        (angles,) = mounting.hold_side([point], axis)
         linear = mounting_joints(angles, point, axis, place)
         assert in_travel(linear)
 

@@ -131,7 +131,7 @@ def test_all_parts_of_a_piece_that_falls_apart_are_pieces_of_the_members(united:
     u0, u1, v0, v1 = united.bounds
     wide, high = 0.1 * (u1 - u0), 0.1 * (v1 - v0)
     corner = np.array([[0, 0], [wide, 0], [wide, high], [0, high]])
-    parts = [corner + [u0 + a * wide, v0 + b * high] for a in (3, 6) for b in (3, 6)]
+    parts = [corner + np.array([u0 + a * wide, v0 + b * high]) for a in (3, 6) for b in (3, 6)]
     assert united.contains(np.concatenate(parts)).all()
     for k in range(4):
         piece = united.trimmed((*parts[k:], *parts[:k]), united.label + "b")

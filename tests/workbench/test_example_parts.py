@@ -195,7 +195,7 @@ def test_both_solutions_of_a_machine_are_the_commands(walk, machine):
         texts = [machine_angles.texts_of(mounted.machine, *one) for one in ways]
         place_machine(walk.document, machine, (0, 0, 60), [(ours, text) for (ours, _), text in
                                                            zip(rows, texts, strict=True)])
-        held = [mounted.holding(numbered[row["number"]].path.cl, numbered[row["number"]].orientation.axis)
+        held = [mounted.hold_side(numbered[row["number"]].path.cl, numbered[row["number"]].orientation.axis)
                 for _, row in rows]
         found = [(list(ours.RotaryAngles), np.degrees(one)) for (ours, _), one in zip(rows, held, strict=True)]
     for texts, theirs in found:

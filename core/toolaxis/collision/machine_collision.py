@@ -101,7 +101,7 @@ def free_solutions(mounting: Mounting, tips: ArrayLike, axis: ArrayLike,
     distance : float
         The least distance there, mm; infinite where none is stopped.
     """
-    rows = mounting.holding(tips, axis)
+    rows = mounting.hold_side(tips, axis)
     if not mounting.judges_bodies:
         return rows, "", np.inf
     found = [nearest_meeting(mounting, row, tips, around) for row in rows]

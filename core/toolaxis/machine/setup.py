@@ -232,7 +232,7 @@ class Mounting:
         out = travel_excess(self.machine, points, axis, float(self.tool_length or 0.0), self.table_from_part)
         return np.asarray(out[np.argmin(out.max(axis=1))])
 
-    def holding(self, points: ArrayLike, axis: ArrayLike) -> Array:
+    def hold_side(self, points: ArrayLike, axis: ArrayLike) -> Array:
         """Those of `solutions` in which all tips lie inside the linear travel, (s, m) rad.
 
         Parameters

@@ -67,7 +67,7 @@ def rotary_of(mounting: Mounting | None, op: Operation, tool_length: float | Non
     if mounting is None or op.path is None or op.orientation.axis is None or op.orientation.lead is not None:
         return np.empty((0, 0))
     known = Mounting(mounting.machine, mounting.table_from_part, tool_length)
-    rows = known.holding(op.path.cl, op.orientation.axis)
+    rows = known.hold_side(op.path.cl, op.orientation.axis)
     if not op.rotary or not len(rows):
         return rows
     off = np.mod(rows - np.array(op.rotary) + np.pi, 2 * np.pi) - np.pi

@@ -175,7 +175,7 @@ def _solutions(op: Operation, mounting: Mounting) -> Array:
     if not len(rows):
         why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
         raise InvalidInput(f"{op.name}: {why}; plan for this machine, or post for another")
-    rows = mounting.holding(op.path.cl, axis)
+    rows = mounting.hold_side(op.path.cl, axis)
     if not len(rows):
         raise InvalidInput(f"{op.name}: {mounting.out_of_travel(op.path.cl, axis)}; move the part on the table")
     return rows

@@ -118,7 +118,7 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = _of_part(plan), _held(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
+    notes = _of_part(plan), _describe_held(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
     return table(title, columns, rows, "\n".join(filter(None, notes)))
 
 
@@ -160,7 +160,7 @@ def _of_part(plan: Plan) -> str:
             f"{len(plan.tools)} tools; {proven}open: {found.open:.1f} mm2")
 
 
-def _held(plan: Plan) -> str:
+def _describe_held(plan: Plan) -> str:
     """What of the faces is held in the clamping, and so is not asked for; empty where no side is held."""
     if not plan.inputs.held:
         return ""

@@ -230,7 +230,7 @@ class Part:
         """Warnings about faces of the file that could not be used: nothing is kept clear of them."""
         return tuple(warning for warning in self.warnings if LEFT_OUT in warning)
 
-    def avoiding(self, numbers: Sequence[int]) -> "Part":
+    def avoid_faces(self, numbers: Sequence[int]) -> "Part":
         """The part with faces that no tool may touch.
 
         Parameters
@@ -245,17 +245,17 @@ class Part:
         """
         found = {self.face(number) for number in numbers}
         own = {number for face in found for number in face.numbers}
-        original = None if self.original is None else self.original.avoiding(sorted(own))
+        original = None if self.original is None else self.original.avoid_faces(sorted(own))
         return replace(self, avoided=tuple(sorted(face.number for face in found)), original=original)
 
-    def holding(self, side: HalfSpace | None) -> "Part":
+    def hold_side(self, side: HalfSpace | None) -> "Part":
         """The part with a side that is held.
 
         Parameters
         ----------
         side : HalfSpace or None
         """
-        return replace(self, held=side, original=None if self.original is None else self.original.holding(side))
+        return replace(self, held=side, original=None if self.original is None else self.original.hold_side(side))
 
     @cached_property
     def held_faces(self) -> tuple[Face, ...]:

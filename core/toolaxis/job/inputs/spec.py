@@ -316,7 +316,7 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
 
 def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[Face, ...]:
     """Some skins, each as one face, by the numbers that `toolaxis inspect` gives them."""
-    found = find_skins(part.avoiding(())).faces  # numbered as for the part alone
+    found = find_skins(part.avoid_faces(())).faces  # numbered as for the part alone
     for number in numbers:
         if not 1 <= number <= len(found):
             raise InvalidInput(f"skin {number} does not exist: the part has {len(found)} of two faces or more, see "
