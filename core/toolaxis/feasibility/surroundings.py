@@ -98,7 +98,7 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
         numbers = _harmless(part, face.number)
         around = part.surroundings(face.number)
         touching = tuple(f for f in around if f.number in numbers)
-        others = [*(f for f in around if f.number not in numbers), *part.held_faces, *others]
+        others = [*(f for f in around if f.number not in numbers), *part.faces_of_held_side, *others]
     own, touching, others = (tuple(one for whole in some for one in whole.own_faces)
                              for some in (own, touching, others))
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
@@ -148,7 +148,7 @@ def _harmless(part: Part, number: int) -> set[int]:
     convex = {n for own in skin for n in part.neighbours(own, "convex")}
     corners = _corners(part, skin)
     if len(corners):
-        for edge in part.shared_edges:
+        for edge in part.edges_to_touch:
             ends = edge.polyline[[0, -1]]
             apart = np.linalg.norm(ends[:, None] - corners[None], axis=2).min()
             if apart <= 1e-6 * part.diagonal:
@@ -157,5 +157,5 @@ def _harmless(part: Part, number: int) -> set[int]:
 
 
 def _corners(part: Part, skin: set[int]) -> Array:
-    ends = [edge.polyline[[0, -1]] for edge in part.shared_edges if skin & set(edge.faces)]
+    ends = [edge.polyline[[0, -1]] for edge in part.edges_to_touch if skin & set(edge.faces)]
     return np.concatenate(ends) if ends else np.empty((0, 3))

@@ -271,7 +271,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     given = dict(document["inputs"])
     inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"]),
                            "avoid": tuple(given.get("avoid", ()))})
-    part = part.avoid_faces(inputs.avoid).hold_side(inputs.held_side)
+    part = part.avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     tools = tuple(tool_from(one) for one in document["tools"])

@@ -112,13 +112,13 @@ class PlanInputs:
         if not isinstance(self.tolerance, Tolerance):
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")
-        _ = self.held_side
+        _ = self.half_space_held
         _check_choice("objective", self.objective, OBJECTIVES)
         _check_choice("direction", self.direction, DIRECTIONS)
         _check_choice("passes", self.passes, PASSES)
 
     @property
-    def held_side(self) -> HalfSpace | None:
+    def half_space_held(self) -> HalfSpace | None:
         """The side that is held.
 
         Raises

@@ -68,7 +68,7 @@ class ReachScene:
             When obstacles are not faces.
         """
         beside = faces_of(obstacles)
-        faces = tuple(own for face in (*part.faces, *part.held_faces, *beside) for own in face.own_faces)
+        faces = tuple(own for face in (*part.faces, *part.faces_of_held_side, *beside) for own in face.own_faces)
         return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces,
                           merge_reach_trees([cells(face) for face in faces]))
 

@@ -133,14 +133,14 @@ class Part:
         return {face.number: face for face in self.faces}
 
     @property
-    def shared_edges(self) -> tuple[Edge, ...]:
+    def edges_to_touch(self) -> tuple[Edge, ...]:
         """The edges along which a tool may touch both faces: all but those of faces that are to be avoided."""
         return tuple(edge for edge in self.edges if not set(edge.faces) & set(self.avoided))
 
     @cached_property
     def _adjacent(self) -> dict[int, list[tuple[int, str]]]:
         table: dict[int, list[tuple[int, str]]] = {}
-        for edge in self.shared_edges:
+        for edge in self.edges_to_touch:
             a, b = edge.faces
             if a != b:
                 table.setdefault(a, []).append((b, edge.kind))
@@ -258,7 +258,7 @@ class Part:
         return replace(self, held=side, original=None if self.original is None else self.original.hold_side(side))
 
     @cached_property
-    def held_faces(self) -> tuple[Face, ...]:
+    def faces_of_held_side(self) -> tuple[Face, ...]:
         """The plane in which the held side ends, as a face that stands in the way of tools; none where none is held."""
         return () if self.held is None else (self.held.plane_beside(self.box),)
 

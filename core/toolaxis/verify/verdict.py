@@ -319,7 +319,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
-                *_held_reasons(task),
+                *_reasons_of_held_side(task),
                 *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
@@ -390,7 +390,7 @@ def _link_reasons(task: VerificationTask, place: MapPoint | None) -> list[str]:
             f"{place.face} at {spot(place.point)}: links must stay clear of it"]
 
 
-def _held_reasons(task: VerificationTask) -> list[str]:
+def _reasons_of_held_side(task: VerificationTask) -> list[str]:
     """What is to be said of components that come too near to the held side."""
     if task.held is None:
         return []

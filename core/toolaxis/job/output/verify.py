@@ -143,12 +143,12 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                             op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                            before=_end_of(last, op.tool), held=_held_side(plan))
+                            before=_end_of(last, op.tool), held=_side_for_judge(plan))
 
 
-def _held_side(plan: Plan) -> HeldSide | None:
+def _side_for_judge(plan: Plan) -> HeldSide | None:
     """The side that is held, from the inputs in plan.json."""
-    side = plan.inputs.held_side
+    side = plan.inputs.half_space_held
     return None if side is None else HeldSide(side.point, side.normal)
 
 

@@ -125,7 +125,7 @@ def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tup
 
 def _name_avoided(plan: Plan, op: Operation, zones: tuple[Zone, ...]) -> tuple[Zone, ...]:
     """Zones with the faces to be avoided, and the held side, to which the cutter would come too near on them."""
-    avoided = [*(plan.part.face(number) for number in plan.part.avoided), *plan.part.held_faces]
+    avoided = [*(plan.part.face(number) for number in plan.part.avoided), *plan.part.faces_of_held_side]
     if not avoided:
         return zones
     assert op.path is not None

@@ -193,7 +193,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
-    loaded, asked, pattern = load(part).avoid_faces(inputs.avoid).hold_side(inputs.held_side), faces is not None, None
+    loaded = load(part).avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
+    asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:

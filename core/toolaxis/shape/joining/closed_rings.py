@@ -50,7 +50,7 @@ def _walk_ring(part: Part, number: int, axis: int) -> tuple[int, ...]:
 
 def _next(part: Part, number: int, axis: int, end: int) -> SharedBoundary | None:
     """How a face meets the one beyond a side; None where none continues it smoothly along its own side."""
-    for edge in part.shared_edges:
+    for edge in part.edges_to_touch:
         if edge.kind != "tangent" or number not in edge.faces or edge.faces[0] == edge.faces[1]:
             continue
         with suppress(UnsupportedGeometry):
