@@ -30,8 +30,8 @@ from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
-_INPUTS = {"scallop": float, "allowance": float, "method": str, "objective": str, "direction": str, "limits": str,
-           "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
+_INPUTS = {"scallop": float, "allowance": float, "stock": float, "method": str, "objective": str, "direction": str,
+           "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
            "passes": str, "avoid": "avoided", "held": str}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,

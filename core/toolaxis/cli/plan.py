@@ -53,7 +53,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         with compiling_ahead(), show_progress(asked) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
-                        objective=given.objective, allowance=spec.inputs.allowance,
+                        objective=given.objective, allowance=spec.inputs.allowance, stock=spec.inputs.stock,
                         direction=spec.inputs.direction, passes=spec.inputs.passes,
                         obstacles=list(spec.obstacles), avoid=spec.inputs.avoid, held=spec.inputs.held,
                         method=spec.inputs.method, strategy=given.strategy,
@@ -81,7 +81,7 @@ def _spec(given: Namespace) -> Spec:
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
                         given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
-                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held)
+                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""

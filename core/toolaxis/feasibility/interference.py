@@ -53,6 +53,7 @@ def trouble_at(scene: InterferenceScene, places: Array, axis: Array, near: Bools
     moves, n = motions(places, axis), len(places)
     worst = Violations(np.zeros(n, dtype=np.int8), np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64),
                        np.zeros(n, dtype=np.int64), np.zeros((n, 3)))
+    first = 0  # of the walls in `near`, which go from group to group
     for number, group in enumerate(scene.groups):
         if group.role not in roles:
             continue
@@ -62,7 +63,8 @@ def trouble_at(scene: InterferenceScene, places: Array, axis: Array, near: Bools
         found = lower_bounds(group.cells, tool, moves, group.required + 2 * fine, fine, left_out)
         beside = np.zeros(n, dtype=bool)
         if group.role == OTHER and len(near):
-            beside = _beside(tool, group, moves, (found, near[:, :len(group.faces)]))
+            beside = _beside(tool, group, moves, (found, near[:, first:first + len(group.faces)]))
+            first += len(group.faces)
         elif len(near) and scene.neighbours:
             continued = near[:, -len(scene.neighbours):].any(axis=1)
             hit = np.asarray(continued & (found.lower < group.required).any(axis=1))

@@ -1,7 +1,7 @@
 """What stands around a face: its skin, the faces that meet it harmlessly, and what is in the way."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -39,6 +39,10 @@ class CheckSurfaces:
         By how much the faces stand out over others that the cutter touches: no depth of the cutter's.
     held : HalfSpace or None
         The side that is held, whose plane is one of the faces: no tip may lie in it, as the plane alone does not tell.
+    stock : float
+        How far stock stands above the faces, mm: shank and holder keep their required distance with it.
+    rapid : float
+        Least distance of the cutter on links at rapid traverse, which cut no stock, mm; -inf without stock.
     """
 
     role: str
@@ -46,6 +50,13 @@ class CheckSurfaces:
     required: Array
     mismatch: Mismatch | None = None
     held: HalfSpace | None = None
+    stock: float = 0.0
+    rapid: float = -np.inf
+
+    @property
+    def required_on_links(self) -> Array:
+        """Least signed distance of cutter, shank and holder at rapid traverse, (3,) mm."""
+        return np.array([max(self.required[0], self.rapid), *self.required[1:]])
 
     @cached_property
     def cells(self) -> BoundingTree:
@@ -85,31 +96,61 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
     -------
     tuple of CheckSurfaces, the skin first; empty groups are left out.
 
+    Notes
+    -----
+    Faces that carry the part's stock make groups of their own; a skin of which one face carries stock counts as
+    carrying it everywhere.
+
     Raises
     ------
     InvalidInput
         When obstacles are not faces.
     """
     touching: tuple[Face, ...] = ()
-    others: Sequence[Face] = [*surroundings, *faces_of(obstacles)]
+    walls: tuple[Face, ...] = ()
+    others: list[Face] = [*surroundings, *faces_of(obstacles)]
     own = (face, *(f for f in skin if f is not face))
     if part is not None:
         own = (*part.skin(face.number), *own[1:])
         numbers = _harmless(part, face.number)
         around = part.surroundings(face.number)
         touching = tuple(f for f in around if f.number in numbers)
-        others = [*(f for f in around if f.number not in numbers), *part.faces_of_held_side, *others]
-    own, touching, others = (tuple(one for whole in some for one in whole.own_faces)
-                             for some in (own, touching, others))
-    far = [tolerance.shank_clearance, tolerance.holder_clearance]
+        walls = tuple(f for f in around if f.number not in numbers)
+        others = [*part.faces_of_held_side, *others]
+    own, touching, walls, further = (tuple(one for whole in some for one in whole.own_faces)
+                                     for some in (own, touching, walls, others))
     edges = () if part is None else (part.original or part).edges
     touched = {one.number for one in own}
-    skin_off, touching_off = mismatch_of(own, edges, touched, allowance), mismatch_of(touching, edges, touched)
-    groups = (CheckSurfaces(SKIN, own, np.array([allowance - tolerance.gouge, *far]), skin_off),
-              CheckSurfaces(TOUCHING, touching, np.array([-tolerance.gouge, *far]), touching_off),
-              CheckSurfaces(OTHER, others, np.array([tolerance.cutter_clearance, *far]),
-                            held=None if part is None else part.held))
+    (bare, rough), (finished, proud) = _by_stock(touching, part), _by_stock(walls, part)
+    height = 0.0 if part is None else max(map(part.stock_on, own))
+    full = 0.0 if part is None or part.stock is None else part.stock.height
+    groups = [_group(SKIN, own, (allowance - tolerance.gouge, height), tolerance, mismatch_of(own, edges, touched,
+                                                                                              allowance))]
+    for some, stock in ((bare, 0.0), (rough, full)):
+        off = mismatch_of(some, edges, touched)
+        groups.append(_group(TOUCHING, some, (-tolerance.gouge, stock), tolerance, off))
+    for some, stock in (((*finished, *further), 0.0), (proud, full)):
+        groups.append(_group(OTHER, some, (tolerance.cutter_clearance, stock), tolerance))
+    if part is not None and part.held is not None:
+        groups = [replace(group, held=part.held) if group.role == OTHER and group.stock == 0.0 else group
+                  for group in groups]
     return tuple(group for group in groups if group.faces)
+
+
+def _by_stock(faces: tuple[Face, ...], part: Part | None) -> tuple[tuple[Face, ...], tuple[Face, ...]]:
+    """Faces of a part that are finished, and those that carry stock."""
+    carries = [part is not None and part.stock_on(face) > 0 for face in faces]
+    return (tuple(face for face, proud in zip(faces, carries, strict=True) if not proud),
+            tuple(face for face, proud in zip(faces, carries, strict=True) if proud))
+
+
+def _group(role: str, faces: tuple[Face, ...], keeps: tuple[float, float], tolerance: Tolerance,
+           mismatch: Mismatch | None = None) -> CheckSurfaces:
+    """Faces with the cutter's least distance and the stock on them, mm."""
+    cutter, stock = keeps
+    required = np.array([cutter, stock + tolerance.shank_clearance, stock + tolerance.holder_clearance])
+    rapid = stock + tolerance.cutter_clearance + MARGIN if stock > 0 else -np.inf
+    return CheckSurfaces(role, faces, required, mismatch, stock, rapid)
 
 
 def faces_of(obstacles: Obstacles) -> tuple[Face, ...]:

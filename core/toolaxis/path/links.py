@@ -54,6 +54,10 @@ class Linking:
         Takes the tips (k, 3) at the end of each stroke and at the begin of the next, ramps included, mm, and answers
         over which tip (k, 3) it may go straight from one to the other at feed rate, nan where it must lift; it always
         lifts without it.
+    rise : callable, optional
+        Takes the tips (k, 3) at which links at rapid traverse would begin or end beside strokes, mm, the axes there
+        (k, 3), and how far each may be lifted at most, (k,) mm, and answers how far they have to be lifted for links to
+        clear what stock is left, (k,) mm: so far up the tool goes at feed rate.  They begin there without it.
 
     Raises
     ------
@@ -66,6 +70,7 @@ class Linking:
     approach: float = 2.0
     lower: Callable[[Array, Array], Array] | None = None
     beside: Callable[[Array, Array], Array] | None = None
+    rise: Callable[[Array, Array, Array], Array] | None = None
 
     def __post_init__(self) -> None:
         for name in ("height", "run_in", "approach"):
@@ -108,6 +113,9 @@ def link(passes: list[list[CuttingMove]], axis: Array, linking: Linking) -> Tool
     entries = [entry_points(one, axis, linking) for one in strokes]
     exits = [exit_points(one, axis, linking) for one in strokes]
     over = _over((entries, exits), axis, linking)
+    axes = np.tile(axis, (len(strokes), 1))
+    for points, which in ((entries, 0), (exits, -1)):
+        raise_link_ends(points, which, axes, linking, lambda tips, _: linking.height - tips @ axis)
     stays = np.isfinite(over[:, 0])
     heights = _heights(strokes, (entries, exits, stays), axis, linking)
     tips: list[Array] = []
@@ -214,6 +222,54 @@ def exit_points(stroke: CuttingMove, axis: Array, linking: Linking) -> Array:
     ramp = _ramp((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[-1]
     return np.concatenate([ramp, (low + linking.approach * axis)[None]])
+
+
+def raise_link_ends(points: list[Array], which: int, axes: Array, linking: Linking,
+                    most: Callable[[Array, Array], Array]) -> None:
+    """Move the ends of links up along the axis, in place, as far as `Linking.rise` asks.
+
+    Parameters
+    ----------
+    points : list of (1 or 2, 3) array
+        From `entry_points`, or from `exit_points`, one for each stroke, mm.
+    which : int
+        Row of the end in each: 0 or -1.
+    axes : (k, 3) array
+        There.
+    linking : Linking
+    most : callable
+        How far tips (k, 3) with axes (k, 3) may be lifted at most, (k,) mm.
+    """
+    if linking.rise is None:
+        return
+    ends = np.array([one[which] for one in points])
+    lifts = linking.rise(ends, axes, np.maximum(most(ends, axes), 0.0))
+    for one, lift, axis in zip(points, lifts, axes, strict=True):
+        one[which] += lift * axis
+
+
+def least_rise(tips: Array, axes: Array, most: Array,
+               clear: Callable[[Array, Array, Array], NDArray[np.bool_]]) -> Array:
+    """How far tips must be lifted along their axes for the rest of the way up to be clear, (k,) mm.
+
+    Parameters
+    ----------
+    tips, axes : (k, 3) array
+    most : (k,) array
+        Greatest lift, mm; it is the answer where no smaller one does.
+    clear : callable
+        Takes both ends of straight ways up (m, 3) and the axes there (m, 3), and answers which are clear, (m,) bool.
+    """
+    found, left = most.copy(), np.arange(len(tips))
+    for lift in (0.0, *LIFTS):
+        left = left[lift < most[left]]
+        if not len(left):
+            break
+        start = tips[left] + lift * axes[left]
+        free = clear(start, tips[left] + most[left, None] * axes[left], axes[left])
+        found[left[free]] = lift
+        left = left[~free]
+    return found
 
 
 def near_end(points: Array, axis: Array, linking: Linking) -> Array:

@@ -188,6 +188,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit,
                  "faces": len((plan.part.original or plan.part).faces), "warnings": list(plan.part.warnings),
                  "joined": [list(face.numbers) for face in plan.part.faces if face.members],
+                 "stock_faces": [] if plan.part.stock is None else sorted(plan.part.stock.faces),
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
                  **account_document(plan.account),
                  "held": [one._asdict() for one in plan.held]},
@@ -275,6 +276,9 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     tools = tuple(tool_from(one) for one in document["tools"])
+    if inputs.stock > 0:
+        own = {number for record in document["operations"] for number in record["faces"]}
+        part = part.with_stock(inputs.stock, own.union(document["part"].get("stock_faces", ())))
     operations = tuple(_operation_from(record, part, tools, path)
                        for record, path in zip(document["operations"], paths, strict=True))
     return Plan(part, tools, inputs, operations, tuple(obstacles),

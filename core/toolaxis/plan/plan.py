@@ -20,6 +20,7 @@ from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
 from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
+from toolaxis.shape.stock import MOST_STOCK
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
@@ -74,6 +75,8 @@ class PlanInputs:
         Numbers of the part's faces that no tool may touch.
     held : str
         The side that is held in the clamping, in the short form of the command; empty for none.
+    stock : float
+        What roughing left on the finished faces, mm; 0 where they are taken as finished.  `Part.stock` says on which.
 
     Raises
     ------
@@ -96,6 +99,7 @@ class PlanInputs:
     passes: str = ISO
     avoid: tuple[int, ...] = ()
     held: str = ""
+    stock: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -105,6 +109,7 @@ class PlanInputs:
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        self._check_stock()
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):
@@ -116,6 +121,13 @@ class PlanInputs:
         _check_choice("objective", self.objective, OBJECTIVES)
         _check_choice("direction", self.direction, DIRECTIONS)
         _check_choice("passes", self.passes, PASSES)
+
+    def _check_stock(self) -> None:
+        if not (isfinite(self.stock) and 0 <= self.stock <= MOST_STOCK):
+            raise InvalidInput(f"stock is {self.stock} mm: it must be zero or more, and at most {MOST_STOCK:g} mm")
+        if 0 < self.stock < self.allowance:
+            raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {self.allowance} mm: give at least "
+                               "the allowance, or 0 where no stock is to be looked out for")
 
     @property
     def half_space_held(self) -> HalfSpace | None:

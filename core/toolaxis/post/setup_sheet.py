@@ -13,6 +13,7 @@ from toolaxis.post.context import Program, ProgramContext
 from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, number
 from toolaxis.post.tcp_program import TcpPath, TipControl, courses
+from toolaxis.shape.stock import format_faces
 
 Array = NDArray[np.float64]
 
@@ -133,6 +134,10 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
             ["part", program.plan.part.source or "-"], ["scallop height", f"{program.inputs.scallop:g} mm"],
             ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict of the plan", verdict],
             ["not checked", ", ".join(program.plan.not_checked)]]
+    stock = program.plan.part.stock
+    if stock is not None:
+        rows.insert(4, ["stock left by roughing", f"at most {stock.height:g} mm above {format_faces(stock.faces)}, "
+                        "none on all other faces: measure before the start"])
     patterns = {op.orientation.pattern for op in program.plan.operations if op.done} - {ISO}
     if patterns:
         rows.insert(4, ["passes", ", ".join(_PATTERNS[name] for name in sorted(patterns))])

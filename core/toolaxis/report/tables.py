@@ -12,6 +12,7 @@ from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
+from toolaxis.shape.stock import format_faces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
 
@@ -118,8 +119,23 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = _of_part(plan), _describe_held(plan), _BOUNDS, _ideal(plan), points, reckoning(plan), _order(plan)
+    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, stock_line(plan), _ideal(plan), points, reckoning(plan),
+             _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def stock_line(plan: Plan) -> str:
+    """What a plan takes as left by roughing, as a sentence; empty where all faces are taken as finished.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    stock = plan.part.stock
+    if stock is None:
+        return ""
+    return (f"stock: up to {stock.height:g} mm above {format_faces(stock.faces)}, all other faces finished; shank, "
+            "holder and rapid moves keep clear of it; clearances are to the finished faces")
 
 
 def open_table(plan: Plan) -> Table | None:

@@ -148,7 +148,7 @@ class FaceProblem:
         axis : (3,) array
         """
         low, high = self.box
-        clear = max(CROSSING, height_over(self.worth.scallop) + OVER)
+        clear = max(CROSSING, height_over(self.worth.scallop) + OVER) + max(group.stock for group in self.groups)
         return float(np.maximum(low * axis, high * axis).sum()) + clear
 
     def reach(self, uv: Array, axis: Array) -> NDArray[np.bool_]:
@@ -229,7 +229,7 @@ class FaceProblem:
         crossing = LinkClearance(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
         return trace(placed, self.chord, self.direction,
                      linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
-                                     beside=crossing.beside))
+                                     beside=crossing.beside, rise=crossing.rise))
 
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The very passes, links and ramps included, that `check_candidate` proves.

@@ -1,5 +1,6 @@
 """How a tool gets from stroke to stroke: straight over to one beside, or with the least lift that nothing stands in."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.clearance.queries import keeps_limits
 from toolaxis.feasibility.surroundings import OTHER, CheckSurfaces
-from toolaxis.path.links import BESIDE, LIFTS, ROOFS
+from toolaxis.path.links import BESIDE, LIFTS, ROOFS, least_rise
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -57,8 +58,8 @@ class LinkClearance:
     def heights(self, ends: Array, begins: Array) -> Array:
         """The least heights along the axis at which the tip may cross, (k,) mm.
 
-        Lifting, crossing and coming down keep the distances to walls and obstacles, and crossing keeps `over` from the
-        skin too; bounds hold along the motions.
+        Lifting, crossing and coming down keep the distances to walls and obstacles, and clear of stock; crossing keeps
+        `over` from the skin too; bounds hold along the motions.
 
         Parameters
         ----------
@@ -75,7 +76,7 @@ class LinkClearance:
             height = base[left] + lift
             high = [tips[left] + (height - tips[left] @ self.axis)[:, None] * self.axis for tips in (ends, begins)]
             over, up, down = (high[0], high[1]), (ends[left], high[0]), (high[1], begins[left])
-            free = self._clear(*over, across=True) & self._clear(*up) & self._clear(*down)
+            free = self._clear(*over, across=True) & self._clear(*up, rapid=True) & self._clear(*down, rapid=True)
             found[left[free]] = height[free]
             left = left[~free]
         return found
@@ -100,15 +101,24 @@ class LinkClearance:
             left = left[~free]
         return found
 
-    def _clear(self, start: Array, end: Array, across: bool = False) -> Bools:
-        """Whether straight motions keep their distances, (k,)."""
+    @property
+    def rise(self) -> Callable[[Array, Array, Array], Array] | None:
+        """How far the ends of links have to be lifted for stock, see `toolaxis.path.links.Linking`; None without stock.
+        """
+        if not any(group.stock > 0 for group in self.groups):
+            return None
+        return lambda tips, axes, most: least_rise(tips, axes, most,
+                                                   lambda start, end, _: self._clear(start, end, rapid=True))
+
+    def _clear(self, start: Array, end: Array, across: bool = False, rapid: bool = False) -> Bools:
+        """Whether straight motions keep their distances, (k,): across, and at rapid traverse, those of links too."""
         axes = np.broadcast_to(self.axis, start.shape)
         moves = np.stack([(start + end) / 2, (end - start) / 2, axes], axis=1)
         free = np.ones(len(moves), dtype=bool)
         for group in self.groups:
-            required = group.required.copy()
+            required = group.required_on_links if rapid or across else group.required.copy()
             if across and group.role != OTHER:
-                required[0] = self.allowance + self.over
+                required[0] = max(self.allowance + self.over, group.rapid)
             table = np.tile(required, (len(group.faces), 1))
             some = np.flatnonzero(free)
             free[some] = keeps_limits(group.cells, self.tool, moves[some], table).blocked < 0

@@ -167,11 +167,23 @@ def meets_itself(feasibility: Feasibility, path: ToolPath, groups: tuple[CheckSu
     """
     mounting = mounting_of(feasibility.limits)
     around = MachineSurroundings(feasibility.tool, tuple(group.cells for group in groups),
-                                 feasibility.tolerance.holder_clearance)
+                                 body_clearance(feasibility, groups))
     if mounting is None or not len(path.cl) or not mounting.judges_bodies:
         return None
     rows, why, distance = free_solutions(mounting, path.cl, path.axis[0], around)
     return None if len(rows) else Violation(LIMITS, ROUNDING, distance=distance, words=why)
+
+
+def body_clearance(feasibility: Feasibility, groups: tuple[CheckSurfaces, ...]) -> float:
+    """What bodies of the machine keep from all else, mm: the holder's clearance, and the stock on the part besides.
+
+    Parameters
+    ----------
+    feasibility : Feasibility
+    groups : tuple of CheckSurfaces
+        What stands around.
+    """
+    return feasibility.tolerance.holder_clearance + max(group.stock for group in groups)
 
 
 def make_room(ledger: AxisTable, axis: Array, found: Violation) -> None:
@@ -184,7 +196,7 @@ def make_room(ledger: AxisTable, axis: Array, found: Violation) -> None:
     found : Violation
     """
     feasibility = ledger.feasibility
-    narrower = with_room(feasibility.limits, axis, found, feasibility.tolerance.holder_clearance)
+    narrower = with_room(feasibility.limits, axis, found, body_clearance(feasibility, feasibility.groups))
     if narrower is not None:
         ledger.tighten(narrower)
 

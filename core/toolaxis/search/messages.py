@@ -180,6 +180,10 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     which = f"face {found.label}" if found.label else "what stands around"
     if found.label == HELD_SIDE:
         which = "the held side"
+    stock = 0.0 if found.reason == CUTTER else _stock_on(found, feasibility)
+    if stock > 0:
+        needed += stock
+        which = f"face {found.label} (finished; {stock:g} mm of stock on it)"
     behind = found.reason == CUTTER and _behind_edges(found, feasibility)
     if not np.isfinite(found.distance):
         return f"the {name} comes too near to {which}{_at(found)}: {needed:g} mm is required"
@@ -198,6 +202,12 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
         return (f"the {name} comes within {near} mm of {which}{_at(found)}; {needed:g} mm is required, and {MARGIN:g} "
                 "mm more to be sure")
     return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
+
+
+def _stock_on(found: Violation, feasibility: Feasibility) -> float:
+    """How far stock stands above the face that a witness names, mm."""
+    return max((group.stock for group in feasibility.groups for face in group.faces if face.label == found.label),
+               default=0.0)
 
 
 def _clearances(tolerance: Tolerance) -> tuple[float, float, float]:

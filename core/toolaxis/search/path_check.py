@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import depth_from_distance
 from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, segment_motions
 from toolaxis.feasibility.interference import COARSE, FINE
@@ -13,6 +13,7 @@ from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Violation
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.search.messages import place
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -78,15 +79,19 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        rows = _find_blocked(tool, group, moves)
-        if not len(rows):
+        rows = _find_blocked(tool, group, moves, group.required)
+        into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
+        if not len(rows) and not len(into):
             continue
-        blocked[rows] = True
-        if witness is None:
+        blocked[rows], blocked[into] = True, True
+        if witness is None and len(rows):
             witness = worst_motion(tool, group, moves[rows], group.required, group.required)
+        elif witness is None:
+            witness = link_into_stock(tool, group, moves[into])
         if blocked.sum() > FEW * len(moves):
             return PathCheck(witness)
     if witness is not None:
@@ -128,10 +133,29 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
     return np.tile(row, (len(group.faces), 1))
 
 
-def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array) -> NDArray[np.intp]:
-    """The motions that are not proven to keep their distances from a group."""
-    found = keeps_limits(group.cells, tool, moves, np.tile(group.required, (len(group.faces), 1)))
+def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
+    """The motions that are not proven to keep distances (3,) from a group."""
+    found = keeps_limits(group.cells, tool, moves, np.tile(required, (len(group.faces), 1)))
     return np.flatnonzero(found.blocked >= 0)
+
+
+def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation:
+    """The worst of links at rapid traverse of which the cutter is not proven to stay clear of a group's stock.
+
+    Parameters
+    ----------
+    tool : Tool
+    group : CheckSurfaces
+        With stock.
+    moves : (n, 3, 3) array
+        At least one.
+    """
+    required = np.array([group.required_on_links[0], -np.inf, -np.inf])
+    found = worst_motion(tool, group, moves, required, required)
+    which = f"face {found.label}" if found.label else "what stands around"
+    at = f" at {place(found.point)}" if np.isfinite(found.point).all() else ""
+    words = f"a rapid move is not proven to clear the stock of {group.stock:g} mm on {which}{at}"
+    return found._replace(reason=CUTTER, words=words)
 
 
 def worst_motion(tool: Tool, group: CheckSurfaces, moves: Array, required: Array, cutoff: Array) -> Violation:

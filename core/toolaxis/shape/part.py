@@ -1,6 +1,6 @@
 """A part: faces, the edges between them, and the bodies they bound."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,6 +13,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace
 from toolaxis.shape.joining.edge_matching import match_edges, sides_of
 from toolaxis.shape.seams import Seam, seam_warnings, seams
+from toolaxis.shape.stock import Stock
 
 Array = NDArray[np.float64]
 
@@ -68,6 +69,8 @@ class Part:
         Numbers of the faces that no tool may touch: they are walls to all others, however they meet them.
     held : HalfSpace or None
         The side that is held in the clamping: nothing of a tool may go there.
+    stock : Stock or None
+        What roughing left on its faces; None where they are taken as finished.
 
     Raises
     ------
@@ -86,6 +89,7 @@ class Part:
     original: "Part | None" = None
     avoided: tuple[int, ...] = ()
     held: HalfSpace | None = None
+    stock: Stock | None = None
 
     def __post_init__(self) -> None:
         if not self.faces:
@@ -265,6 +269,40 @@ class Part:
     def with_warnings(self, *warnings: str) -> "Part":
         """The part with further warnings."""
         return replace(self, warnings=(*self.warnings, *warnings))
+
+    def with_stock(self, height: float, faces: Iterable[int]) -> "Part":
+        """The part with stock on some of its faces.
+
+        Parameters
+        ----------
+        height : float
+            How far it stands above the finished surface, mm.
+        faces : iterable of int
+            Numbers, those of joined faces one by one.
+
+        Raises
+        ------
+        InvalidInput
+            When the height is not above zero or larger than the part, or the part has no such face.
+        """
+        stock = Stock(float(height), frozenset(faces))
+        if stock.height >= self.diagonal:
+            raise InvalidInput(f"stock is {stock.height:g} mm and the whole part measures {self.diagonal:.3g} mm: give "
+                               "what roughing left above the finished faces")
+        missing = sorted(stock.faces - {number for face in self.faces for number in face.numbers})
+        if missing:
+            raise InvalidInput(f"face {missing[0]} is said to carry stock and is not in the part: name its faces only")
+        return replace(self, stock=stock)
+
+    def stock_on(self, face: Face) -> float:
+        """How far stock stands above a face of the part, mm; 0 where it is taken as finished.
+
+        Parameters
+        ----------
+        face : Face
+        """
+        carries = self.stock is not None and not self.stock.faces.isdisjoint(face.numbers)
+        return self.stock.height if self.stock is not None and carries else 0.0
 
     def transformed(self, matrix: ArrayLike) -> "Part":
         """The part moved by an affine map.

@@ -102,7 +102,8 @@ def take_apart(part: Part, numbers: Collection[int]) -> Part:
     back = {skin.number: skin.numbers for skin in gone}
     selected = tuple(own for number in part.selected for own in back.get(number, (number,)))
     told = {sentence for skin in gone for sentence in _corner_warning(skin)}
-    return replace(made, selected=selected, warnings=tuple(text for text in part.warnings if text not in told))
+    kept = tuple(text for text in part.warnings if text not in told)
+    return replace(made, selected=selected, stock=part.stock, warnings=kept)
 
 
 def _inside_one(pair: tuple[int, int], name: Mapping[int, int]) -> bool:

@@ -253,8 +253,8 @@ class _Search:
 
 
 def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, Array], faces: tuple[Face, ...], *,
-              enough: float = np.inf, taken_off: TakenOff | None = None, threads: int = 1,
-              progress: Progress = NO_PROGRESS) -> Clearance:
+              enough: float = np.inf, taken_off: TakenOff | None = None, among: tuple[int, ...] | None = None,
+              threads: int = 1, progress: Progress = NO_PROGRESS) -> Clearance:
     """Least distance of one component of the tool from faces along cutter location data, links included.
 
     Points all over the faces and their borders are measured against the swept solids, more densely around the nearest.
@@ -272,6 +272,8 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
         Distance that is asked for, mm: where the tool stays `AMPLE` times as far away, the search ends early.
     taken_off : callable, optional
         What faces miss each other by at points (n, 3) of those with some indices (n,), mm: depths are less by that.
+    among : tuple of int, optional
+        Kinds of motion that are looked at; all of them unless given.
     threads : int
         Threads of the compiled kernel; the result does not depend on it.
     progress : Progress
@@ -287,9 +289,9 @@ def clearance(cl: tuple[ArrayLike, ArrayLike, ArrayLike], component: tuple[str, 
     2. Rigid motions and mirrors change nothing.
     """
     name, solids = component
-    tiles = Tiles(cl, reach_of(solids))
+    tiles = Tiles(cl, reach_of(solids), among)
     nothing = Clearance(name, FAR, "", (0.0, 0.0, 0.0), -1, tiles.uncertainty)
-    if not faces:
+    if not faces or not any(True for _ in tiles):
         return nothing
     search = _Search(solids, tiles, faces, (threads, partial(progress.report, f"{name} clearance")), taken_off)
     error = 0.0

@@ -34,7 +34,7 @@ def machine_rooms(task: VerificationTask, progress: Progress) -> dict[str, Clear
                        (*task.targets, *task.skin, *task.touching, *task.surroundings))
     if not rig.judged:
         return {}
-    needed = task.tolerance.holder_clearance
+    needed = task.tolerance.holder_clearance + task.stock
     joints, arrival = rig.joints(task.tips, task.axes, task.rotary)
     room = least_room(rig, joints, needed, rig.pairs, progress)
     found = {"machine": replace(room, motion=int(arrival[room.motion])) if room.motion >= 0 else room}
@@ -45,8 +45,8 @@ def machine_rooms(task: VerificationTask, progress: Progress) -> dict[str, Clear
     ways = rig.between(last, joints[0])
     if ways is not None:
         found["index move"] = least_room(rig, ways, needed, rig.pairs, progress)
-        found["tool on index move"] = least_room(rig, ways, task.tolerance.cutter_clearance, rig.tool_and_part,
-                                                 progress)
+        found["tool on index move"] = least_room(rig, ways, task.tolerance.cutter_clearance + task.stock,
+                                                 rig.tool_and_part, progress)
     return found
 
 
@@ -61,6 +61,7 @@ def meeting_reasons(task: VerificationTask, name: str, room: Clearance) -> list[
     room : Clearance
     """
     need = task.tolerance.cutter_clearance if name == "tool on index move" else task.tolerance.holder_clearance
+    need += task.stock
     if room.distance >= need - _ROUNDING or task.machine is None:
         return []
     other = room.face if room.face.startswith("face ") else f"the {room.face}"

@@ -67,6 +67,11 @@ class VerificationTask:
     before : tuple of tip, axis and rotary angles, optional
         Where the operation before ends: the index move from there is judged for bodies too; without one the way down
         from above.
+    stock : float
+        What roughing left, mm above the finished surface: shank and holder keep their clearance with it, and the
+        cutter on links.  Nothing of it counts as removed by operations before or by this one.
+    proud : tuple of Face
+        The part's own faces that carry it.
     """
 
     name: str
@@ -91,12 +96,16 @@ class VerificationTask:
     rotary: tuple[float, ...] = ()
     before: tuple[Array, Array, tuple[float, ...]] | None = None
     held: HeldSide | None = None
+    stock: float = 0.0
+    proud: tuple[Face, ...] = ()
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):
             raise InvalidInput(f"scallop limit of operation {self.name} is {self.scallop} mm: it must be above zero")
         if not isfinite(self.allowance):
             raise InvalidInput(f"allowance of operation {self.name} is {self.allowance} mm: it must be finite")
+        if not (isfinite(self.stock) and self.stock >= 0):
+            raise InvalidInput(f"stock of operation {self.name} is {self.stock} mm: it must be finite and zero or more")
         strange = [zone for zone in self.left if all(zone.surface is not face.surface for face in self.targets)]
         if strange:
             raise InvalidInput(f"operation {self.name} leaves a zone of face {strange[0].label} to clean-up, which it "

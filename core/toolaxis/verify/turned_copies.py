@@ -43,7 +43,8 @@ class OperationMeasurement(NamedTuple):
     rooms : clearance of each component, or that it was not checked;
     edge : how far faces behind convex edges stay out of the cutter;
     link_cut : where a link goes deepest into what the cutting motions leave, or None;
-    uncertainty : bound of the error of a height or depth, mm.
+    uncertainty : bound of the error of a height or depth, mm;
+    from_stock : distance of shank, holder and of the cutter on links from faces that carry stock.
     """
 
     targets: tuple[SurfaceMap, ...]
@@ -52,6 +53,7 @@ class OperationMeasurement(NamedTuple):
     edge: Clearance
     link_cut: MapPoint | None
     uncertainty: float
+    from_stock: dict[str, Clearance]
 
 
 class RigidMotion(NamedTuple):
@@ -151,7 +153,9 @@ class TurnedCopies:
 
 
 def _same_inputs(source: VerificationTask, task: VerificationTask) -> bool:
-    """Whether all is the same that does not turn."""
+    """Whether all is the same that does not turn; stock is looked for anew around each copy."""
+    if source.stock > 0 or task.stock > 0:
+        return False
     same = (source.scallop, source.allowance, source.depth, source.tolerance, source.profile) == \
         (task.scallop, task.allowance, task.depth, task.tolerance, task.profile)
     return same and source.outlines.keys() == task.outlines.keys() and \
@@ -250,7 +254,7 @@ def transfer_measurement(task: VerificationTask, source: OperationMeasurement,
              for name, room in source.rooms.items()}
     link_cut = None if source.link_cut is None else _place_on_copy(source.link_cut, copy)
     return OperationMeasurement(targets, skin, rooms, _clearance_on_copy(source.edge, copy), link_cut,
-                                source.uncertainty + copy.error)
+                                source.uncertainty + copy.error, {})
 
 
 def _map_on_copy(one: SurfaceMap, copy: TurnedCopy) -> SurfaceMap:

@@ -1,7 +1,7 @@
 """The verdict: per operation what was measured, against what is allowed, and in sentences why it fails."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -34,6 +34,8 @@ SHARE, FACTOR = 0.999, 1.02
 SAME_AXIS = 1e-6
 
 NOT_CHECKED = "not checked"
+#: The cutter where links carry it, which must not cut.
+AT_RAPID = "cutter at rapid traverse"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +79,10 @@ class OperationVerdict:
         Sentences: why it failed; what was not checked.
     maps : tuple of SurfaceMap
         Of the targets, then of the skin; of the skin only the rays that something cut or gouged.
+    stock : float
+        How far stock stands above the finished faces that carry it, mm.
+    from_stock : dict of str to Clearance
+        Distances from those finished faces: of "shank" and "holder", and of the cutter on links, `AT_RAPID`.
     """
 
     name: str
@@ -100,6 +106,8 @@ class OperationVerdict:
     passed: bool
     reasons: tuple[str, ...]
     maps: tuple[SurfaceMap, ...]
+    stock: float = 0.0
+    from_stock: dict[str, Clearance] = field(default_factory=dict)
 
     @property
     def measured(self) -> bool:
@@ -219,7 +227,8 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
     edge = _behind_edges(task, depths, threads, progress)
     uncertainty = cutter.uncertainty + max(face.tolerance for face in (*task.targets, *task.skin))
-    return OperationMeasurement(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty)
+    return OperationMeasurement(targets, skin, _rooms(task, threads, progress), edge, link_cut, uncertainty,
+                                _rooms_from_stock(task, threads, progress))
 
 
 def _keep_touched(one: SurfaceMap) -> tuple[SurfaceMap, int]:
@@ -242,7 +251,8 @@ def _behind_edges(task: VerificationTask, depths: Depths, threads: int, progress
 
 def _clearance_of(task: VerificationTask, name: str) -> float:
     """Clearance that a component must keep, mm."""
-    needed = {"cutter": task.tolerance.cutter_clearance, "shank": task.tolerance.shank_clearance}
+    needed = {"cutter": task.tolerance.cutter_clearance, AT_RAPID: task.tolerance.cutter_clearance,
+              "shank": task.tolerance.shank_clearance}
     return needed.get(name, task.tolerance.holder_clearance)
 
 
@@ -257,6 +267,21 @@ def _rooms(task: VerificationTask, threads: int, progress: Progress) -> dict[str
         rooms[name] = clearance((task.tips, task.axes, task.kind), (name, solids), faces,
                                 enough=_clearance_of(task, name), threads=threads, progress=progress)
     return rooms
+
+
+def _rooms_from_stock(task: VerificationTask, threads: int, progress: Progress) -> dict[str, Clearance]:
+    """Distances from the faces that carry stock: of shank and holder on all motions, of the cutter on links.
+
+    All of the stock counts as there: what operations before this one, and its own motions, have cut is not taken off.
+    """
+    if not (task.stock > 0 and task.proud):
+        return {}
+    asked: dict[str, tuple[Array, tuple[int, ...] | None]] = {
+        name: (frustum_solids(outline, name), None) for name, outline in task.outlines.items()}
+    asked[AT_RAPID] = cutter_solid(task.profile), (Motion.LINK,)
+    return {name: clearance((task.tips, task.axes, task.kind), (name, solids), task.proud, among=among,
+                            enough=task.stock + _clearance_of(task, name), threads=threads, progress=progress)
+            for name, (solids, among) in asked.items()}
 
 
 def _standing(task: VerificationTask) -> float:
@@ -319,8 +344,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
-                *_reasons_of_held_side(task),
-                *_machine_reasons(task)]
+                *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
              for name, room in rooms.items() if room == NOT_CHECKED]
@@ -329,7 +353,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        maps)
+        maps, task.stock, measured.from_stock)
 
 
 def _axis_reasons(task: VerificationTask) -> list[str]:
@@ -407,6 +431,20 @@ def _reasons_of_held_side(task: VerificationTask) -> list[str]:
     return reasons
 
 
+def _stock_reasons(task: VerificationTask, rooms: dict[str, Clearance]) -> list[str]:
+    reasons = []
+    for name, room in rooms.items():
+        need = task.stock + _clearance_of(task, name)
+        if room.distance < min(need, FAR):
+            reasons.append(f"{name} {_gap(room)} face {room.face} at {spot(room.point)}, on which {task.stock:g} mm of "
+                           f"stock may stand, needed {need:g} mm, on the {motion_of(task, room.motion)}")
+    return reasons
+
+
+def _gap(room: Clearance) -> str:
+    return f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
+
+
 def _room_reasons(task: VerificationTask, rooms: dict[str, Clearance | str]) -> list[str]:
     reasons = []
     for name, room in rooms.items():
@@ -414,7 +452,6 @@ def _room_reasons(task: VerificationTask, rooms: dict[str, Clearance | str]) -> 
         if name in KINDS and isinstance(room, Clearance):
             reasons += meeting_reasons(task, name, room)
         elif isinstance(room, Clearance) and room.distance < min(need, FAR):
-            verb = f"is {room.distance:.4f} mm from" if room.distance >= 0 else f"is {-room.distance:.4f} mm inside"
-            reasons.append(f"{name} {verb} face {room.face} at {spot(room.point)}, needed {need} mm, on the "
+            reasons.append(f"{name} {_gap(room)} face {room.face} at {spot(room.point)}, needed {need} mm, on the "
                            f"{motion_of(task, room.motion)}")
     return reasons

@@ -143,13 +143,23 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                             op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                            before=_end_of(last, op.tool), held=_side_for_judge(plan))
+                            before=_end_of(last, op.tool), held=_side_for_judge(plan), stock=plan.inputs.stock,
+                            proud=_proud(plan))
 
 
 def _side_for_judge(plan: Plan) -> HeldSide | None:
     """The side that is held, from the inputs in plan.json."""
     side = plan.inputs.half_space_held
     return None if side is None else HeldSide(side.point, side.normal)
+
+
+def _proud(plan: Plan) -> tuple[Face, ...]:
+    """The part's own faces that carry stock."""
+    stock = plan.part.stock
+    if stock is None:
+        return ()
+    every = [own for face in plan.part.faces for own in own_pieces(face)]
+    return tuple(own for own in every if own.number in stock.faces)
 
 
 def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:
@@ -240,4 +250,5 @@ def _operation_document(op: OperationVerdict) -> dict[str, Any]:
             "gouge_allowed": op.gouge_allowed, "clearance": _clearances(op.clearance),
             "worst_scallop": [_place(p) for p in op.worst_scallop],
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
-            "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty}
+            "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
+            "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}

@@ -300,10 +300,11 @@ def _proven(op: Operation, task: FaceProblem, groups: tuple[CheckSurfaces, ...],
     moves = segment_motions(path.cl, path.axis[0])
     least = {name: value - _SLACK for name, value in found.clearance.items()}
     depth = found.gouge + _FINER
-    same = all((decided(group.cells, tool, moves, np.tile(_distances_to_keep(group, least,
-                                                                             least_distance(tool, depth, allowance)),
-                                                           (len(group.faces), 1))).blocked < 0).all()
-               for group in groups)
+    keep = [np.tile(_distances_to_keep(group, least, least_distance(tool, depth, allowance)), (len(group.faces), 1))
+            for group in groups]
+    # Only the proof tells links in stock apart.
+    same = not any(group.stock > 0 for group in groups) and all(
+        (decided(group.cells, tool, moves, table).blocked < 0).all() for group, table in zip(groups, keep, strict=True))
     if same:
         least = {name: max(value, float(groups[0].required[COMPONENTS.index(name)])) if name != "cutter" else
                  max(value, task.feasibility.tolerance.cutter_clearance) for name, value in least.items()}

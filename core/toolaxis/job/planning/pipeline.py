@@ -57,9 +57,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          machine: MachineLike | None = None,
          faces: Sequence[int | Sequence[int]] | str | None = None, regions: int | str | None = None,
          orientations: int | str | None = None, division: Sequence[SubSurface] | str | None = None,
-         objective: str | None = None, strategy: str = INDEXED, allowance: float = 0.0, direction: str = "zigzag",
-         passes: str = ISO, obstacles: Any = None, avoid: Sequence[int] | str | None = None, held: str = "",
-         method: str = "sphere",
+         objective: str | None = None, strategy: str = INDEXED, allowance: float = 0.0, stock: float = 0.0,
+         direction: str = "zigzag", passes: str = ISO, obstacles: Any = None,
+         avoid: Sequence[int] | str | None = None, held: str = "", method: str = "sphere",
          feedrate: float | None = None, spindle: float | None = None, tolerance: ToleranceLike = None,
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
@@ -101,6 +101,10 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         divided by time too where that is asked for, else by cutting length.  Which tools begin is chosen by time.
     allowance : float
         Stock left on the faces, mm.
+    stock : float
+        What roughing left on the faces of this plan, mm above the finished surface; no less than the allowance.
+        Shank and holder keep their clearance, and rapid moves keep clear, of all of it throughout the plan.  All other
+        faces are taken as finished, and so are all without it.
     direction : str
         "zigzag", "climb" or "conventional".
     passes : str
@@ -189,7 +193,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                         FEEDRATE if feedrate is None else float(feedrate),
                         SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
-                        numbers_to_avoid(avoid), held)
+                        numbers_to_avoid(avoid), held, float(stock))
     if objective == "time":
         require_machine_limits(mounting)
     inputs.check_tool(cutter)
@@ -219,9 +223,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         raise InvalidInput(f"a held side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
                            "leave one of both out")
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
+    chosen_faces = choose_faces(loaded, numbers)
+    if inputs.stock > 0:
+        loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
-    free, in_clamping = cut_faces(loaded, choose_faces(loaded, numbers))
+    free, in_clamping = cut_faces(loaded, chosen_faces)
     if len(rack.tools) > 1:
         whole_part = None if pattern is None else replace(pattern, part=loaded)
         jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]

@@ -128,7 +128,7 @@ def _around(plan: Plan, tool: Tool) -> MachineSurroundings:
     bodies = [plan.part, *plan.obstacles]
     judged = plan.machine is not None and plan.machine.machine.bodies
     faces = tuple(forest(body.faces, FLAT / 10) for body in bodies if len(body.faces)) if judged else ()
-    return MachineSurroundings(tool, faces, plan.inputs.tolerance.holder_clearance)
+    return MachineSurroundings(tool, faces, plan.inputs.tolerance.holder_clearance + plan.inputs.stock)
 
 
 def _states(mounting: Mounting, op: Operation, around: MachineSurroundings) -> tuple[list[_State], str]:

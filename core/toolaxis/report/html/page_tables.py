@@ -124,13 +124,14 @@ def verdict_rows(plan: Plan, verdict: Mapping[str, Any]) -> Rows:
                      f"{100 * op['share_within']:.2f}",
                      number(op["gouge_max"], 4), " / ".join(room), str(len(op["zones"])), str(op["rays"]),
                      "pass" if op["passed"] else "FAIL"])
-    allowed = plan.inputs.tolerance
+    allowed, stock = plan.inputs.tolerance, plan.inputs.stock
+    besides = f", those of shank, holder and rapid moves from {stock:g} mm of stock" if stock > 0 else ""
     headings = [("operation", False), ("left to clean-up mm²", True), ("scallop left mm", True),
                 ("% of the rest within 1.02 limit", True), ("gouge mm", True),
                 ("clearance mm cutter/shank/holder", True), ("zones above", True), ("rays", True), ("verdict", False)]
     return _numbers("verdict, measured by material removal", headings, rows, [
         f"Allowed: scallop {plan.inputs.scallop:g} mm, gouge {allowed.gouge:g} mm, clearances "
-        f"{allowed.cutter_clearance:g} / {allowed.shank_clearance:g} / {allowed.holder_clearance:g} mm. "
+        f"{allowed.cutter_clearance:g} / {allowed.shank_clearance:g} / {allowed.holder_clearance:g} mm{besides}. "
         "-: not checked."])
 
 
@@ -189,7 +190,8 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     """
     given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid))}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
-    units = {"scallop": "mm", "allowance": "mm", "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
+    units = {"scallop": "mm", "allowance": "mm", "stock": "mm", "feedrate": "mm/min", "rapid": "mm/min",
+             "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
             for name, value in given.items()]
     names = {"gouge": "machining tolerance"}

@@ -277,7 +277,8 @@ class BladeSearch:
         up = np.asarray(unit(axes.sum(axis=0)))
         over = height_over(self.job.worth.scallop)
         crossing = MovingLinkClearance(self.tool, self.job.groups, self.job.worth.allowance, over)
-        return MovingLinks(Linking(self.job.top(up), run_in=0.0, approach=over + OVER), up, self.tool, crossing.clear)
+        linking = Linking(self.job.top(up), run_in=0.0, approach=over + OVER, rise=crossing.rise)
+        return MovingLinks(linking, up, self.tool, crossing.clear)
 
     def made(self, planes: list[SThetaLayer], some: slice, left: tuple[float, float],
              clearance: float) -> tuple[BladeSchedule, ToolPath]:

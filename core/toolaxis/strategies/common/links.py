@@ -24,6 +24,7 @@ from toolaxis.path.links import (
     exit_points,
     kinds_of,
     near_end,
+    raise_link_ends,
 )
 from toolaxis.tools.tool import Tool
 
@@ -61,15 +62,15 @@ class MovingLinks:
     tool : Tool
         What has to be above that height.
     clear : callable, optional
-        Takes the tips at both ends of links and the axes there, (k, 3) each, and whether they are the crossing itself
-        rather than the way up or down, and answers which are free on the whole way, (k,) bool; all cross above
-        everything without it.
+        Takes the tips at both ends of links and the axes there, (k, 3) each, whether they are the crossing itself
+        rather than the way up or down, and whether they are run at rapid traverse, and answers which are free on the
+        whole way, (k,) bool; all cross above everything without it.
     """
 
     linking: Linking
     up: Array
     tool: Tool
-    clear: Callable[[Array, Array, Array, Array, bool], Bools] | None = None
+    clear: Callable[[Array, Array, Array, Array, bool, bool], Bools] | None = None
 
     def height(self, axes: Array) -> float:
         """Height along `up` of the tip at which all of the tool is above everything with any of the axes, mm.
@@ -119,10 +120,12 @@ def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolP
     ends = [exit_points(one, one.axis[-1], how.linking) for one in strokes]
     first, last = (np.array([one.axis[k] for one in strokes]) for k in (0, -1))
     top = how.height(np.concatenate([first, last]))
+    over = _over((ends, begins), (last, first), how)
+    for points, which, axes in ((begins, 0, first), (ends, -1, last)):
+        raise_link_ends(points, which, axes, how.linking, lambda tips, along: _lifts(tips, along, how.up, top))
     down = _above(np.array([one[0] for one in begins]), first, how.up, top)
     up = _above(np.array([one[-1] for one in ends]), last, how.up, top)
     _lower((up, down), (ends, begins), (last, first), how)
-    over = _over((ends, begins), (last, first), how)
     stays = np.isfinite(over[:, 0])
     pieces = []
     for k, stroke in enumerate(strokes):
@@ -149,7 +152,13 @@ def _above(tips: Array, axes: Array, up: Array, height: float) -> Array:
         k = int(np.argmin(slope))
         raise InvalidInput(f"the axis {np.round(axes[k], 4).tolist()} at an end of a pass lies more than 84 deg from "
                            "the mean one: a retract along it does not leave the part")
-    return np.asarray(tips + (np.maximum(height - tips @ up, 0.0) / slope)[:, None] * axes)
+    return np.asarray(tips + _lifts(tips, axes, up, height)[:, None] * axes)
+
+
+def _lifts(tips: Array, axes: Array, up: Array, height: float) -> Array:
+    """How far tips are lifted along their axes to a height along `up`, (k,) mm; those that lead nowhere are refused
+    where they are lifted."""
+    return np.asarray(np.maximum(height - tips @ up, 0.0) / np.maximum(axes @ up, _UPWARDS))
 
 
 def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: MovingLinks) -> Array:
@@ -165,8 +174,8 @@ def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: 
     middle = np.asarray(unit(before + after)) if len(left) else before
     for share in ROOFS:
         some = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * middle[left]
-        free = how.clear(ends[left], some, before[left], middle[left], False)
-        free &= how.clear(some, begins[left], middle[left], after[left], False)
+        free = how.clear(ends[left], some, before[left], middle[left], False, False)
+        free &= how.clear(some, begins[left], middle[left], after[left], False, False)
         over[left[free] + 1] = some[free]
         left = left[~free]
     return over
@@ -188,8 +197,8 @@ def _lower(tops: tuple[Array, Array], low: tuple[list[Array], list[Array]], axes
         left, high = left[lower], (high[0][lower], high[1][lower])
         if not len(left):
             return
-        free = how.clear(high[0], high[1], before[left], after[left], True)
-        free &= how.clear(starts[left], high[0], before[left], before[left], False)
-        free &= how.clear(stops[left], high[1], after[left], after[left], False)
+        free = how.clear(high[0], high[1], before[left], after[left], True, True)
+        free &= how.clear(starts[left], high[0], before[left], before[left], False, True)
+        free &= how.clear(stops[left], high[1], after[left], after[left], False, True)
         up[left[free]], down[left[free] + 1] = high[0][free], high[1][free]
         left = left[~free]

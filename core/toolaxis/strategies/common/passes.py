@@ -26,7 +26,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
-from toolaxis.search.machine_limits import mounting_of, while_moving
+from toolaxis.search.machine_limits import body_clearance, mounting_of, while_moving
 from toolaxis.search.path_check import PathCheck
 from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.strategies.common.machine_collision import meeting_in_motion, motions
@@ -141,7 +141,8 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
                 for group in job.groups)
     over = height_over(job.worth.scallop)
     crossing = MovingLinkClearance(cut.tool, job.groups, cut.allowance, over)
-    linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER)
+    linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER,
+                      rise=crossing.rise)
     return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
 
 
@@ -185,7 +186,7 @@ def beyond(job: FaceProblem, path: ToolPath) -> Violation | None:
     if not mounting.judges_bodies:
         return None
     around = MachineSurroundings(job.feasibility.tool, tuple(group.cells for group in job.groups),
-                                 job.feasibility.tolerance.holder_clearance)
+                                 body_clearance(job.feasibility, job.groups))
     found = machine_violation(mounting, along, around, job.progress)
     return None if found is None else Violation(LIMITS, ROUNDING, distance=found[0].distance,
                                                 words=words(mounting, found[1], found[0], around.required))

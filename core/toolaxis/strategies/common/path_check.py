@@ -7,6 +7,7 @@ they do.  The cutter on the skin touches it: there no distance is left for that,
 points of the path close to each other.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, radians
 from typing import NamedTuple
@@ -19,9 +20,10 @@ from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import Violation
 from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.path.links import least_rise
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.link_heights import OVER
-from toolaxis.search.path_check import COMPONENTS, PathCheck, greatest_depth, worst_motion
+from toolaxis.search.path_check import COMPONENTS, PathCheck, greatest_depth, link_into_stock, worst_motion
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -132,7 +134,17 @@ class MovingLinkClearance:
     allowance: float = 0.0
     over: float = OVER
 
-    def clear(self, start: Array, end: Array, before: Array, after: Array, across: bool) -> Bools:
+    @property
+    def rise(self) -> Callable[[Array, Array, Array], Array] | None:
+        """How far the ends of links have to be lifted for stock, see `toolaxis.path.links.Linking`; None without stock.
+        """
+        if not any(group.stock > 0 for group in self.groups):
+            return None
+        return lambda tips, axes, most: least_rise(
+            tips, axes, most, lambda start, end, up: self.clear(start, end, up, up, False, rapid=True))
+
+    def clear(self, start: Array, end: Array, before: Array, after: Array, across: bool,
+              rapid: bool = True) -> Bools:
         """Whether links are free, (k,): they keep their distances, and where they cross `over` from the skin too.
 
         Parameters
@@ -143,12 +155,14 @@ class MovingLinkClearance:
             Axes there.
         across : bool
             Whether they cross.
+        rapid : bool
+            Whether they are run at rapid traverse, and have to clear stock.
         """
         free = np.ones(len(start), dtype=bool)
         for group in self.groups:
-            required = group.required.copy()
+            required = group.required_on_links if rapid or across else group.required.copy()
             if across and group.role != OTHER:
-                required[0] = self.allowance + self.over
+                required[0] = max(self.allowance + self.over, group.rapid)
             some = np.flatnonzero(free)
             free[some] = keeps_distance(self.tool, group, PathMotions(start, end, before, after).rows(some), required)
         return free
@@ -190,6 +204,9 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], 
             free = keeps_distance(tool, group, spans.rows(rows), required)
             if not _alone(tool, group, spans.rows(rows[~free]), required):
                 return PathCheck(_witness(tool, group, spans.rows(rows[~free]), required))
+        into = _links_into_stock(tool, group, spans.rows(np.flatnonzero(path.kind[1:] == Motion.LINK)))
+        if len(into.start):
+            return PathCheck(link_into_stock(tool, group, standing(into)))
         if len(on):
             depth = _touching(tool, group, spans.rows(on), allowance)
             if depth.witness is not None:
@@ -200,6 +217,16 @@ def prove_moving(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], 
                        if name != "cutter" or group.role == OTHER) for name in known
              if name != "cutter" or any(group.role == OTHER for group in groups)}
     return PathCheck(None, gouge, least)
+
+
+def _links_into_stock(tool: Tool, group: CheckSurfaces, links: PathMotions) -> PathMotions:
+    """The links of which the cutter is not proven to stay clear of a group's stock, each looked at alone."""
+    required = np.array([group.required_on_links[0], -inf, -inf])
+    if group.stock == 0 or not len(links.start):
+        return links.rows(np.empty(0, dtype=np.intp))
+    bad = [k for k in np.flatnonzero(~keeps_distance(tool, group, links, required))
+           if not keeps_distance(tool, group, links.rows(np.array([k])), required)[0]]
+    return links.rows(np.array(bad, dtype=np.intp))
 
 
 def _alone(tool: Tool, group: CheckSurfaces, spans: PathMotions, required: Array) -> bool:

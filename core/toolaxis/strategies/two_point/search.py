@@ -165,7 +165,8 @@ def add_links(job: FaceProblem, work: TwoPointInputs, strips: tuple[Strip, ...])
                 for group in job.groups)
     over = height_over(work.scallop)
     crossing = MovingLinkClearance(work.tool, job.groups, work.allowance, over)
-    linking = Linking(job.top(up), run_in=0.0 if walls else 1.0, approach=over + OVER)
+    linking = Linking(job.top(up), run_in=0.0 if walls else 1.0, approach=over + OVER,
+                      rise=crossing.rise)
     return join_moves(passes, MovingLinks(linking, up, work.tool, crossing.clear))
 
 
