@@ -151,7 +151,7 @@ def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation
         At least one.
     """
     required = np.array([group.required_on_links[0], -np.inf, -np.inf])
-    found = worst_motion(tool, group, moves, required, required)
+    found = worst_motion(tool, group, moves, required, np.maximum(required, 0.0))
     which = f"face {found.label}" if found.label else "what stands around"
     at = f" at {place(found.point)}" if np.isfinite(found.point).all() else ""
     words = f"a rapid move is not proven to clear the stock of {group.stock:g} mm on {which}{at}"
