@@ -140,6 +140,9 @@ def test_the_number_of_orientations_is_chosen_from_their_curve(tmp_path: Path) -
     ({"strategy": "five-axis"}, "strategy 'five-axis' is unknown"), ({"faces": []}, "list of faces is empty"),
     ({"faces": [2]}, "face 2 does not exist"), ({"method": "guess"}, "method 'guess' is unknown"),
     ({"machine": 7}, "machine is a int"), ({"datum": (0, 0)}, "datum"), ({"allowance": -1}, "allowance"),
+    ({"stock": -0.1}, "stock is -0.1 mm: it must be zero or more, and at most 50 mm"),
+    ({"stock": float("nan")}, "stock is nan mm"), ({"stock": 49.0}, "stock is 49 mm and the whole part measures"),
+    ({"stock": 0.2, "allowance": 0.3}, "below the allowance of 0.3 mm: give at least the allowance"),
 ])
 def test_wrong_arguments(change: dict[str, object], said: str) -> None:
     with pytest.raises(ta.InvalidInput, match=said):
