@@ -150,7 +150,7 @@ def _group(role: str, faces: tuple[Face, ...], keeps: tuple[float, float], toler
     cutter, stock = keeps
     required = np.array([cutter, stock + tolerance.shank_clearance, stock + tolerance.holder_clearance])
     rapid = stock + tolerance.cutter_clearance + MARGIN if stock > 0 else -np.inf
-    return CheckSurfaces(role, faces, required, mismatch, stock, rapid)
+    return CheckSurfaces(role, faces, required, mismatch, stock=stock, rapid=rapid)
 
 
 def faces_of(obstacles: Obstacles) -> tuple[Face, ...]:
