@@ -111,7 +111,7 @@ class Excess:
 
 
 @dataclass(frozen=True, eq=False)
-class _Look:
+class _RestSeen:
     """What was seen when it was looked at some passes.
 
     motions : frozenset of bytes, the cutting motions;  lines : pair of (m,) and (n,) arrays, of the grid;
@@ -153,7 +153,7 @@ class RestFinder:
     walls: Callable[[Array], Bools] | None = None
     progress: Progress = NO_PROGRESS
     between: Array | None = None
-    _last: _Look | None = None
+    _last: _RestSeen | None = None
 
     def find(self, path: ToolPath) -> tuple[Zone, ...]:
         """The zones that the passes of a path leave, the largest first.
@@ -197,18 +197,18 @@ class RestFinder:
         self.progress.check()
         return self._zones_in(found, path, nodes)
 
-    def _look(self, path: ToolPath, high: Excess) -> _Look:
+    def _look(self, path: ToolPath, high: Excess) -> _RestSeen:
         """What is left at the nodes of a grid."""
         starts, ends = motions_of(path)
         rows = _name_motions(starts, ends)
         motions = frozenset(rows)
         if self._last is None or not self._last.motions <= motions:
             size = _size(self.face, self.tool, self.scallop)
-            return _Look(motions, *sample_grid(self.face, high, size, high.whole, self.between))
+            return _RestSeen(motions, *sample_grid(self.face, high, size, high.whole, self.between))
         new = np.array([row not in self._last.motions for row in rows])
         fresh = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop, (starts[new], ends[new]))
         lines, values = self._last.lines, self._last.values
-        return _Look(motions, lines, sample_again(lines, values, fresh, fresh.whole))
+        return _RestSeen(motions, lines, sample_again(lines, values, fresh, fresh.whole))
 
     def _zones_in(self, found: tuple[Array, ...], path: ToolPath, nodes: Array) -> tuple[Zone, ...]:
         """The zones within loops, the largest first, without what is too small or too shallow to be told."""
