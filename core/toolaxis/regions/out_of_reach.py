@@ -225,7 +225,8 @@ class _Slices:
 
 def _proofs(face: Face, tools: Sequence[Tool], scene: ReachScene, cells: int) -> list["_Proof"]:
     """A proof for each tool, the slim ones first: what they reach need not be asked of the others."""
-    required, room = scene.required(face), ReachRoom.make()
+    # The exact check does not charge steps in the file to the cutter, so they prove nothing.
+    required, room = scene.required(face, steps_count=False), ReachRoom.make()
     slim = sorted(tools, key=lambda tool: (tool.radius, tool.corner_radius))
     return [_Proof(scene, tool, required, room, cells) for tool in slim]
 

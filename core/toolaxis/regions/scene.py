@@ -12,6 +12,7 @@ from toolaxis.regions.reach_kernel import ReachTool, ReachTree
 from toolaxis.shape.bounding.bounding_tree import BoundingTree, branch_roots, cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
+from toolaxis.shape.seams import Mismatch
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.solid import COMPONENTS
 from toolaxis.tools.tool import Tool
@@ -72,13 +73,16 @@ class ReachScene:
         return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces,
                           merge_reach_trees([cells(face) for face in faces]))
 
-    def required(self, face: Face) -> Array:
+    def required(self, face: Face, steps_count: bool = True) -> Array:
         """What tools that machine a face have to keep, (faces + 1, 4) mm.
 
         Parameters
         ----------
         face : Face
             Of the part.
+        steps_count : bool
+            Whether steps in the file count as gouges.  Where not, the cutter may be deeper all over a face by its
+            highest step: no less than what `toolaxis.shape.seams` takes off anywhere.
 
         Returns
         -------
@@ -92,6 +96,8 @@ class ReachScene:
         for group in groups:
             rows = [number[id(own)] for own in group.faces]
             table[rows, :_ABOVE] = group.required
+            if not steps_count and group.mismatch is not None:
+                table[rows, 0] -= _highest_steps(group.mismatch)
             table[rows, _ABOVE] = 0.0 if group.role == OTHER else -np.inf
         table[-1] = table[:-1].max(axis=0)
         return table
@@ -118,6 +124,12 @@ class ReachScene:
     def _extent(self) -> float:
         """No two places are farther apart, mm."""
         return 2.0 * float(self.tree.shape[0, 10])
+
+
+def _highest_steps(mismatch: Mismatch) -> Array:
+    """The highest step of each face, (faces,) mm."""
+    spans = mismatch.span[:-1]
+    return np.array([mismatch.segment[first:end, 6].max(initial=0.0) for first, end in spans])
 
 
 def merge_reach_trees(trees: Sequence[BoundingTree]) -> ReachTree:
