@@ -38,6 +38,9 @@ _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
 _BULGE = 1.1
 #: Places of a cell, in halves of it from its middle, and how near to its border it is asked whether it is on the face.
 _PLACES, _WITHIN = np.array([-1.0, 0.0, 1.0]), 0.98
+#: Places each way of a cell at which it is looked once more before anything is claimed of it, nowhere evenly apart: what
+#: repeats itself along a face, ribs or waves, could look the same at all the others.
+_CHECKED = np.concatenate([[-1.0, 1.0], 2 * (0.6180339887498949 * np.arange(1, 12) % 1.0) - 1.0])
 #: A part of a tool is cut into slices whose upper end is so many times as high as the lower one; they overlap by half.
 #: Height from which on slices grow, mm.
 _SLICE, _LOWEST = 4.0, 2.0
@@ -134,7 +137,7 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     -----
     A tool touches a place where its surface has the place's normal.  What is claimed holds for every place of a cell
     and every axis, but for how far cells reach and their normals turn, which is told from nine places of each with a
-    tenth added, and for faces that are known to the remainder of their cells.
+    tenth added and looked at once more at many places before it is claimed, and for faces that are known to the remainder of their cells.
 
     **Properties**: 1. no tool at any contact in what is proven, with any axis within the limits, passes the exact check
     of `toolaxis.feasibility.feasibility.Feasibility.reach`; 2. areas add up to no more than that of the face.
@@ -152,6 +155,9 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
             tried += proof.close(cells, ~narrow & ~met, met, most_pairs - tried)
             open_[proof.pairs.cell] |= ~narrow[proof.pairs.cell]
         closed = ~surely & ~met & ~open_
+        claimed = np.flatnonzero(surely | closed)
+        unlike = claimed[~_is_as_measured(face, cells.pick(claimed))]
+        surely[unlike], closed[unlike] = False, False  # it stays undecided
         by_corner += float(cells.area[surely].sum())
         proven += float(cells.area[surely | closed].sum())
         reached += float(cells.area[met].sum())
@@ -208,6 +214,27 @@ def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Rect
     share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
     share *= area / max(float(share.sum()), np.finfo(float).tiny)
     return _Rectangles(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
+
+
+def _is_as_measured(face: Face, cells: _Rectangles) -> Bools:
+    """Whether cells reach no farther, and their normals turn no more, at many places than was told from nine, (n,)."""
+    ways = np.stack(np.meshgrid(_CHECKED, _CHECKED, indexing="ij"), axis=-1).reshape(-1, 2)
+    found = np.ones(len(cells), dtype=bool)
+    for first in range(0, len(cells), _AT_ONCE // 16):
+        breathe()
+        some = slice(first, first + _AT_ONCE // 16)
+        uv = (cells.middle[some, None] + ways * cells.half[some, None]).reshape(-1, 2)
+        row = np.repeat(np.arange(len(cells))[some], len(ways))
+        inside = face.contains(uv)
+        uv, row = uv[inside], row[inside]
+        d = face.evaluate(uv)
+        normal = face.normal(uv, d)
+        off = np.linalg.norm(d.point - cells.point[row], axis=1)
+        known = np.linalg.norm(normal, axis=1) > 0.5
+        turn = np.where(known, np.asarray(angle_between(normal, cells.normal[row])), np.pi)
+        wrong = (off > cells.off[row] + _LEAST) | (turn > cells.turn[row] + _LEAST)
+        found[row[wrong]] = False
+    return found
 
 
 @dataclass(frozen=True, eq=False)
