@@ -85,6 +85,19 @@ def test_a_part_goes_through_the_command_and_is_compared(tmp_path: Path) -> None
     assert "planned but not verified: 1 (judged fail)" in worse.stdout
 
 
+def test_claims_of_a_part_are_attacked_and_printed() -> None:
+    ran = subprocess.run([sys.executable, "-m", "benchmarks", "out_of_reach", "examples/saddle.step", "--points", "2",
+                          "--axes", "40", "--pairs", "2000"], cwd=ROOT, capture_output=True, text=True, timeout=600)
+    assert ran.returncode == 0, ran.stderr
+    heading, line = ran.stdout.splitlines()
+    names, values = heading.replace("miss mm", "miss").replace("proof s", "proof").replace("force s", "force"), line
+    row = dict(zip(names.split(), values.split(), strict=True))
+    assert row["part"] == "saddle.step" and row["against"] == "0" and row["open"] == row["reached"] == "2"
+    nowhere = subprocess.run([sys.executable, "-m", "benchmarks", "out_of_reach", "tests/machine"], cwd=ROOT,
+                             capture_output=True, text=True, timeout=60)
+    assert nowhere.returncode == 2 and "no STEP file" in nowhere.stderr
+
+
 def test_a_process_past_its_time_may_put_away_what_it_has(tmp_path: Path) -> None:
     polite = ("import signal, sys, time\n"
               "signal.signal(signal.SIGTERM, lambda *_: sys.exit('asked to stop'))\n"

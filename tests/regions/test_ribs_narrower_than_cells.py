@@ -1,4 +1,4 @@
-"""What repeats itself along a face so that all places look the same at which a cell is measured is not claimed for it."""
+"""Nothing is claimed of cells that look alike at all places where they are measured, and different in between."""
 
 import numpy as np
 

@@ -38,8 +38,8 @@ _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
 _BULGE = 1.1
 #: Places of a cell, in halves of it from its middle, and how near to its border it is asked whether it is on the face.
 _PLACES, _WITHIN = np.array([-1.0, 0.0, 1.0]), 0.98
-#: Places each way of a cell at which it is looked once more before anything is claimed of it, nowhere evenly apart: what
-#: repeats itself along a face, ribs or waves, could look the same at all the others.
+#: Places each way of a cell at which it is looked once more before anything is claimed of it, nowhere evenly apart:
+#: what repeats itself along a face, ribs or waves, could look the same at all the others.
 _CHECKED = np.concatenate([[-1.0, 1.0], 2 * (0.6180339887498949 * np.arange(1, 12) % 1.0) - 1.0])
 #: A part of a tool is cut into slices whose upper end is so many times as high as the lower one; they overlap by half.
 #: Height from which on slices grow, mm.
@@ -137,7 +137,8 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     -----
     A tool touches a place where its surface has the place's normal.  What is claimed holds for every place of a cell
     and every axis, but for how far cells reach and their normals turn, which is told from nine places of each with a
-    tenth added and looked at once more at many places before it is claimed, and for faces that are known to the remainder of their cells.
+    tenth added and looked at once more at many places before it is claimed, and for faces that are known to the
+    remainder of their cells.
 
     **Properties**: 1. no tool at any contact in what is proven, with any axis within the limits, passes the exact check
     of `toolaxis.feasibility.feasibility.Feasibility.reach`; 2. areas add up to no more than that of the face.
