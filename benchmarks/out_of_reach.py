@@ -1,9 +1,9 @@
 """What is claimed to be out of reach of a whole rack, attacked by brute force.
 
 ``python -m benchmarks out_of_reach [FOLDER|PART ...] [--points N] [--axes N] [--seed S]`` takes the faces and skins
-that `toolaxis plan` would plan with the general rack, and asks for the proof of what no tool of it reaches.  Then random
-places of what is claimed, half of them on the borders of its cells, are touched with every tool under thousands of axes
-and with a search around the best of them, and the tool is held against points of the whole part
+that `toolaxis plan` would plan with the general rack, and asks for the proof of what no tool of it reaches.  Then
+random places of what is claimed, half of them on the borders of its cells, are touched with every tool under
+thousands of axes and with a search around the best of them, and the tool is held against points of the whole part
 (`benchmarks._part_samples`, `benchmarks._postures`): nothing of that is shared with the proof.
 
 A claim is contradicted where a tool keeps all that a plan asks for: 0.01 mm deep at most in the face and those that go
