@@ -259,6 +259,7 @@ def measure(path: Path, asked: argparse.Namespace) -> int:
     against: list[tuple[Place, Reach]] = []
     places = [place for claim, count in zip(claims, _shares([one.area for one in claims], asked.points), strict=True)
               if count and len(claim.rectangles) for place in draw_claimed(claim, count, rng)]
+    places = [places[k] for k in rng.permutation(len(places))[:asked.points]]
     closer, tried, miss = 0, 0, np.inf
     for place in places:
         found = attack.reach(place)

@@ -84,6 +84,16 @@ def test_the_middle_of_a_deep_slot_is_out_of_reach_for_the_holder(slot: Part) ->
     assert prove_out_of_reach(side, [longer], ReachScene.of(slot)).area < 0.06 * side.area, "the corner at the floor"
 
 
+def test_of_a_sliver_that_no_cell_has_a_place_of_nothing_is_claimed(pocket: Part) -> None:
+    top = max(pocket.faces, key=lambda face: face.evaluate(face.grid(3, 3)).point[:, 2].min())
+    u0, u1, v0, v1 = top.bounds
+    way = np.array([u0, v0]) + np.array([[0.0, 0.0], [0.076, 1.0], [1.0, 0.137]]) * [u1 - u0, v1 - v0]
+    thin = np.array([0.0, 0.0028 * (v1 - v0)])
+    sliver = top.trimmed((np.concatenate([way, way[::-1] + thin]),))
+    found = prove_out_of_reach(sliver, [BALL], ReachScene.of(pocket))
+    assert (found.area, found.reached, len(found.rectangles)) == (0.0, 0.0, 0)
+
+
 def test_limits_of_the_axes_count(pocket: Part) -> None:
     floor = next(face for face in pocket.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 2], -5.0))
     aside = Cone(np.array([1.0, 0.0, 0.0]), np.radians(20))

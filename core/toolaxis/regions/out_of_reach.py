@@ -213,7 +213,9 @@ def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Rect
     off = np.linalg.norm(points - point[:, None], axis=2).max(axis=1, initial=0.0)
     turn = np.where(known, np.asarray(angle_between(normals, normal[:, None])), np.pi).max(axis=1, initial=0.0)
     share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
-    share *= area / max(float(share.sum()), np.finfo(float).tiny)
+    whole = float(share.sum())
+    if whole > 0:  # of a sliver no cell may have a place
+        share *= area / whole
     return _Rectangles(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
 
 
