@@ -211,7 +211,8 @@ def scene(seed):
     body = {"flute_length": flute, "stickout": 26.0, "holder": [(rng.uniform(5, 9), 0), (rng.uniform(9, 14), 25)],
             "shank": [(rng.uniform(2, 3.6), flute), (rng.uniform(3, 4.5), 26)]}
     tool = (Tool.ball(6, **body), Tool.torus(6, 1, **body), Tool.torus(7, 2.5, **body))[seed % 3]
-    axis = np.array([0.08, 0.0, 1.0]) + [*rng.uniform(-0.22, 0.22, 2), 0.0]
+    axis = np.array([0.08, 0.0, 1.0])
+    axis[:2] += rng.uniform(-0.22, 0.22, 2)
     axis /= np.linalg.norm(axis)
     uv = np.column_stack([np.full(5, u), np.linspace(0.1, 0.8, 5)])
     path = ordinary_path(place(floor, tool, uv, axis), axis, rng.uniform(0.3, 6.0))
