@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygon_boolean import divide_nearly
-from toolaxis.numeric.polygons import signed_area, stations, walk
+from toolaxis.numeric.polygons import inside, signed_area, slabs, stations, walk
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joining.joined_surface import name_of
 from toolaxis.skin.seen_face import SeenFace
@@ -17,6 +17,8 @@ Loops = tuple[Array, ...]
 
 #: Share of a member's area in its parameters that may be missing of the whole.
 _WHOLE = 1e-6
+#: Places along each side of the box of a part at which it is asked whose it is.
+_ASKED = 40
 #: Pieces of the longest side of a loop that is carried over to a member's own parameters.
 _DIVIDED = 128
 
@@ -36,7 +38,8 @@ def own_pieces(face: Face, only_exact: bool = False) -> tuple[Face, ...]:
         The face itself where it was not joined; else its members, those of which it has only a part as pieces, labelled
         with its own letters.
 
-    **Properties**: 1. areas add up.
+    **Properties**: 1. areas add up, but for what of a member lies under another one as the skin is seen: of a piece that
+    is nothing.
     """
     if not face.members:
         return (face,)
@@ -79,8 +82,10 @@ def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -
     if face.fills_outline:
         return surface.members
     pieces: list[Face] = []
-    for seen in surface.seen:
+    for number, seen in enumerate(surface.seen):
         parts = _common(seen.outline, loops)
+        if parts is not None:
+            parts = [part for part in parts if _is_seen(part, number, surface)]
         if parts is not None and any(part is seen.outline for part in parts):
             pieces.append(seen.face)
             continue
@@ -90,6 +95,16 @@ def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -
         else:
             pieces += [seen.face.trimmed(part, seen.face.label + letters) for part in own]
     return tuple(pieces)
+
+
+def _is_seen(part: Loops, number: int, surface: ViewSurface) -> bool:
+    """Whether a part of a member in the plane is not another member's that lies above it; so too where nobody can tell.
+    """
+    low, high = part[0].min(axis=0), part[0].max(axis=0)
+    share = (np.arange(_ASKED) + 0.5) / _ASKED
+    places = low + (high - low) * np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
+    places = places[inside(slabs(part), places)]
+    return not len(places) or bool((surface.owners(places) == number).mean() > 0.5)
 
 
 def _carry_over_all(seen: SeenFace, parts: list[Loops]) -> list[Loops] | None:

@@ -64,6 +64,15 @@ class ViewSurface(NurbsSurface):
     def _view(self) -> FacesInView:
         return FacesInView(self.seen, self.outline)
 
+    def owners(self, places: Array) -> NDArray[np.intp]:
+        """Which of the members lies at places of the plane, (n,); -1 beyond the outline.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        return self._view.owners(places)
+
     @cached_property
     def breaks(self) -> tuple[Array, Array]:
         """Inner values of u and of v between which to look for what is not smooth: edges of members run anywhere."""
