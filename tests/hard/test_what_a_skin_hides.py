@@ -1,7 +1,7 @@
 """Found: of face 90 of mousecover 0.15 mm^2 lie 3.5 mm under face 3, as the skin of both is seen.
 
-A piece of the skin at that place is a piece of face 3.  The judge took it for one of both, and failed passes over it for
-what they cannot reach of face 90.
+A piece of the skin at that place is a piece of face 3.  The judge took it for one of both, and failed passes over it
+for what they cannot reach of face 90.
 """
 
 import numpy as np

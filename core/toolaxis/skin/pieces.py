@@ -38,8 +38,8 @@ def own_pieces(face: Face, only_exact: bool = False) -> tuple[Face, ...]:
         The face itself where it was not joined; else its members, those of which it has only a part as pieces, labelled
         with its own letters.
 
-    **Properties**: 1. areas add up, but for what of a member lies under another one as the skin is seen: of a piece that
-    is nothing.
+    **Properties**: 1. areas add up, but for what of a member lies under another one as the skin is seen: no piece has
+    that.
     """
     if not face.members:
         return (face,)
