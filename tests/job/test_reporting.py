@@ -133,7 +133,9 @@ def test_it_shows_all_of_the_plan(page: Page, whole: Path) -> None:
         assert rows[path] == [path, str(len(content)), hashlib.sha256(content).hexdigest()]
     for name, value in document["inputs"].items():
         if name != "tolerance":
-            assert rows[name][1].split()[0] == (f"{value:g}" if isinstance(value, float) else str(value) or "-")
+            numbers = [value] if isinstance(value, float) else value if isinstance(value, list) else []
+            text = ", ".join(f"{number:g}" for number in numbers) if numbers else str(value) if value else "-"
+            assert rows[name][1].split()[0] == text.split()[0]
     others = [name for name in document["inputs"]["tolerance"] if name != "gouge"]
     assert {"machining tolerance", *(f"tolerance {name.replace('_', ' ')}" for name in others)} <= set(rows)
     assert rows["holder (radius, z)"][1] == "10, 0; 10, 40" and rows["stick-out"][1] == "50 mm"

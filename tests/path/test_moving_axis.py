@@ -119,11 +119,16 @@ def test_links_turn_only_across_and_above_everything() -> None:
         assert min(point[2] for point in rim) >= 25.0
 
 
+def _beside_only(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray, over: bool,
+                 rapid: bool) -> np.ndarray:
+    return np.full(len(start), not over)
+
+
 def test_a_stroke_beside_is_reached_straight_over_with_an_axis_between() -> None:
     strokes = _strokes()
     strokes[1] = [MovingCuttingMove(one.contact[::-1], one.tip[::-1], one.normal[::-1],
                                     np.array([[0.6, 0.0, 0.8]] * 9)) for one in strokes[1]]
-    free = MovingLinks(Linking(200.0), UP, TORUS, lambda start, end, before, after, over: np.full(len(start), not over))
+    free = MovingLinks(Linking(200.0), UP, TORUS, _beside_only)
     path = join_moves(strokes, free)
     assert (path.kind[3:-2] != Motion.LINK).all() and path.breaks.tolist() == [0, 14, len(path.kind)]
     over = np.flatnonzero(path.kind == Motion.EXIT)[1]
@@ -137,7 +142,8 @@ def test_a_stroke_beside_is_reached_straight_over_with_an_axis_between() -> None
 def test_links_are_as_low_as_they_may() -> None:
     asked: list[tuple[float, bool]] = []
 
-    def clear(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray, over: bool) -> np.ndarray:
+    def clear(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray, over: bool,
+              rapid: bool) -> np.ndarray:
         asked.append((float(start[0, 2]) if len(start) else 0.0, over))
         return np.array([z > 6.0 if over else z > 2.0 for z in end[:, 2]], dtype=bool)
 

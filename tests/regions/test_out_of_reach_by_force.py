@@ -97,6 +97,7 @@ def test_outlines_are_those_of_the_tool() -> None:
     assert outline.high[2] == pytest.approx(tool.height) and outline.high[3] == pytest.approx(tool.height + 10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["mousecover.step"])
 def test_no_tool_of_the_rack_reaches_what_is_claimed_of_parts_of_others(shared_parts: Path, name: str) -> None:
     part, tools = ta.load(shared_parts / name), rack()
