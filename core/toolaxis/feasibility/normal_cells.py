@@ -25,7 +25,7 @@ _AT_ONCE, _PAIRS = 4096, 200_000
 _SPECK = 0.01
 #: Cells that are kept; what is divided beyond that is made anew whenever it is asked for.
 _KEPT = 50_000
-#: Cells are halved across one parameter alone where normals turn so many times as much along it as along the other.
+#: Cells are cut across one parameter alone where normals turn so many times as much along it as along the other.
 _ONE_WAY = 4.0
 #: As many bounds of distances as take as long as making no cell, and one.
 _QUESTION, _CELL = 3000, 3
@@ -76,7 +76,7 @@ class NormalCells:
         self.roots: tuple[Index | None, TrimmedFaceCells] = np.arange(len(self._cells.rect)), self._cells
 
     def below(self, kept: Index | None, cells: TrimmedFaceCells) -> tuple[Index | None, TrimmedFaceCells]:
-        """The parts of cells, as far as they may hold a point of the face.
+        """The quarters of cells, as far as they may hold a point of the face.
 
         Parameters
         ----------
@@ -113,9 +113,10 @@ class NormalCells:
         return made
 
     def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
-        """The parts of cells, those of one after those of the other, and how many there are of each."""
-        rect, owner = _divide_rectangles(cells.rect, cells.turn)
-        made, met = self._make_cells(rect, cells.bounds[owner], cells.crossed[owner])
+        """The quarters of cells, those of one after those of the other, and how many there are of each."""
+        owner = np.repeat(np.arange(len(cells.rect)), 4)
+        made, met = self._make_cells(_divide_rectangles(cells.rect, cells.turn), cells.bounds[owner],
+                                     cells.crossed[owner])
         return made, np.bincount(owner[met], minlength=len(cells.rect))
 
     def _make_cells(self, rect: Array, bounds: Array, crossed: Bools) -> tuple[TrimmedFaceCells, Index]:
@@ -188,30 +189,22 @@ def _grid_lines(knots: Array, low: float, high: float) -> Array:
     return np.sort(np.concatenate([even[apart], inner]))
 
 
-def _divide_rectangles(rect: Array, turn: Array) -> tuple[Array, Index]:
-    """The quarters of rectangles, (n, 4), or their halves where the normals turn along one parameter alone.
+def _divide_rectangles(rect: Array, turn: Array) -> Array:
+    """The quarters of rectangles, (4 n, 4), those of one after those of the other.
 
     Parameters
     ----------
     rect : (n, 4) array
     turn : (n, 2) array
-        How much the normals turn along each parameter.
-
-    Returns
-    -------
-    parts : (m, 4) array
-        Those of one rectangle after those of the other.
-    owner : (m,) array of int
-        Of which rectangle each is a part.
+        How much the normals turn along each parameter: where it is much more along one, all cuts are across that.
     """
-    middle = (rect[:, 0::2] + rect[:, 1::2]) / 2
-    cut = turn * _ONE_WAY >= turn[:, ::-1]
-    parts = np.repeat(rect[:, None], 4, axis=1)
-    wanted = np.ones((len(rect), 4), dtype=bool)
-    for number, (upper_u, upper_v) in enumerate(((False, False), (False, True), (True, False), (True, True))):
-        for axis, upper in enumerate((upper_u, upper_v)):
-            halved = cut[:, axis]
-            parts[halved, number, 2 * axis + (0 if upper else 1)] = middle[halved, axis]
-            if upper:
-                wanted[~halved, number] = False
-    return parts[wanted], np.nonzero(wanted)[0]
+    along = [turn[:, axis] > _ONE_WAY * turn[:, 1 - axis] for axis in (0, 1)]
+    parts = np.empty((len(rect), 4, 4))
+    number = np.arange(4)
+    for axis, place in ((0, number // 2), (1, number % 2)):
+        count = np.where(along[axis], 4, np.where(along[1 - axis], 1, 2))[:, None]
+        first = np.where(count == 4, number, np.where(count == 1, 0, place))
+        low, size = rect[:, 2 * axis, None], (rect[:, 2 * axis + 1] - rect[:, 2 * axis])[:, None]
+        parts[:, :, 2 * axis] = low + size * (first / count)
+        parts[:, :, 2 * axis + 1] = low + size * ((first + 1) / count)
+    return parts.reshape(-1, 4)

@@ -18,7 +18,7 @@ from toolaxis.skin.view_surface import ViewSurface
 
 Array = NDArray[np.float64]
 
-_ROUNDS = 26
+_ROUNDS = 13
 #: Cells are not divided further once their normals are known to this angle, rad.
 _FINE = 1e-4
 #: More cells than this are not divided further: at a pole, where the normal has no bound, they would only multiply.
