@@ -24,7 +24,7 @@ _RUN_OUT = 1.05
 _REACH_SAMPLES = 192
 _ENDS, _LEAST_ENDS = 2e-4, 2e-7
 #: Where between two passes it is looked what they leave, as shares of their distance, and at how many places in all.
-_BETWEEN, _MOST_PLACES = (0.3, 0.4, 0.5, 0.6, 0.7), 200_000
+_BETWEEN, _MOST_PLACES, _MOST_ASKED = (0.3, 0.4, 0.5, 0.6, 0.7), 200_000, 2_000_000
 #: Points of a pass from which its length is told.
 _ALONG = 65
 
@@ -177,21 +177,29 @@ def places_between(placed: Layout) -> Array:
     ----------
     placed : Layout
     """
-    spacing = placed.spacing
+    spacing, chart = placed.spacing, placed.chart
     if len(spacing.steps) < 2:
         return np.empty((0, 2))
     measured = spacing.lines.measured
-    along = np.sort(np.concatenate([measured, (measured[1:] + measured[:-1]) / 2]))
-    place = np.arange(len(along)) / 2
-    low, high = np.floor(place).astype(int), np.ceil(place).astype(int)
-    halves = (spacing.halves[:, low] + spacing.halves[:, high]) / 2
+    along = np.linspace(measured[0], measured[-1], _count_along(placed))
+    before = np.array([np.interp(along, measured, half) for half in spacing.halves[:-1, :, 1]])
+    behind = np.array([np.interp(along, measured, half) for half in spacing.halves[1:, :, 0]])
     first, last = spacing.steps[:-1, None], spacing.steps[1:, None]
-    meeting = (first + halves[:-1, :, 1] + last - halves[1:, :, 0]) / 2
-    meeting = np.clip(np.nan_to_num(meeting), first, last)
-    others = [np.broadcast_to(first + share * (last - first), meeting.shape) for share in _BETWEEN]
-    stride = max(1, (1 + len(others)) * meeting.size // _MOST_PLACES)
-    rows = np.concatenate([one.ravel()[::stride] for one in (meeting, *others)])
-    return placed.chart.uv(np.tile(np.tile(along, len(meeting))[::stride], 1 + len(others)), rows)
+    meeting = np.clip(np.nan_to_num((first + before + last - behind) / 2), first, last)
+    steps = [meeting, *(np.broadcast_to(first + share * (last - first), meeting.shape) for share in _BETWEEN)]
+    places = [chart.uv(np.tile(along, len(meeting)), one.ravel()) for one in steps]
+    found = np.concatenate([uv[chart.face.contains(uv)] for uv in places])
+    return found[::max(1, len(found) // _MOST_PLACES)]
+
+
+def _count_along(placed: Layout) -> int:
+    """How many places along passes are no farther apart than the narrowest strip on a plane is wide, or as many as
+    there may be of them."""
+    cut = placed.cut
+    strip = 2 * np.sqrt(2 * (cut.tool.corner_radius or cut.tool.radius) * cut.scallop)
+    most = _MOST_ASKED // ((1 + len(_BETWEEN)) * len(placed.spacing.steps))
+    least = 2 * len(placed.spacing.lines.measured) - 1
+    return max(least, min(most, int(np.ceil(extents(placed.chart)[0] / strip))))
 
 
 def pass_length(placed: Layout) -> float:
