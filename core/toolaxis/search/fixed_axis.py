@@ -26,7 +26,7 @@ from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout, lay_out, pass_length, places_between
 from toolaxis.path.pass_pattern import pattern_name, pattern_names
 from toolaxis.path.planes import PlaneChart
-from toolaxis.path.rest_material import RestFinder, may_stay
+from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, RestFinder, may_stay
 from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.zone import Zone
@@ -103,6 +103,11 @@ _SEARCHED, _ORDERED = 0.5, 0.4
 _LEFT_OUT = 3
 #: Where further passes make the cut so many times as long, the other feed is tried too.
 _LONGER = 1.02
+#: Places along a side of a grid that tells how much of its range a face fills, and places on the face that tell how
+#: much stays high between passes over a skin.
+_COARSE, _SAMPLES = 60, 40_000
+#: Where that is too much, passes are laid for this share of the scallop height, and again, down to the second share.
+_CLOSER, _CLOSEST = 0.95, 0.87
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +129,8 @@ class FaceProblem:
     left_out : (n, 3) array
         Contacts, mm, that passes keep away from besides all on which the cutter may not stand; what stays there is
         undercut.
+    laid_for : float
+        Share of the scallop height for which passes are laid.
     """
 
     feasibility: Feasibility
@@ -133,6 +140,7 @@ class FaceProblem:
     progress: Progress = NO_PROGRESS
     direction: str = "zigzag"
     left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
+    laid_for: float = 1.0
 
     @property
     def box(self) -> Array:
@@ -196,6 +204,7 @@ class FaceProblem:
             When the axis leaves no strip, or passes of this kind do not go with the face.
         """
         cut, reach = self.worth.cut(axis), lambda uv: self.reach(uv, axis)
+        cut = replace(cut, scallop=self.laid_for * cut.scallop)
         found: list[Layout] = []
         refused: list[InvalidInput | UnsupportedGeometry] = []
         for pattern in self.worth.patterns:
@@ -600,6 +609,8 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
             made = FurtherPasses(placed, plain, job.left_by(plain, placed))
+    if proof.witness is None and job.laid_for > _CLOSEST and _is_laid_too_wide(job, made):
+        return check_candidate(replace(job, laid_for=_CLOSER * job.laid_for), one)
     path, area = made.path, job.worth.face.area
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
@@ -611,6 +622,25 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
                         ideal=job.worth.ideal_length(one.axis))
     return CheckedCandidate(one, found, proof, path, made.longer)
+
+
+def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
+    """Whether more stays high than may, told from samples: ridges between passes are thinner than any cell.
+
+    Only where strips are measured on what stands for a skin can that be.
+    """
+    worth = job.worth
+    if worth.face.surface.stand_in is None:
+        return False
+    filled = max(len(worth.face.grid(_COARSE, _COARSE)), 1) / _COARSE**2
+    count = int(np.sqrt(_SAMPLES / filled))
+    uv = worth.face.grid(count, count)
+    for zone in made.zones:
+        uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
+    d = worth.face.evaluate(uv)
+    area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    high = Excess(worth.face, worth.tool, made.path, worth.allowance + FACTOR * worth.scallop)(uv) > 0
+    return bool(area[high].sum() > OVERLOOKED * area.sum())
 
 
 def _proven_without_refused(job: FaceProblem, placed: Layout) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
