@@ -14,6 +14,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
+from toolaxis.skin.continuation import Continuation, Heights
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.tangent_planes import TangentPlanes, heights_beyond
@@ -27,6 +28,8 @@ _COARSE, _FINE, _EXACT = 49, 193, 1e-3
 _ALONG, _BORDER = 200, 800
 #: How far tangent planes rise or fall beyond the outline at most, as a share of the size: steep ones level off.
 _RISE = 0.04
+#: Width of the band along the outline in which the faces themselves go on, in steps of the spline's grid.
+_BAND = 2.0
 #: Parts of the range at whose ends nothing about the surface is smooth.
 _PARTS = 12
 
@@ -37,7 +40,8 @@ class ViewSurface(NurbsSurface):
 
     Within the outline of the faces every point, normal and second derivative is that of the face which lies there,
     exact to rounding.  The control points are those of a smooth spline through such points; it stands for the faces
-    where kernels take a surface's numbers to tell strip widths, and it carries on beyond their outline and over holes.
+    where kernels take a surface's numbers to tell strip widths.  Beyond their outline and over holes the faces go on
+    along their tangent planes, and from there on as the spline does.
 
     Attributes
     ----------
@@ -111,7 +115,7 @@ class ViewSurface(NurbsSurface):
         Parameters
         ----------
         uv : (n, 2) array
-            Places x, y in the plane; beyond the outline the spline goes on.
+            Places x, y in the plane, beyond the outline too.
         """
         places = np.asarray(uv, dtype=float).reshape(-1, 2)
         found = super().evaluate(places)
@@ -119,7 +123,29 @@ class ViewSurface(NurbsSurface):
         within = owner >= 0
         for mine, exact in zip(found, self._view.evaluate(places[within], owner[within]), strict=True):
             mine[within] = exact
+        if not within.all():
+            self._carry_on(places, found, ~within)
         return found
+
+    def _carry_on(self, places: Array, spline: Derivatives, beyond: NDArray[np.bool_]) -> None:
+        """Put the faces' tangent planes in the place of the spline next to the outline."""
+        up = self.frame[2]
+        level = [every[beyond] @ up for every in spline]
+        bend = np.stack([np.column_stack([level[3], level[4]]), np.column_stack([level[4], level[5]])], axis=1)
+        told = Heights(level[0] - self.origin @ up, np.column_stack(level[1:3]), bend)
+        made = self._continuation.merge(places[beyond], told)
+        along = np.linalg.inv(self.frame)[:, 2]
+        moves = (made.value - told.value, *(made.slope - told.slope).T, made.bend[:, 0, 0] - bend[:, 0, 0],
+                 made.bend[:, 0, 1] - bend[:, 0, 1], made.bend[:, 1, 1] - bend[:, 1, 1])
+        for every, move in zip(spline, moves, strict=True):
+            every[beyond] += move[:, None] * along
+
+    @cached_property
+    def _continuation(self) -> Continuation:
+        size = float(np.ptp(self.outline[0], axis=0).max())
+        step = max((end - start) / (len(knots) - 2 * degree - 1) for (start, end), knots, degree
+                   in zip(self.domain, (self.knots_u, self.knots_v), self.degree, strict=True))
+        return Continuation(self._view, self.frame, self.origin, _BAND * step, _RISE * size)
 
     def transformed(self, matrix: ArrayLike) -> "ViewSurface":
         """The surface moved by an affine map, its members with it.
